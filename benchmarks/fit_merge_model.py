@@ -154,7 +154,7 @@ def header_text(model, errors, counts):
 // The mean and the largest error are relative; R2 is that of the instructions.
 #pragma once
 
-namespace glint::fitted {{
+namespace glint::compiler::fitted {{
 
 // SPIR-V instructions of the shader of one unlit key without other features, and what being lit adds.
 inline constexpr double kUnlitInstructions = {values['kUnlitInstructions']:.1f};
@@ -166,7 +166,7 @@ inline constexpr double kLobeBranch = {values['kLobeBranch']:.1f};
 
 // What a shader has more for a feature is in the feature's declaration ("cost").
 
-}}  // namespace glint::fitted
+}}  // namespace glint::compiler::fitted
 """
 
 

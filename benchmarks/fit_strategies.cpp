@@ -33,10 +33,10 @@ int fitFile(const char* points, const char* device) {
     if (!fitted) {
         return fail(fitted.error());
     }
-    if (Status written = writeFile(device, toText(*fitted)); !written) {
+    if (Status written = base::writeFile(device, toText(*fitted)); !written) {
         return fail(written.error());
     }
-    fmt::print("{}", describe(*fitted));
+    fmt::print("{}", cli::describe(*fitted));
     return 0;
 }
 

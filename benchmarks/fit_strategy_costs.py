@@ -95,7 +95,7 @@ def header():
         "#include <span>",
         "#include <string_view>",
         "",
-        "namespace glint::fitted {",
+        "namespace glint::compiler::fitted {",
         "",
         "struct StrategyConstants {",
         "    std::string_view strategy;",
@@ -126,7 +126,7 @@ def header():
         )
         lines.append(f"     {quoted(device['command'])},")
         lines.append(f"     {names[device['deviceType']]}}},")
-    lines += ["};", "", "}  // namespace glint::fitted", ""]
+    lines += ["};", "", "}  // namespace glint::compiler::fitted", ""]
     return "\n".join(lines)
 
 

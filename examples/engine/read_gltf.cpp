@@ -53,9 +53,9 @@ void measure(std::span<const glint::PrimitiveView> primitives, std::uint32_t num
 }  // namespace
 
 World readGltf(const std::string& file, Format format, float aspect) {
-    glint::ImportOptions options;
+    glint::gltf::ImportOptions options;
     options.decodeImages = true;
-    const glint::Result<glint::Scene> scene = glint::importScene(file, options);
+    const glint::Result<glint::gltf::Scene> scene = glint::gltf::importScene(file, options);
     if (!scene) {
         fail(toString(scene.error()));
     }

@@ -50,7 +50,7 @@ protected:
 
     void writeCheckerboard() const {
         constexpr std::uint32_t kSize = 64;
-        DisplayImage image{kSize, kSize, {}};
+        image::DisplayImage image{kSize, kSize, {}};
         for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
             const bool isLight = (i % kSize < kSize / 2) != (i / kSize < kSize / 2);
             image.pixels.push_back(isLight ? std::array<std::uint8_t, 3>{250, 250, 250}

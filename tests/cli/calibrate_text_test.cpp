@@ -21,7 +21,7 @@ TEST(CalibrationText, HasAColumnForUberAndADashForWhatDidNotRun) {
     measure::settleEntry(entry);
     measure::CalibrationReport report;
     report.entries = {entry};
-    const std::string text = toText(report);
+    const std::string text = cli::toText(report);
     EXPECT_NE(text.find("| uber, ms |"), std::string::npos) << text;
     EXPECT_NE(text.find("| 8.000"), std::string::npos) << text;
     EXPECT_NE(text.find("| -"), std::string::npos) << text;

@@ -20,7 +20,7 @@ protected:
         write("small.exr", {1, 1, {{0.0F, 0.0F, 0.0F, 1.0F}}});
     }
     void write(const std::string& name, const LinearImage& image) const {
-        const Status written = writeImage(path(name), image, 0.0);
+        const Status written = image::writeImage(path(name), image, 0.0);
         ASSERT_TRUE(written) << toString(written.error());
     }
 };
@@ -81,7 +81,7 @@ TEST_F(CompareCommand, LimitDecidesTheExit) {
 
 TEST_F(CompareCommand, WritesADifferenceMap) {
     ASSERT_EQ(run({"compare", "b.exr", "a.exr", "--diff", "d.png"}).exit, 0);
-    const Result<LinearImage> map = readImage(path("d.png"));
+    const Result<LinearImage> map = image::readImage(path("d.png"));
     ASSERT_TRUE(map) << toString(map.error());
     EXPECT_EQ(map->width, 4U);
     EXPECT_EQ(map->pixels[0][0], 0.0F);

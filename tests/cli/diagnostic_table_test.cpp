@@ -61,14 +61,14 @@ struct Maker {
 };
 
 constexpr Maker kMakers[] = {
-    {R"(\b(?:makeError|error|errorAt)\(\s*)", kError},
-    {R"(\bSchemaError\{\s*)", kError},
-    {R"(\bcheckBudget\([^"]*)", kError},
-    {R"(\b(?:makeWarning|warn)\(\s*)", kWarning},
-    {R"(\bnote\(\s*)", kNote},
-    {R"(Severity::Error,\s*)", kError},
-    {R"(Severity::Warning,\s*)", kWarning},
-    {R"(Severity::Note,\s*)", kNote},
+    {R"(\b(?:makeError|error|errorAt)\(\s*)", cli::kError},
+    {R"(\bSchemaError\{\s*)", cli::kError},
+    {R"(\bcheckBudget\([^"]*)", cli::kError},
+    {R"(\b(?:makeWarning|warn)\(\s*)", cli::kWarning},
+    {R"(\bnote\(\s*)", cli::kNote},
+    {R"(Severity::Error,\s*)", cli::kError},
+    {R"(Severity::Warning,\s*)", cli::kWarning},
+    {R"(Severity::Note,\s*)", cli::kNote},
 };
 
 // Returns the ids in literals at the places above, with their severities.
@@ -89,17 +89,17 @@ const std::map<std::string, std::uint8_t>& madeIds() {
 }
 
 TEST(DiagnosticTable, IsSortedAndWithoutRepetition) {
-    for (std::size_t i = 1; i < diagnosticTable().size(); ++i) {
-        EXPECT_LT(diagnosticTable()[i - 1].id, diagnosticTable()[i].id);
+    for (std::size_t i = 1; i < cli::diagnosticTable().size(); ++i) {
+        EXPECT_LT(cli::diagnosticTable()[i - 1].id, cli::diagnosticTable()[i].id);
     }
-    EXPECT_EQ(findDiagnostic("gltf")->id, "gltf");
-    EXPECT_EQ(findDiagnostic("no-such-id"), nullptr);
-    EXPECT_EQ(findDiagnostic(""), nullptr);
+    EXPECT_EQ(cli::findDiagnostic("gltf")->id, "gltf");
+    EXPECT_EQ(cli::findDiagnostic("no-such-id"), nullptr);
+    EXPECT_EQ(cli::findDiagnostic(""), nullptr);
 }
 
 TEST(DiagnosticTable, MeaningsAreSentences) {
-    for (const DiagnosticInfo& info : diagnosticTable()) {
-        EXPECT_NE(info.severities & (kNote | kWarning | kError), 0) << info.id;
+    for (const cli::DiagnosticInfo& info : cli::diagnosticTable()) {
+        EXPECT_NE(info.severities & (cli::kNote | cli::kWarning | cli::kError), 0) << info.id;
         EXPECT_TRUE(info.meaning.ends_with('.')) << info.id;
         EXPECT_EQ(info.meaning.find('|'), std::string_view::npos)
             << info.id << " would end a cell of a table";
@@ -110,7 +110,7 @@ TEST(DiagnosticTable, HasEveryIdThatTheSourcesMake) {
     // With fewer, the patterns would no longer find them.
     EXPECT_GT(madeIds().size(), 150U);
     for (const auto& [id, severities] : madeIds()) {
-        const DiagnosticInfo* const info = findDiagnostic(id);
+        const cli::DiagnosticInfo* const info = cli::findDiagnostic(id);
         if (info == nullptr) {
             ADD_FAILURE() << id << " is made, and not in the table";
             continue;
@@ -123,7 +123,7 @@ TEST(DiagnosticTable, HasEveryIdThatTheSourcesMake) {
 // If an id reaches its diagnostic indirectly, there must at least be a literal for it somewhere. Only an id
 // with a hyphen can be recognised as one.
 TEST(DiagnosticTable, HasNoIdThatNothingMakes) {
-    for (const DiagnosticInfo& info : diagnosticTable()) {
+    for (const cli::DiagnosticInfo& info : cli::diagnosticTable()) {
         const std::string id(info.id);
         const bool isLiteral =
             id.find('-') != std::string::npos && std::ranges::any_of(sources(), [&](const std::string& text) {
@@ -135,7 +135,8 @@ TEST(DiagnosticTable, HasNoIdThatNothingMakes) {
 
 std::string severityNames(std::uint8_t severities) {
     std::string text;
-    for (const auto& [bit, name] : {std::pair(kError, "error"), {kWarning, "warning"}, {kNote, "note"}}) {
+    for (const auto& [bit, name] :
+         {std::pair(cli::kError, "error"), {cli::kWarning, "warning"}, {cli::kNote, "note"}}) {
         if ((severities & bit) != 0) {
             text += (text.empty() ? "" : ", ") + std::string(name);
         }
@@ -145,7 +146,7 @@ std::string severityNames(std::uint8_t severities) {
 
 TEST(DiagnosticTable, IsThatOfItsDocument) {
     std::string expected;
-    for (const DiagnosticInfo& info : diagnosticTable()) {
+    for (const cli::DiagnosticInfo& info : cli::diagnosticTable()) {
         expected += "| `" + std::string(info.id) + "` | " + severityNames(info.severities) + " | " +
                     std::string(info.meaning) + " |\n";
     }

@@ -31,7 +31,7 @@ protected:
         LinearImage image{width, height, {}};
         image.pixels.assign(std::size_t{width} * height, {1.0F, 1.0F, 1.0F, 1.0F});
         image.pixels[width + 2][1] = odd;
-        ASSERT_TRUE(writeImage(path(name), image, 0.0));
+        ASSERT_TRUE(image::writeImage(path(name), image, 0.0));
     }
     std::string scene_;
 };
@@ -46,7 +46,7 @@ TEST_F(EnvironmentCommand, LightsTheScene) {
     EXPECT_EQ(map.at("levels"), 4);
     EXPECT_NE(outcome.err.find("note: is 64 x 32, and resampled to 256 x 128"), std::string::npos)
         << outcome.err;
-    const Result<LinearImage> image = readImage(path("a.exr"));
+    const Result<LinearImage> image = image::readImage(path("a.exr"));
     ASSERT_TRUE(image);
     // The top left shows the sky.
     EXPECT_NEAR(image->pixels[0][0], 1.0F, 1e-3F);

@@ -295,11 +295,11 @@ TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
 TEST_F(Faults, ImageIsWholeOrTheEarlierOne) {
     LinearImage image{64, 64, {}};
     image.pixels.assign(std::size_t{64} * 64, {0.5F, 0.5F, 0.5F, 1.0F});
-    ASSERT_TRUE(writeImage(path("a.exr"), image, 0.0));
+    ASSERT_TRUE(image::writeImage(path("a.exr"), image, 0.0));
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         image.pixels[i][0] = static_cast<float>(i % 97);
     }
-    ASSERT_TRUE(writeImage(path("b.exr"), image, 0.0));
+    ASSERT_TRUE(image::writeImage(path("b.exr"), image, 0.0));
     const std::vector<std::string> command{"compare", "b.exr", "a.exr", "--diff", "work/map.png"};
     ASSERT_EQ(run({"compare", "a.exr", "a.exr", "--diff", "work/map.png"}).exit, 0);
     const Contents before = contents();

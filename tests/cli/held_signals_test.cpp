@@ -21,7 +21,7 @@ TEST(HeldSignals, ActAfterwardsAsTheyWouldHave) {
         ASSERT_EQ(sigaction(signal, &action, &before), 0);
         handled = 0;
         {
-            const HeldSignals held;
+            const cli::HeldSignals held;
             std::raise(signal);
             EXPECT_EQ(handled, 0) << signal;
         }
@@ -38,7 +38,7 @@ TEST(HeldSignals, StayIgnoredWhereTheyWere) {
     struct sigaction before {};
     ASSERT_EQ(sigaction(SIGHUP, &action, &before), 0);
     {
-        const HeldSignals held;
+        const cli::HeldSignals held;
         std::raise(SIGHUP);
     }
     struct sigaction after {};
@@ -48,7 +48,7 @@ TEST(HeldSignals, StayIgnoredWhereTheyWere) {
 
 TEST(HeldSignalsDeathTest, EndTheProgramByDefault) {
     const auto interrupted = [] {
-        const HeldSignals held;
+        const cli::HeldSignals held;
         std::raise(SIGTERM);
     };
     EXPECT_EXIT(interrupted(), ::testing::KilledBySignal(SIGTERM), "");

@@ -92,7 +92,7 @@ fs::path writeManyKeys(const fs::path& folder, const Lobes& lobes, double red) {
 }
 
 void writeBaseTexture(const fs::path& folder, std::uint8_t red) {
-    const DisplayImage image{1, 1, {{red, 100, 50}}};
+    const image::DisplayImage image{1, 1, {{red, 100, 50}}};
     const Status written = writeImage(folder / "base.png", image);
     ASSERT_TRUE(written) << toString(written.error());
 }

@@ -14,22 +14,22 @@ namespace {
 using Json = nlohmann::json;
 
 TEST(MotionOptions, ReadFrames) {
-    const std::optional<FrameRange> range = parseFrames("3:17");
+    const std::optional<cli::FrameRange> range = cli::parseFrames("3:17");
     ASSERT_TRUE(range.has_value());
     EXPECT_EQ(range->first, 3);
     EXPECT_EQ(range->last, 17);
-    const std::optional<FrameRange> one = parseFrames("7");
+    const std::optional<cli::FrameRange> one = cli::parseFrames("7");
     ASSERT_TRUE(one.has_value());
     EXPECT_EQ(one->first, one->last);
     for (const char* text :
          {"", ":", "1:", ":1", "2:1", "-1:3", "1:2:3", "a:b", "1.5", "0:1000001", "0x1", " 1"}) {
-        EXPECT_FALSE(parseFrames(text).has_value()) << text;
+        EXPECT_FALSE(cli::parseFrames(text).has_value()) << text;
     }
 }
 
 TEST(MotionOptions, NumberFiles) {
-    EXPECT_EQ(numberedFile("a/out.png", 7), "a/out.0007.png");
-    EXPECT_EQ(numberedFile("out.v2.exr", 12345), "out.v2.12345.exr");
+    EXPECT_EQ(cli::numberedFile("a/out.png", 7), "a/out.0007.png");
+    EXPECT_EQ(cli::numberedFile("out.v2.exr", 12345), "out.v2.12345.exr");
 }
 
 class MovingScene : public RenderCommand {

@@ -6,7 +6,7 @@ namespace glint {
 namespace {
 
 TEST(OrderCheck, AnyErrorFailsAndIsCounted) {
-    RenderReport report;
+    cli::RenderReport report;
     report.scene = "room.gltf";
     EXPECT_TRUE(checkOrder(report).ok());
     report.counters.orderErrors = 3;

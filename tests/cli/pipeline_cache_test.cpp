@@ -31,9 +31,9 @@ protected:
         constexpr std::size_t kHeaderBytes = 64;
         file[kDeviceAt] = static_cast<char>(file[kDeviceAt] ^ 1);
         std::memset(file.data() + kChecksumAt, 0, sizeof(std::uint64_t));
-        const auto bytes = asBytes(file);
+        const auto bytes = base::asBytes(file);
         const std::uint64_t sum =
-            hashBytes(bytes.subspan(kHeaderBytes), hashBytes(bytes.first(kHeaderBytes)));
+            base::hashBytes(bytes.subspan(kHeaderBytes), base::hashBytes(bytes.first(kHeaderBytes)));
         std::memcpy(file.data() + kChecksumAt, &sum, sizeof(sum));
         return file;
     }

@@ -7,8 +7,8 @@ namespace glint {
 namespace {
 
 TEST(PipelineColumns, AreFoundInNamesOfSeveralDrivers) {
-    using enum PipelineColumn;
-    const std::pair<const char*, PipelineColumn> kExpected[] = {
+    using enum cli::PipelineColumn;
+    const std::pair<const char*, cli::PipelineColumn> kExpected[] = {
         {"Register Count", Registers},
         {"Binary Size", CodeBytes},
         {"Stack Size", LocalMemory},
@@ -28,7 +28,7 @@ TEST(PipelineColumns, AreFoundInNamesOfSeveralDrivers) {
         {"Loop Count", None},  // ANV
     };
     for (const auto& [name, column] : kExpected) {
-        EXPECT_EQ(columnOf(name), column) << name;
+        EXPECT_EQ(cli::columnOf(name), column) << name;
     }
 }
 
@@ -45,25 +45,25 @@ PipelineStatistics sample() {
 TEST(PipelineTable, GathersWhatFitsAColumn) {
     const PipelineStatistics pipelines[] = {sample()};
     EXPECT_EQ(
-        tableOf(pipelines),
+        cli::tableOf(pipelines),
         "pipeline         executable  subgroup  registers  spills  local memory  instructions  code bytes\n"
         "ShadeCase Glass  main              32    48 + 16  true               -  -1                     -\n");
 }
 
 TEST(PipelineJson, HasEveryStatisticWithItsType) {
-    PipelineReport report;
+    cli::PipelineReport report;
     EXPECT_TRUE(statisticsToJson(report).is_null());
     EXPECT_TRUE(cacheToJson(report).is_null());
     report.statistics = {sample()};
-    const Json json = statisticsToJson(report);
+    const base::Json json = statisticsToJson(report);
     ASSERT_EQ(json.size(), 1U);
     EXPECT_EQ(json[0].at("name"), "ShadeCase Glass");
     EXPECT_EQ(json[0].at("creationMs"), 1.5);
     EXPECT_EQ(json[0].at("cacheHit"), true);
-    const Json& executable = json[0].at("executables").at(0);
-    EXPECT_EQ(executable.at("stages"), Json::array({"compute"}));
+    const base::Json& executable = json[0].at("executables").at(0);
+    EXPECT_EQ(executable.at("stages"), base::Json::array({"compute"}));
     EXPECT_EQ(executable.at("subgroupSize"), 32);
-    const Json& statistics = executable.at("statistics");
+    const base::Json& statistics = executable.at("statistics");
     ASSERT_EQ(statistics.size(), 5U);
     EXPECT_EQ(statistics[0].dump(), R"({"name":"VGPRs","description":"","format":"uint64","value":48})");
     EXPECT_EQ(statistics[2].dump(),
@@ -73,12 +73,12 @@ TEST(PipelineJson, HasEveryStatisticWithItsType) {
 }
 
 TEST(MemoryTable, SumsWhatItLists) {
-    MemoryReport memory;
+    cli::MemoryReport memory;
     memory.frame = {{"surface", MemoryUse::Device, true, 1, 1000},
                     {"constants", MemoryUse::Upload, false, 1, 24}};
     memory.scene = {{"textures", MemoryUse::Device, true, 3, 500},
                     {"poses on their way", MemoryUse::Upload, false, 1, 8}};
-    const Json json = toJson(memory);
+    const base::Json json = toJson(memory);
     EXPECT_EQ(json.at("frameBytes"), 1024);
     EXPECT_EQ(json.at("sceneBytes"), 508);
     EXPECT_EQ(json.at("bytes"), 1532);

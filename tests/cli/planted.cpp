@@ -47,7 +47,7 @@ std::string withModule(std::string tables, const std::string& file, std::span<co
         auto entry = at<package::ModuleEntry>(tables, place);
         if (tables.substr(strings.offset + entry.file.offset, entry.file.length) == file) {
             entry.bytes = spirv.size();
-            entry.hash = hashBytes(spirv);
+            entry.hash = base::hashBytes(spirv);
             std::memcpy(tables.data() + place, &entry, sizeof entry);
         }
     }
@@ -55,7 +55,7 @@ std::string withModule(std::string tables, const std::string& file, std::span<co
     header.contentHash = 0;
     const std::span whole(reinterpret_cast<const std::uint8_t*>(tables.data()), tables.size());
     const std::span head(reinterpret_cast<const std::uint8_t*>(&header), sizeof header);
-    header.contentHash = hashBytes(whole.subspan(sizeof header), hashBytes(head));
+    header.contentHash = base::hashBytes(whole.subspan(sizeof header), base::hashBytes(head));
     std::memcpy(tables.data(), &header, sizeof header);
     return tables;
 }
@@ -68,7 +68,7 @@ void plant(const fs::path& package, const std::string& source, const std::string
     const std::size_t found = glsl.find(from);
     ASSERT_NE(found, std::string::npos) << source << " lacks " << from;
     glsl.replace(found, from.size(), to);
-    const auto words = compileShader({source, ShaderStage::Compute, glsl}, {});
+    const auto words = compiler::compileShader({source, compiler::ShaderStage::Compute, glsl}, {});
     ASSERT_TRUE(words.ok()) << words.error().message;
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(words->data()),
                           words->size() * sizeof(std::uint32_t));

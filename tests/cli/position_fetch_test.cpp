@@ -29,10 +29,11 @@ protected:
 
 TEST_P(PositionFetch, GivesTheSameImage) {
     const Outcome fetched = render("fetched.exr", true);
-    if (!supportsPositionFetch()) {
+    if (!compiler::supportsPositionFetch()) {
         EXPECT_EQ(fetched.exit, 1);
         EXPECT_NE(fetched.err.find("GL_EXT_ray_tracing_position_fetch"), std::string::npos) << fetched.err;
-        GTEST_SKIP() << "built with glslang " << glslangVersion() << ", which has no position fetch";
+        GTEST_SKIP() << "built with glslang " << compiler::glslangVersion()
+                     << ", which has no position fetch";
     }
     if (fetched.err.find("VK_KHR_ray_tracing_position_fetch") != std::string::npos) {
         GTEST_SKIP() << "the device has no position fetch";
@@ -65,9 +66,10 @@ TEST_F(PositionFetchCompile, IsInTheModulesThatCan) {
     const std::string scene = writeTinyScene(path("")).string();
     const Outcome outcome =
         run({"compile", scene, "-o", "package", "--strategy", "all", "--tracer", "all", "--position-fetch"});
-    if (!supportsPositionFetch()) {
+    if (!compiler::supportsPositionFetch()) {
         EXPECT_EQ(outcome.exit, 1);
-        GTEST_SKIP() << "built with glslang " << glslangVersion() << ", which has no position fetch";
+        GTEST_SKIP() << "built with glslang " << compiler::glslangVersion()
+                     << ", which has no position fetch";
     }
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
     const std::string extension = "SPV_KHR_ray_tracing_position_fetch";

@@ -141,12 +141,12 @@ protected:
     }
     // How bright 1, 5 and 9 of 10 pixels of a picture are at most: 0, black, to 1, white.
     std::array<double, 3> quantiles(const std::string& picture) const {
-        const Result<LinearImage> image = readImage(path(picture));
+        const Result<LinearImage> image = image::readImage(path(picture));
         EXPECT_TRUE(image) << picture;
         std::vector<double> values;
         for (const std::array<float, 4>& pixel :
              image ? image->pixels : std::vector<std::array<float, 4>>(10)) {
-            values.push_back(luminance({pixel[0], pixel[1], pixel[2]}));
+            values.push_back(image::luminance({pixel[0], pixel[1], pixel[2]}));
         }
         std::ranges::sort(values);
         return {values[values.size() / 10], values[values.size() / 2], values[9 * values.size() / 10]};
@@ -209,8 +209,8 @@ TEST_F(LampScene, ASequenceDoesNotFlicker) {
     const std::vector<std::string> frames{"--frames", "0:1", "--fps", "1", "--json"};
     const Outcome outcome = render("a.exr", frames);
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
-    const Result<LinearImage> first = readImage(path("a.0000.exr"));
-    const Result<LinearImage> second = readImage(path("a.0001.exr"));
+    const Result<LinearImage> first = image::readImage(path("a.0000.exr"));
+    const Result<LinearImage> second = image::readImage(path("a.0001.exr"));
     ASSERT_TRUE(first && second);
     EXPECT_NE(first->pixels, second->pixels) << "the lamp moves";
     EXPECT_EQ(first->pixels[0], second->pixels[0]) << "the sky stays";

@@ -192,8 +192,8 @@ Json exampleIn(const std::string& document, const std::string& heading) {
 }
 
 TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
-    ASSERT_FALSE(declarationFiles().empty());
-    for (const BuiltinFile& file : declarationFiles()) {
+    ASSERT_FALSE(materials::declarationFiles().empty());
+    for (const base::BuiltinFile& file : materials::declarationFiles()) {
         SCOPED_TRACE(file.name);
         expectFits(file.name.starts_with("effects/") ? "effect" : "material_feature", Json::parse(file.text));
     }

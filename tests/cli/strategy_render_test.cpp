@@ -92,7 +92,7 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
                 Json times = Json::array();
                 const double first =
                     estimatedMs(measure::roundOf(point), planted->costs.strategies.front(), 32.0);
-                for (const StrategyCosts& costs : planted->costs.strategies) {
+                for (const compiler::StrategyCosts& costs : planted->costs.strategies) {
                     const double ms = estimatedMs(measure::roundOf(point), costs, 32.0);
                     times.push_back({{"strategy", costs.strategy},
                                      // The times are like those of a device whose clock changes from round to
@@ -139,7 +139,8 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
     const Result<measure::DeviceFile> again = measure::readDeviceFile(path("device.json"));
     ASSERT_TRUE(again) << again.error().message;
     EXPECT_EQ(toText(*again), text);
-    EXPECT_NE(describe(*again).find("within 5 % at 100.0 %"), std::string::npos) << describe(*again);
+    EXPECT_NE(cli::describe(*again).find("within 5 % at 100.0 %"), std::string::npos)
+        << cli::describe(*again);
 
     const Result<measure::DeviceFile> none = measure::fitDevice(read->device, {}, notes);
     ASSERT_FALSE(none);
@@ -147,9 +148,10 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
 }
 
 TEST_F(StrategyRender, ConstantsAreOfTheStrategiesThatThereAre) {
-    EXPECT_EQ(std::size(kStrategyNames), std::size(package::kStrategies));
+    EXPECT_EQ(std::size(compiler::kStrategyNames), std::size(package::kStrategies));
     for (const package::Strategy strategy : package::kStrategies) {
-        EXPECT_NE(std::ranges::find(kStrategyNames, package::nameOf(strategy)), std::end(kStrategyNames));
+        EXPECT_NE(std::ranges::find(compiler::kStrategyNames, package::nameOf(strategy)),
+                  std::end(compiler::kStrategyNames));
     }
 }
 

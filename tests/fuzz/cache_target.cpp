@@ -21,9 +21,9 @@ constexpr std::string_view kCompiler = "compiler";
 constexpr std::string_view kSource = "source";
 
 // All keys of a kind share one file, that of hash 0, so that its name is known.
-glint::CacheStore& store() {
+glint::compiler::CacheStore& store() {
     static const glint::test::TemporaryFolder folder;
-    static glint::CacheStore store(
+    static glint::compiler::CacheStore store(
         {folder.path(), 1ULL << 20, [](std::string_view) { return std::uint64_t{0}; }});
     return store;
 }
@@ -40,36 +40,37 @@ void readEntry(std::span<const std::uint8_t> bytes, std::string_view text) {
 }
 
 void readAction(std::string_view text) {
-    const std::optional<glint::ActionRecord> record = glint::unpackAction(text);
+    const std::optional<glint::compiler::ActionRecord> record = glint::compiler::unpackAction(text);
     if (record) {
-        const std::string packed = glint::pack(*record);
-        const std::optional<glint::ActionRecord> again = glint::unpackAction(packed);
-        require(again && glint::pack(*again) == packed, "a record reads back as it was packed");
+        const std::string packed = glint::compiler::pack(*record);
+        const std::optional<glint::compiler::ActionRecord> again = glint::compiler::unpackAction(packed);
+        require(again && glint::compiler::pack(*again) == packed, "a record reads back as it was packed");
     }
 }
 
 void readSummary(std::string_view text) {
-    const std::optional<glint::CompileSummary> summary = glint::unpackSummary(text, true);
+    const std::optional<glint::cli::CompileSummary> summary = glint::cli::unpackSummary(text, true);
     if (summary) {
-        const std::string packed = glint::pack(*summary);
-        const std::optional<glint::CompileSummary> again = glint::unpackSummary(packed, true);
-        require(again && glint::pack(*again) == packed, "a summary reads back as it was packed");
+        const std::string packed = glint::cli::pack(*summary);
+        const std::optional<glint::cli::CompileSummary> again = glint::cli::unpackSummary(packed, true);
+        require(again && glint::cli::pack(*again) == packed, "a summary reads back as it was packed");
     }
 }
 
 void readModule(std::string_view text) {
-    const std::optional<glint::CachedModule> module = glint::unpackModule(text);
+    const std::optional<glint::compiler::CachedModule> module = glint::compiler::unpackModule(text);
     require(!module || !module->spirv.empty(), "a cached module has words");
 }
 
 // The store handles all values alike, and writing takes longer than everything else here.
 void storeModule(std::string_view text) {
-    const std::string key = glint::Packer().add(kCompiler).add(kSource).take();
+    const std::string key = glint::compiler::Packer().add(kCompiler).add(kSource).take();
     store().put("module", key, text);
     require(store().find("module", key) == text, "the store gives back what was put");
-    const std::optional<glint::CachedModule> module =
-        glint::ModuleCache(store(), std::string(kCompiler)).find(kSource);
-    require(module.has_value() == glint::unpackModule(text).has_value(), "a stored module is as it was put");
+    const std::optional<glint::compiler::CachedModule> module =
+        glint::compiler::ModuleCache(store(), std::string(kCompiler)).find(kSource);
+    require(module.has_value() == glint::compiler::unpackModule(text).has_value(),
+            "a stored module is as it was put");
 }
 
 }  // namespace

@@ -11,10 +11,10 @@ namespace {
 // The formats are recognised by the magic numbers of OpenEXR and PNG.
 glint::Result<glint::LinearImage> decode(std::span<const std::uint8_t> bytes) {
     if (!bytes.empty() && bytes[0] == 0x76) {
-        return glint::decodeExr(bytes, "picture.exr");
+        return glint::image::decodeExr(bytes, "picture.exr");
     }
-    return !bytes.empty() && bytes[0] == 0x89 ? glint::decodePng(bytes, "picture.png")
-                                              : glint::decodeHdr(bytes, "picture.hdr");
+    return !bytes.empty() && bytes[0] == 0x89 ? glint::image::decodePng(bytes, "picture.png")
+                                              : glint::image::decodeHdr(bytes, "picture.hdr");
 }
 
 }  // namespace

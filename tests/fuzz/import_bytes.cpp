@@ -25,7 +25,7 @@ void checkError(const Diagnostic& error, const std::filesystem::path& path) {
     require(!error.id.empty() && !error.message.empty(), "an error of the import has an id and a message");
 }
 
-void checkPrimitive(const Scene& scene, const Primitive& primitive) {
+void checkPrimitive(const gltf::Scene& scene, const gltf::Primitive& primitive) {
     const std::size_t vertices = primitive.positions.size();
     require(static_cast<std::size_t>(primitive.material) < scene.materials.size(),
             "every primitive has a material");
@@ -38,7 +38,7 @@ void checkPrimitive(const Scene& scene, const Primitive& primitive) {
           primitive.texCoords1.size(), primitive.colors.size()}) {
         require(count == 0 || count == vertices, "an attribute is there for all vertices or for none");
     }
-    for (const MorphTarget& target : primitive.targets) {
+    for (const gltf::MorphTarget& target : primitive.targets) {
         for (const std::size_t count :
              {target.positions.size(), target.normals.size(), target.tangents.size()}) {
             require(count == 0 || count == vertices, "a target has differences for all vertices or for none");
@@ -50,27 +50,27 @@ void checkPrimitive(const Scene& scene, const Primitive& primitive) {
 }
 
 // Returns how many targets the channels of that path can have.
-std::size_t targetsOf(const Scene& scene, AnimationPath path) {
+std::size_t targetsOf(const gltf::Scene& scene, gltf::AnimationPath path) {
     switch (path) {
-        case AnimationPath::Material:
+        case gltf::AnimationPath::Material:
             return scene.animatedMaterials.size();
-        case AnimationPath::Light:
+        case gltf::AnimationPath::Light:
             return scene.restLights.size();
-        case AnimationPath::Camera:
+        case gltf::AnimationPath::Camera:
             return scene.restCameras.size();
         default:
             return scene.nodes.size();
     }
 }
 
-void checkAnimation(const Scene& scene, const Animation& animation) {
-    for (const AnimationSampler& sampler : animation.samplers) {
-        const std::size_t parts = sampler.interpolation == Interpolation::CubicSpline ? 3 : 1;
+void checkAnimation(const gltf::Scene& scene, const gltf::Animation& animation) {
+    for (const gltf::AnimationSampler& sampler : animation.samplers) {
+        const std::size_t parts = sampler.interpolation == gltf::Interpolation::CubicSpline ? 3 : 1;
         require(!sampler.times.empty(), "a sampler has a keyframe");
         require(sampler.values.size() == parts * sampler.width * sampler.times.size(),
                 "a sampler has the values of its keyframes");
     }
-    for (const AnimationChannel& channel : animation.channels) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
         require(static_cast<std::size_t>(channel.target) < targetsOf(scene, channel.path),
                 "a channel's target exists");
         require(static_cast<std::size_t>(channel.sampler) < animation.samplers.size(),
@@ -79,23 +79,24 @@ void checkAnimation(const Scene& scene, const Animation& animation) {
 }
 
 // Whatever the file contains, its animations can be played.
-void checkMotion(Scene scene) {
+void checkMotion(gltf::Scene scene) {
     std::vector<std::size_t> all;
-    for (const Animation& animation : scene.animations) {
+    for (const gltf::Animation& animation : scene.animations) {
         checkAnimation(scene, animation);
         all.push_back(all.size());
     }
     for (const double time : {0.0, 0.4, 1e6}) {
         scene_view::applyPose(scene_view::poseAt(scene, all, time), scene);
-        for (const Node& node : scene.nodes) {
-            if (!isDeformed(scene, node)) {
+        for (const gltf::Node& node : scene.nodes) {
+            if (!compiler::isDeformed(scene, node)) {
                 continue;
             }
-            const std::vector<Matrix4> joints =
+            const std::vector<gltf::Matrix4> joints =
                 node.skin < 0
-                    ? std::vector<Matrix4>()
+                    ? std::vector<gltf::Matrix4>()
                     : scene_view::jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
-            for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+            for (const gltf::Primitive& primitive :
+                 scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                 require(scene_view::deformedPositions(primitive, node.weights, joints).size() ==
                             primitive.positions.size(),
                         "every vertex has a place");
@@ -104,30 +105,30 @@ void checkMotion(Scene scene) {
     }
 }
 
-void checkScene(const Scene& scene) {
-    for (const Mesh& mesh : scene.meshes) {
-        for (const Primitive& primitive : mesh.primitives) {
+void checkScene(const gltf::Scene& scene) {
+    for (const gltf::Mesh& mesh : scene.meshes) {
+        for (const gltf::Primitive& primitive : mesh.primitives) {
             checkPrimitive(scene, primitive);
         }
     }
-    for (const Node& node : scene.nodes) {
+    for (const gltf::Node& node : scene.nodes) {
         require(node.mesh < static_cast<int>(scene.meshes.size()), "a node's mesh exists");
         require(node.camera < static_cast<int>(scene.cameras.size()), "a node's camera exists");
         require(node.light < static_cast<int>(scene.lights.size()), "a node's light exists");
     }
-    for (const Image& image : scene.images) {
+    for (const gltf::Image& image : scene.images) {
         require(image.pixels.size() == byteCount(image), "an image has the pixels that it says");
     }
 }
 
-void checkPlan(const SceneList& scenes, MergePolicy merge) {
-    PlanOptions options;
+void checkPlan(const gltf::SceneList& scenes, compiler::MergePolicy merge) {
+    compiler::PlanOptions options;
     options.merge = merge;
-    const Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
+    const compiler::Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
     require(plan.keyOfPrimitive.size() == scenes.primitives().size(), "every primitive has a key");
-    for (const Key& key : plan.keys) {
+    for (const compiler::Key& key : plan.keys) {
         require(static_cast<std::size_t>(key.shaderId) < plan.cases.size(), "every key has a case");
-        const Case& shader = plan.cases[static_cast<std::size_t>(key.shaderId)];
+        const compiler::Case& shader = plan.cases[static_cast<std::size_t>(key.shaderId)];
         require((shader.always & ~key.mask) == 0, "a case takes nothing for granted that a key lacks");
         require((key.mask & ~(shader.always | shader.sometimes)) == 0, "a case knows what its keys have");
     }
@@ -140,16 +141,17 @@ void importBytes(std::span<const std::uint8_t> bytes, std::string_view name) {
     static ScratchFile file(folder.path() / name);
     const std::filesystem::path& path = file.hold(bytes);
     // Large images are slow to decode and show nothing that smaller ones do not.
-    const ImportOptions options{.decodeImages = true, .maxImageSize = 1024};
-    Result<Scene> scene = importScene(path, options);
+    const gltf::ImportOptions options{.decodeImages = true, .maxImageSize = 1024};
+    Result<gltf::Scene> scene = importScene(path, options);
     if (!scene) {
         checkError(scene.error(), path);
         return;
     }
     checkScene(*scene);
     {
-        const SceneList scenes(std::span(&*scene, 1));
-        for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::Auto}) {
+        const gltf::SceneList scenes(std::span(&*scene, 1));
+        for (const compiler::MergePolicy merge :
+             {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::Auto}) {
             checkPlan(scenes, merge);
         }
     }

@@ -9,7 +9,7 @@
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using glint::fuzz::require;
     const glint::gltf::ByteView bytes(data, size);
-    glint::Image image;
+    glint::gltf::Image image;
     std::string problem;
     if (!glint::gltf::readKtx2Header(bytes, image, problem)) {
         require(!problem.empty(), "a header that is refused has a reason");
@@ -25,6 +25,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         require(!problem.empty(), "an image that can't be decoded has a reason");
         return 0;
     }
-    require(image.pixels.size() == glint::byteCount(image), "an image has the pixels that it says");
+    require(image.pixels.size() == glint::gltf::byteCount(image), "an image has the pixels that it says");
     return 0;
 }

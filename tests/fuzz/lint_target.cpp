@@ -13,18 +13,19 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         std::memcpy(words.data(), data, words.size() * sizeof(std::uint32_t));
     }
     std::size_t visited = 0;
-    const glint::Status read = glint::visitSpirv(words, [&](const glint::SpirvInstruction& instruction) {
-        visited += instruction.operands.size() + 1;
-        glint::spirvString(instruction.operands);
-    });
+    const glint::Status read =
+        glint::compiler::visitSpirv(words, [&](const glint::compiler::SpirvInstruction& instruction) {
+            visited += instruction.operands.size() + 1;
+            glint::compiler::spirvString(instruction.operands);
+        });
     glint::fuzz::require(!read.ok() || visited + kHeaderWords == words.size(),
                          "every word belongs to an instruction");
-    const glint::Result<glint::SpirvLint> lint = glint::lintSpirv(words);
+    const glint::Result<glint::compiler::SpirvLint> lint = glint::compiler::lintSpirv(words);
     if (!lint) {
         glint::fuzz::require(!lint.error().id.empty(), "an error of the lint has an id");
         return 0;
     }
-    for (const glint::LintFinding& finding : lint->findings) {
+    for (const glint::compiler::LintFinding& finding : lint->findings) {
         glint::fuzz::require(finding.place.offset < words.size(), "a finding's place is in the module");
         glint::fuzz::require(!finding.rule.empty() && !finding.message.empty(),
                              "a finding has a rule and a message");

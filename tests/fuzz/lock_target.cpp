@@ -7,20 +7,20 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using glint::fuzz::require;
-    const auto parsed = glint::parseLock(glint::fuzz::asText(data, size));
-    if (const auto* error = std::get_if<glint::LockTextError>(&parsed)) {
+    const auto parsed = glint::compiler::parseLock(glint::fuzz::asText(data, size));
+    if (const auto* error = std::get_if<glint::compiler::LockTextError>(&parsed)) {
         require(error->line >= 1 && !error->message.empty(), "an error of a lock has a line and a message");
         return 0;
     }
-    const glint::LockedIds& ids = std::get<glint::LockText>(parsed).ids;
+    const glint::compiler::LockedIds& ids = std::get<glint::compiler::LockText>(parsed).ids;
     for (const auto& [mask, id] : ids) {
-        require(id >= 0 && id <= glint::kMaxLockedId, "locked IDs are in range");
+        require(id >= 0 && id <= glint::compiler::kMaxLockedId, "locked IDs are in range");
     }
-    const std::string text = glint::formatLock(ids);
-    const auto again = glint::parseLock(text);
-    const auto* lock = std::get_if<glint::LockText>(&again);
+    const std::string text = glint::compiler::formatLock(ids);
+    const auto again = glint::compiler::parseLock(text);
+    const auto* lock = std::get_if<glint::compiler::LockText>(&again);
     require(lock != nullptr && lock->ids == ids, "a lock reads back as it was written");
     require(lock->repeated.empty(), "a lock that was written repeats no key");
-    require(glint::formatLock(lock->ids) == text, "the same IDs give the same text");
+    require(glint::compiler::formatLock(lock->ids) == text, "the same IDs give the same text");
     return 0;
 }

@@ -9,7 +9,7 @@
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     namespace fs = std::filesystem;
-    for (const std::string& name : glint::manifestFiles(glint::fuzz::asText(data, size))) {
+    for (const std::string& name : glint::compiler::manifestFiles(glint::fuzz::asText(data, size))) {
         const fs::path path(name);
         glint::fuzz::require(!name.empty() && !path.is_absolute(), "files of a manifest have relative names");
         glint::fuzz::require(std::ranges::find(path, "..") == path.end(),

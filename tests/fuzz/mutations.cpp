@@ -135,9 +135,10 @@ std::string mutateContents(Random& random, const GltfBuilder& builder) {
 }
 
 void importMutation(const std::filesystem::path& path, const std::string& bytes, Tally& tally) {
-    ASSERT_TRUE(writeFile(path, bytes).ok());
-    const ImportOptions options{.decodeImages = true, .maxVertices = 1U << 16, .maxFileBytes = 1U << 24};
-    const Result<Scene> scene = importScene(path, options);
+    ASSERT_TRUE(base::writeFile(path, bytes).ok());
+    const gltf::ImportOptions options{
+        .decodeImages = true, .maxVertices = 1U << 16, .maxFileBytes = 1U << 24};
+    const Result<gltf::Scene> scene = importScene(path, options);
     if (scene) {
         ++tally.imported;
         EXPECT_EQ(scene->path, path.string());

@@ -25,7 +25,8 @@ const fs::path kModels = modelsFolder() / "features";
 
 GltfBuilder widePngScene() {
     GltfBuilder builder;
-    const Bytes png = makePng({4, 4, 16, PngColor::Rgba, {}, Bytes(std::size_t{4} * 4 * 8, 0x5A)});
+    const base::Bytes png =
+        makePng({4, 4, 16, PngColor::Rgba, {}, base::Bytes(std::size_t{4} * 4 * 8, 0x5A)});
     const int view = builder.addView(png.data(), png.size());
     builder.append("images", {{"bufferView", view}, {"mimeType", "image/png"}});
     builder.append("textures", {{"source", 0}});
@@ -103,7 +104,7 @@ TEST(PackedFuzz, DamagedModelsAreRefusedOrRead) {
     for (const auto& [folderName, scene, packed] : models) {
         const TemporaryFolder folder;
         fs::copy(kModels / folderName, folder.path(), fs::copy_options::recursive);
-        const Result<Bytes> whole = readFile(folder.path() / packed);
+        const Result<base::Bytes> whole = base::readFile(folder.path() / packed);
         ASSERT_TRUE(whole.ok());
         const bool isImage = std::string_view(packed).ends_with(".webp");
         Random random(kSeed);
@@ -114,8 +115,9 @@ TEST(PackedFuzz, DamagedModelsAreRefusedOrRead) {
             if (below(random, 4) == 0) {
                 bytes.resize(below(random, bytes.size()));
             }
-            ASSERT_TRUE(writeFile(folder.path() / packed, bytes).ok());
-            const Result<Scene> result = importScene(folder.path() / scene, {.decodeImages = isImage});
+            ASSERT_TRUE(base::writeFile(folder.path() / packed, bytes).ok());
+            const Result<gltf::Scene> result =
+                gltf::importScene(folder.path() / scene, {.decodeImages = isImage});
             imported += result ? 1 : 0;
             EXPECT_TRUE(result.ok() || !result.error().message.empty());
         }

@@ -26,7 +26,7 @@ std::vector<fs::path> filesOf(const fs::path& folder) {
 }
 
 bool replay(const fs::path& file) {
-    const glint::Result<glint::Bytes> bytes = glint::readFile(file);
+    const glint::Result<glint::base::Bytes> bytes = glint::base::readFile(file);
     if (!bytes) {
         std::fprintf(stderr, "%s\n", glint::toString(bytes.error()).c_str());
         return false;
@@ -35,7 +35,7 @@ bool replay(const fs::path& file) {
     std::printf("%s\n", file.filename().c_str());
     std::fflush(stdout);
     // The copy has exactly the file's size, so that a sanitizer detects reads beyond the end.
-    const glint::Bytes copy(bytes->begin(), bytes->end());
+    const glint::base::Bytes copy(bytes->begin(), bytes->end());
     LLVMFuzzerTestOneInput(copy.data(), copy.size());
     return true;
 }

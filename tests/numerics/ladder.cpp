@@ -58,7 +58,7 @@ std::string_view probeOf(const Probe& probe, RungKind kind) {
 }
 
 Result<std::uint32_t> countInstructions(const ProbePipeline& pipeline) {
-    const Result<SpirvStatistics> statistics = measureSpirv(pipeline.spirv);
+    const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(pipeline.spirv);
     return statistics ? Result<std::uint32_t>(statistics->instructions) : statistics.error();
 }
 

@@ -49,7 +49,7 @@ std::string constantsOf(std::string_view header) {
 class Sources {
 public:
     explicit Sources(std::vector<fs::path> folders) : folders_(std::move(folders)) {
-        texts_["generated/features.glsl"] = glint::builtinMaterialModel().featureDefines();
+        texts_["generated/features.glsl"] = glint::materials::builtinMaterialModel().featureDefines();
         // A scene chooses these values; here, the code that compiles the text defines them.
         texts_["generated/scene.glsl"] =
             "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n";
@@ -57,12 +57,13 @@ public:
 
     // Adds what Glint generates for a package that has every feature.
     glint::Status addGenerated() {
-        glint::SourceSet generated;
-        for (const glint::BuiltinFile& file : glint::builtinFiles()) {
+        glint::compiler::SourceSet generated;
+        for (const glint::base::BuiltinFile& file : glint::compiler::builtinFiles()) {
             generated.add(std::string(file.name), std::string(file.text));
         }
-        glint::Status status = glint::addMaterialCode(generated, glint::builtinMaterialModel(),
-                                                      ~glint::FeatureMask{0}, generated);
+        glint::Status status =
+            glint::compiler::addMaterialCode(generated, glint::materials::builtinMaterialModel(),
+                                             ~glint::materials::FeatureMask{0}, generated);
         texts_["generated/layers.glsl"] = std::string(generated.find("generated/layers.glsl").value_or(""));
         return status;
     }
@@ -76,7 +77,7 @@ public:
             if (!fs::exists(folder / name)) {
                 continue;
             }
-            glint::Result<glint::Bytes> bytes = glint::readFile(folder / name);
+            glint::Result<glint::base::Bytes> bytes = glint::base::readFile(folder / name);
             if (bytes) {
                 const std::string text(bytes->begin(), bytes->end());
                 return texts_.emplace(name, name == "interop/frame.h" ? constantsOf(text) : text)
@@ -105,8 +106,9 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     if (glint::Status status = sources.addGenerated(); !status) {
         return status;
     }
-    const glint::Result<glint::GlslUnit> unit = glint::flatten(
-        "probes", kRoot, [&](std::string_view name) { return sources.find(name); }, glint::FlattenSide::Glsl);
+    const glint::Result<glint::compiler::GlslUnit> unit = glint::compiler::flatten(
+        "probes", kRoot, [&](std::string_view name) { return sources.find(name); },
+        glint::compiler::FlattenSide::Glsl);
     if (!unit) {
         return unit.error();
     }
@@ -120,7 +122,7 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
                                                    {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
                                                    {"probe_list.inc", listProbes(glsl)}};
     for (const auto& [name, text] : files) {
-        if (glint::Status status = glint::writeFile(output / name, text); !status) {
+        if (glint::Status status = glint::base::writeFile(output / name, text); !status) {
             return status;
         }
     }

@@ -67,20 +67,20 @@ Result<numerics::Report> measureAll(const Settings& settings) {
 // Writes the report into the files that were asked for.
 Status writeReport(const Settings& settings, const std::string& json, const std::string& markdown) {
     if (!settings.json.empty()) {
-        if (Status status = writeFile(settings.json, json); !status) {
+        if (Status status = base::writeFile(settings.json, json); !status) {
             return status;
         }
     }
     if (settings.document.empty()) {
         return okStatus();
     }
-    const Result<Bytes> bytes = readFile(settings.document);
+    const Result<base::Bytes> bytes = base::readFile(settings.document);
     if (!bytes) {
         return bytes.error();
     }
     const Result<std::string> document =
         numerics::replaceRegion({bytes->begin(), bytes->end()}, settings.marker, markdown);
-    return document ? writeFile(settings.document, *document) : Status(document.error());
+    return document ? base::writeFile(settings.document, *document) : Status(document.error());
 }
 
 int fail(const Diagnostic& error) {
@@ -90,7 +90,7 @@ int fail(const Diagnostic& error) {
 
 Result<numerics::Ladder> measureLadder(const Settings& settings) {
     if (!settings.from.empty()) {
-        const Result<Bytes> bytes = readFile(settings.from);
+        const Result<base::Bytes> bytes = base::readFile(settings.from);
         return bytes ? numerics::ladderFromJson({bytes->begin(), bytes->end()})
                      : Result<numerics::Ladder>(bytes.error());
     }

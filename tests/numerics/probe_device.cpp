@@ -113,10 +113,10 @@ Status ProbeDevice::createLayout() {
 
 Result<ProbePipeline> ProbeDevice::make(std::string_view probe, const std::string& glsl, int inputs,
                                         int outputs, ProbePrecision precision) {
-    ShaderCompileOptions options;
+    compiler::ShaderCompileOptions options;
     options.halvesAll = precision == ProbePrecision::Half;
     Result<std::vector<std::uint32_t>> words =
-        compileShader({std::string(probe), ShaderStage::Compute, glsl, {}}, options);
+        compiler::compileShader({std::string(probe), compiler::ShaderStage::Compute, glsl, {}}, options);
     if (!words) {
         return words.error();
     }

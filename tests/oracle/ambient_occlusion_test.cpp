@@ -17,7 +17,7 @@ constexpr Vec3 kCenter(0.0, 0.6, 0.0);
 constexpr double kRadius = 0.5;
 
 // Returns a white sphere over a white floor. Under a sky of 1 each shows its openness.
-Scene sphereOverFloor() {
+gltf::Scene sphereOverFloor() {
     SceneFile file;
     const int white = file.addMaterial(diffuseMaterial());
     file.addQuad(white, {-6, 0, 6}, {12, 0, 0}, {0, 0, -12});
@@ -55,7 +55,7 @@ protected:
 
     static constexpr std::uint32_t kAmbientOcclusionSamples = 512;
     static constexpr GradientSky kWhiteSky{Vec3(1.0), Vec3(1.0), Vec3(1.0)};
-    Scene scene_;
+    gltf::Scene scene_;
     World world_;
     View view_;
 };

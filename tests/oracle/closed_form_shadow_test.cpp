@@ -12,8 +12,8 @@ constexpr Vec3 kClosedFormShadowUp(0.0, 1.0, 0.0);
 constexpr double kSun = 0.2;  // half angle
 constexpr int kStrata = 96;
 
-Light sun(const Vec3& towards) {
-    Light light;
+gltf::Light sun(const Vec3& towards) {
+    gltf::Light light;
     const Vec3 direction = -glm::normalize(towards);
     light.direction = {static_cast<float>(direction.x), static_cast<float>(direction.y),
                        static_cast<float>(direction.z)};
@@ -105,8 +105,8 @@ TEST(OracleShadow, OfADiskBeforeALamp) {
     file.addDisk(material, {0, 1, 0}, {0, 1, 0}, 0.05, 256);
     file.addDisk(material, {0, 3.5, 0}, {0, 1, 0}, 2.0, 256);
     const World world(file.import());
-    Light lamp;
-    lamp.type = LightType::Point;
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
     lamp.position = {0.0F, 3.0F, 0.0F};
     const LightCap cap = lightCap(lamp, {0.3, 0.0}, Vec3(0.0));
     EXPECT_NEAR(cap.halfAngle, std::asin(0.1), 1e-12);
@@ -118,8 +118,8 @@ TEST(OracleShadow, OfADiskBeforeALamp) {
 
 TEST(OracleShadow, ALampOnTheHorizonIsHiddenByHalf) {
     const World world;
-    Light lamp;
-    lamp.type = LightType::Point;
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
     lamp.position = {2.0F, 0.0F, 0.0F};
     const LightCap cap = lightCap(lamp, {0.3, 0.0}, Vec3(0.0));
     Random random(5);
@@ -127,8 +127,8 @@ TEST(OracleShadow, ALampOnTheHorizonIsHiddenByHalf) {
 }
 
 TEST(OracleShadow, LightsFallOffAsTheirExtensionSays) {
-    Light lamp;
-    lamp.type = LightType::Point;
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
     lamp.intensity = 8.0F;
     lamp.color = {1.0F, 0.5F, 0.25F};
     lamp.position = {0.0F, 2.0F, 0.0F};
@@ -139,7 +139,7 @@ TEST(OracleShadow, LightsFallOffAsTheirExtensionSays) {
     lamp.range = 1.0F;
     EXPECT_EQ(irradianceFrom(lamp, Vec3(0.0)).x, 0.0);
     lamp.range = 0.0F;
-    lamp.type = LightType::Spot;
+    lamp.type = gltf::LightType::Spot;
     lamp.direction = {0.0F, -1.0F, 0.0F};
     lamp.innerConeAngle = 0.2F;
     lamp.outerConeAngle = 0.6F;

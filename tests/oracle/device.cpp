@@ -16,7 +16,7 @@ std::uint32_t samplesOf(std::uint32_t samples) {
     return factor == nullptr ? samples : samples * static_cast<std::uint32_t>(std::atoi(factor));
 }
 
-testing::RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t height,
+testing::RenderSetup setupOf(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height,
                              std::uint32_t samples, const GradientSky& sky) {
     testing::RenderSetup setup = testing::defaultSetup(scene, width, height);
     setup.samples = samplesOf(samples);
@@ -24,8 +24,8 @@ testing::RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint3
     return setup;
 }
 
-LinearImage renderEffect(const Scene& scene, const EffectOptions& options, testing::RenderSetup setup) {
-    CompileSettings settings;
+LinearImage renderEffect(const gltf::Scene& scene, const EffectOptions& options, testing::RenderSetup setup) {
+    compiler::CompileSettings settings;
     settings.effects = {false, options.effects, options.maxRoughness};
     settings.energyCompensation = options.energyCompensation;
     const testing::LoadedScene loaded(scene, settings, [&](scene_view::SceneViewData& data) {

@@ -26,10 +26,10 @@ struct EffectOptions {
 
 // Compiles the scene with these effects only, and renders it. If anything failed, the test fails and the
 // picture is empty.
-LinearImage renderEffect(const Scene& scene, const EffectOptions& options, testing::RenderSetup setup);
+LinearImage renderEffect(const gltf::Scene& scene, const EffectOptions& options, testing::RenderSetup setup);
 
 // Uses the scene's first camera.
-testing::RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t height,
+testing::RenderSetup setupOf(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height,
                              std::uint32_t samples, const GradientSky& sky);
 
 }  // namespace glint::oracle

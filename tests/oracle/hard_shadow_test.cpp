@@ -14,7 +14,7 @@ using namespace glint::testing;
 constexpr std::uint32_t kHardShadowSamples = 256;
 
 // Returns direct light of the scene's only light on diffuse surfaces with albedo 1.
-Estimate lightOf(const World& world, const Light& light, const Ray& ray) {
+Estimate lightOf(const World& world, const gltf::Light& light, const Ray& ray) {
     const Hit hit = *world.closest(ray, Faces::Culled);
     const LightCap cap = lightCap(light, {}, hit.position);
     const double cosine = std::max(glm::dot(hit.normal, cap.direction), 0.0);
@@ -33,7 +33,7 @@ SceneFile blockOnFloor() {
     return file;
 }
 
-void compare(const Scene& scene, const std::string& what) {
+void compare(const gltf::Scene& scene, const std::string& what) {
     EffectOptions options;
     options.effects = package::kEffectShadow;
     const LinearImage image = renderEffect(scene, options, setupOf(scene, 48, 27, kHardShadowSamples, {}));

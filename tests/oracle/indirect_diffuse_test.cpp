@@ -44,9 +44,9 @@ EffectOptions indirectDiffuse(unsigned more = 0) {
 
 // Returns the light that leaves a surface from its direct light: emission, a lamp with its hard shadow, and a
 // uniform sky that hits treat as unoccluded.
-Vec3 firstHand(const World& world, const Scene& scene, const Room& room, double sky, const Hit& hit) {
+Vec3 firstHand(const World& world, const gltf::Scene& scene, const Room& room, double sky, const Hit& hit) {
     Vec3 arriving(sky);
-    for (const Light& light : scene.lights) {
+    for (const gltf::Light& light : scene.lights) {
         const LightCap cap = lightCap(light, {}, hit.position);
         const double cosine = glm::dot(hit.normal, cap.direction);
         if (cosine > 0.0 && light.intensity > 0.0F &&
@@ -62,7 +62,7 @@ Selector meets(const World& world) {
 }
 
 // Returns each pixel's light: its own, and one bounce instead of the sky's light.
-std::vector<PixelTruth> byQuadrature(const Scene& scene, const Room& room, double sky) {
+std::vector<PixelTruth> byQuadrature(const gltf::Scene& scene, const Room& room, double sky) {
     const World world(scene);
     return pixelTruths(
         View(scene.cameras.at(0), kIndirectDiffuseWidth, kIndirectDiffuseHeight), {6, 4}, meets(world),
@@ -80,7 +80,7 @@ std::vector<PixelTruth> byQuadrature(const Scene& scene, const Room& room, doubl
         });
 }
 
-LinearImage render(const Scene& scene, const EffectOptions& options, double sky) {
+LinearImage render(const gltf::Scene& scene, const EffectOptions& options, double sky) {
     return renderEffect(scene, options,
                         setupOf(scene, kIndirectDiffuseWidth, kIndirectDiffuseHeight, kIndirectDiffuseSamples,
                                 {Vec3(sky), Vec3(sky), Vec3(sky)}));
@@ -94,7 +94,7 @@ TEST(IndirectDiffuse, OfAClosedWhiteBoxUnderTheSkyIsExact) {
     file.addBox(std::vector<int>(6, white), kLow, kHigh, true);
     file.addCamera({0.3, 0.7, 0.95}, {-0.2, 1.0, -1}, 70);
     file.addDarkness();
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const World world(scene);
     const auto truths = pixelTruths(View(scene.cameras.at(0), kIndirectDiffuseWidth, kIndirectDiffuseHeight),
                                     {1, 2}, meets(world), [](const Ray&, Random&) {
@@ -119,7 +119,7 @@ TEST(IndirectDiffuse, OfABrightCeilingIsItsFormFactor) {
     file.addBox({red, white, white, bright, white, white}, kLow, kHigh, true);
     file.addCamera({0.3, 1.2, 0.95}, {-0.2, 0.5, -1}, 70);
     file.addDarkness();
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const LinearImage image = render(scene, indirectDiffuse(), 0.0);
     expectAgrees(image, byQuadrature(scene, room, 0.0),
                  {"indirect-diffuse", "a box with a bright ceiling", "quadrature", 3,
@@ -152,7 +152,7 @@ TEST(IndirectDiffuse, OfARoomWithALamp) {
     file.addBox(std::vector<int>(6, white), {-0.4, 0.0, -0.6}, {0.2, 0.7, 0.0}, false);
     file.addLight({{"type", "point"}, {"intensity", 2.0}}, {0.3, 1.5, 0.2}, {0, 0, 0});
     file.addCamera({0.1, 1.1, 0.95}, {-0.1, 0.7, -1}, 75);
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     expectAgrees(render(scene, indirectDiffuse(package::kEffectShadow), 0.0), byQuadrature(scene, room, 0.0),
                  {"indirect-diffuse", "a room with a lamp and a block", "quadrature", 3,
                   samplesOf(kIndirectDiffuseSamples), 2.5, 2e-4});
@@ -168,7 +168,7 @@ TEST(IndirectDiffuse, OfABlockUnderTheSky) {
     file.addBox(std::vector<int>(6, red), {-0.5, 0.0, -0.5}, {0.5, 1.0, 0.5}, false);
     file.addCamera({1.6, 1.8, 2.2}, {0, 0.3, 0}, 40);
     file.addDarkness();
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     expectAgrees(render(scene, indirectDiffuse(), 1.0), byQuadrature(scene, room, 1.0),
                  {"indirect-diffuse", "a red block under a sky of 1", "quadrature", 3,
                   samplesOf(kIndirectDiffuseSamples), 0.8, 1e-4});

@@ -26,9 +26,9 @@ double LightCap::distanceAlong(const Vec3& toLight) const {
     return along - std::sqrt(std::max(radius * radius - across2, 0.0));
 }
 
-LightCap lightCap(const Light& light, const LightSizes& sizes, const Vec3& position) {
+LightCap lightCap(const gltf::Light& light, const LightSizes& sizes, const Vec3& position) {
     LightCap cap;
-    if (light.type == LightType::Directional) {
+    if (light.type == gltf::LightType::Directional) {
         cap.direction = -toVec(light.direction);
         cap.halfAngle = 0.5 * sizes.sunDiameter;
         return cap;
@@ -41,9 +41,9 @@ LightCap lightCap(const Light& light, const LightSizes& sizes, const Vec3& posit
     return cap;
 }
 
-Vec3 irradianceFrom(const Light& light, const Vec3& position) {
+Vec3 irradianceFrom(const gltf::Light& light, const Vec3& position) {
     const Vec3 emitted = toVec(light.color) * static_cast<double>(light.intensity);
-    if (light.type == LightType::Directional) {
+    if (light.type == gltf::LightType::Directional) {
         return emitted;
     }
     const Vec3 toLight = toVec(light.position) - position;
@@ -52,7 +52,7 @@ Vec3 irradianceFrom(const Light& light, const Vec3& position) {
     if (light.range > 0.0F) {
         attenuation *= std::clamp(1.0 - std::pow(distance / light.range, 4.0), 0.0, 1.0);
     }
-    if (light.type == LightType::Spot) {
+    if (light.type == gltf::LightType::Spot) {
         const double cosine = glm::dot(toVec(light.direction), -toLight / distance);
         const double inner = std::cos(light.innerConeAngle);
         const double outer = std::cos(light.outerConeAngle);

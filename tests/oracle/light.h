@@ -24,10 +24,10 @@ struct LightCap {
     double distanceAlong(const Vec3& toLight) const;
 };
 
-LightCap lightCap(const Light& light, const LightSizes& sizes, const Vec3& position);
+LightCap lightCap(const gltf::Light& light, const LightSizes& sizes, const Vec3& position);
 
 // Returns the irradiance on a surface that faces the light's centre, without shadows: KHR_lights_punctual.
-Vec3 irradianceFrom(const Light& light, const Vec3& position);
+Vec3 irradianceFrom(const gltf::Light& light, const Vec3& position);
 
 // Returns the share of the light's solid angle that nothing hides. Parts below the horizon of `normal` are
 // hidden.

@@ -7,7 +7,7 @@
 namespace glint::oracle {
 
 // The first three numbers of a parameter.
-inline Vec3 toVec(const ConstParameterValue& v) {
+inline Vec3 toVec(const materials::ConstParameterValue& v) {
     return {v[0], v[1], v[2]};
 }
 

@@ -11,13 +11,13 @@ Vec3 Reference::radiance(const Ray& ray, double mirrorRoughness) const {
 }
 
 Vec3 Reference::surface(const Ray& ray, const Hit& hit, double mirrorRoughness) const {
-    const Material& material = scene_.materials[static_cast<std::size_t>(hit.material)];
+    const materials::Material& material = scene_.materials[static_cast<std::size_t>(hit.material)];
     const Shading shading(material, hit, ray.direction);
     if (shading.unlit()) {
         return shading.baseColor();
     }
     Vec3 result = shading.emission();
-    for (const Light& light : scene_.lights) {
+    for (const gltf::Light& light : scene_.lights) {
         if (!light.shown) {
             continue;
         }

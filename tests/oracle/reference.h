@@ -11,7 +11,7 @@ namespace glint::oracle {
 class Reference {
 public:
     // Both must outlive the object.
-    Reference(const Scene& scene, const World& world) : scene_(scene), world_(world) {}
+    Reference(const gltf::Scene& scene, const World& world) : scene_(scene), world_(world) {}
 
     // Returns the radiance of the first surface that a ray meets, with back faces culled; black if it meets
     // nothing. Surfaces that are smoother than `mirrorRoughness` reflect once.
@@ -20,7 +20,7 @@ public:
 private:
     Vec3 surface(const Ray& ray, const Hit& hit, double mirrorRoughness) const;
 
-    const Scene& scene_;
+    const gltf::Scene& scene_;
     const World& world_;
 };
 

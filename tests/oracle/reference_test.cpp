@@ -54,8 +54,8 @@ SceneFile spheresOnFloor(const Json& floor) {
 }
 
 // Compares the mean over pixels, and the pixels' centres.
-void compare(const Scene& scene, std::uint32_t effects, double mirrorRoughness, const std::string& effect,
-             const std::string& what) {
+void compare(const gltf::Scene& scene, std::uint32_t effects, double mirrorRoughness,
+             const std::string& effect, const std::string& what) {
     EffectOptions options;
     options.effects = effects;
     RenderSetup setup = setupOf(scene, kReferenceWidth, kReferenceHeight, kReferenceSamples, {});
@@ -84,7 +84,7 @@ TEST(Reference, DirectLightOfASunAndALampOnManyMaterials) {
     file.addLight({{"type", "directional"}, {"intensity", 2.0}}, {2, 3, 2}, {0, 0, 0});
     file.addLight({{"type", "point"}, {"intensity", 6.0}, {"color", {1.0, 0.8, 0.6}}}, {-1.5, 2.0, 1.5},
                   {0, 0, 0});
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     compare(scene, package::kEffectShadow, -1.0, "direct light", "six materials under a sun and a lamp");
 }
 
@@ -93,7 +93,7 @@ TEST(Reference, DirectLightOfASunAndALampOnManyMaterials) {
 TEST(Reference, AMirrorShowsTheDirectLightOfWhatItSees) {
     SceneFile file = spheresOnFloor(material({1.0, 1.0, 1.0}, 1.0, 0.0));
     file.addLight({{"type", "directional"}, {"intensity", 2.0}}, {2, 3, 2}, {0, 0, 0});
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     compare(scene, package::kEffectShadow | package::kEffectReflection, 0.0, "reflection",
             "a mirror below six materials");
 }

@@ -61,7 +61,7 @@ std::vector<PixelTruth> throughGlass(const View& view, const World& world, int g
     return truths;
 }
 
-LinearImage render(const Scene& scene, bool energyCompensation = true) {
+LinearImage render(const gltf::Scene& scene, bool energyCompensation = true) {
     EffectOptions options;
     options.energyCompensation = energyCompensation;
     options.effects = package::kEffectRefraction;
@@ -82,7 +82,7 @@ TEST(Refraction, OfASlab) {
         file.addBox(std::vector<int>(6, material), {-2, 0.3, -2}, {2, 1.1, 2}, false);
         file.addCamera({0.3, 3.2, 4.0}, {0, 0.7, 0}, 20);
         file.addDarkness();
-        const Scene scene = file.import();
+        const gltf::Scene scene = file.import();
         const Dielectric dielectric{Vec3(1.5), clear ? Vec3(0.0) : absorptionOf({0.3, 0.6, 0.9}, 0.5)};
         const auto truths = throughGlass(View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight),
                                          World(scene), material, dielectric);
@@ -102,7 +102,7 @@ TEST(Refraction, OfASphere) {
     file.addSphere(material, center, 0.8, 128);
     file.addCamera({0.5, 2.5, 3.0}, {0, 1.1, 0}, 32);
     file.addDarkness();
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const Dielectric dielectric{Vec3(1.5), absorptionOf({0.9, 0.7, 0.4}, 0.8)};
     const View view(scene.cameras.at(0), kRefractionWidth, kRefractionHeight);
     const LinearImage image = render(scene);
@@ -133,7 +133,7 @@ TEST(Refraction, OfAPrism) {
     file.addQuad(material, {-1, 0.9, -1}, {2, 1, 0}, {0, 0, 2});
     file.addCamera({0.0, 5.0, 0.5}, {0, 2, 0}, 20);
     file.addDarkness();
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const double half = (1.6 - 1.0) * 0.025 * 10.0;
     const Dielectric dielectric{Vec3(1.6 - half, 1.6, 1.6 + half), Vec3(0.0), 1.6};
     const auto truths = throughGlass(View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight),
@@ -156,7 +156,7 @@ TEST(Refraction, OfARoughSurface) {
         file.addQuad(material, {-9, 1, 9}, {18, 0, 0}, {0, 0, -18});
         file.addCamera({0.5, 4.0, 3.5}, {0, 0.8, 0}, 35);
         file.addDarkness();
-        const Scene scene = file.import();
+        const gltf::Scene scene = file.import();
         const World world(scene);
         const Dielectric dielectric{Vec3(1.33), absorptionOf({0.4, 0.7, 0.8}, 1.0)};
         const auto truths = pixelTruths(
@@ -187,7 +187,7 @@ TEST(Refraction, OfAThinWall) {
     file.addQuad(material, {-2, 1, 2}, {4, 0, 0}, {0, 0, -4});
     file.addCamera({0.5, 4.0, 3.5}, {0, 0.8, 0}, 35);
     file.addDarkness();
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const World world(scene);
     const auto truths = pixelTruths(
         View(scene.cameras.at(0), kRefractionWidth, kRefractionHeight), {6, 4},

@@ -168,8 +168,8 @@ void SceneFile::addDarkness() {
     addLight({{"type", "directional"}, {"intensity", 0.0}}, {0, 1, 0}, {0, 0, 0});
 }
 
-Scene SceneFile::import() const {
-    const Result<Scene> scene = test::import(builder_);
+gltf::Scene SceneFile::import() const {
+    const Result<gltf::Scene> scene = test::import(builder_);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
         return {};

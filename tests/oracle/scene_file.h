@@ -37,7 +37,7 @@ public:
     void addDarkness();
 
     // Imports the scene. A failure of the importer, or a warning, fails the test.
-    Scene import() const;
+    gltf::Scene import() const;
     const test::GltfBuilder& builder() const {
         return builder_;
     }

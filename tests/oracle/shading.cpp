@@ -17,7 +17,7 @@ struct Base {
     double metallic;
 };
 
-Base baseOf(const Material& material, const Vec3& color) {
+Base baseOf(const materials::Material& material, const Vec3& color) {
     const double ior = material["ior"];
     const double metallic = material["metallicFactor"];
     const double specular = material["specularFactor"];
@@ -27,14 +27,14 @@ Base baseOf(const Material& material, const Vec3& color) {
     return {color * (1.0 - metallic), dielectric, specular, color, metallic};
 }
 
-glsl::Features featuresOf(const Material& material) {
+glsl::Features featuresOf(const materials::Material& material) {
     glsl::uint lobes = 0;
     lobes |= material["clearcoatFactor"] > 0.0F ? GLINT_CLEARCOAT : 0U;
     lobes |= toVec(material["sheenColorFactor"]) != Vec3(0.0) ? GLINT_SHEEN : 0U;
     return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, lobes, 0U};
 }
 
-glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view) {
+glsl::Bsdf bsdfOf(const materials::Material& material, const Vec3& color, const Vec3& view) {
     const Base base = baseOf(material, color);
     glsl::Bsdf bsdf{};
     bsdf.diffuse = base.diffuse;
@@ -55,7 +55,7 @@ glsl::Bsdf bsdfOf(const Material& material, const Vec3& color, const Vec3& view)
 
 }  // namespace
 
-Shading::Shading(const Material& material, const Hit& hit, const Vec3& incoming)
+Shading::Shading(const materials::Material& material, const Hit& hit, const Vec3& incoming)
     : material_(material),
       color_(hit.color),
       frame_(frameAbout(hit.front ? hit.normal : -hit.normal)),

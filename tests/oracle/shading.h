@@ -11,7 +11,7 @@ namespace glint::oracle {
 // materials only the colour. Textures are not read. Energy compensation is on, which is the default.
 class Shading {
 public:
-    Shading(const Material& material, const Hit& hit, const Vec3& incoming);
+    Shading(const materials::Material& material, const Hit& hit, const Vec3& incoming);
 
     bool unlit() const {
         return material_.isUnlit();
@@ -37,7 +37,7 @@ private:
     // Returns Schlick's approximation for the coat's index 1.5.
     double reflectedByCoat() const;
 
-    const Material& material_;
+    const materials::Material& material_;
     Vec3 color_;
     glm::dmat3 frame_;
     Vec3 geometricNormal_;

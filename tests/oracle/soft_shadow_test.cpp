@@ -30,14 +30,14 @@ SceneFile diskOverFloor() {
 
 // Returns the light that a point of the floor shows if a share of the light is visible: albedo / π E cos θ.
 // The cosine is that of the centre.
-Estimate lit(const Light& light, const Hit& hit, const Vec3& toLight, const Estimate& share) {
+Estimate lit(const gltf::Light& light, const Hit& hit, const Vec3& toLight, const Estimate& share) {
     const Vec3 whole =
         irradianceFrom(light, hit.position) * (std::max(glm::dot(hit.normal, toLight), 0.0) / kPi);
     return {share.mean * whole, share.error * whole, share.square * whole * whole};
 }
 
 // Returns the truths of the floor.
-std::vector<PixelTruth> truths(const Scene& scene, const World& world, const Strata& strata,
+std::vector<PixelTruth> truths(const gltf::Scene& scene, const World& world, const Strata& strata,
                                const std::function<Estimate(const Hit&, Random&)>& light) {
     return pixelTruths(
         View(scene.cameras.at(0), kSoftShadowWidth, kSoftShadowHeight), strata,
@@ -45,7 +45,7 @@ std::vector<PixelTruth> truths(const Scene& scene, const World& world, const Str
         [&](const Ray& ray, Random& random) { return light(*world.closest(ray, Faces::Culled), random); });
 }
 
-std::vector<PixelTruth> byQuadrature(const Scene& scene, const World& world, const LightSizes& sizes) {
+std::vector<PixelTruth> byQuadrature(const gltf::Scene& scene, const World& world, const LightSizes& sizes) {
     return truths(scene, world, {6, 4}, [&](const Hit& hit, Random& random) {
         const LightCap cap = lightCap(scene.lights[0], sizes, hit.position);
         return lit(scene.lights[0], hit, cap.direction,
@@ -53,7 +53,7 @@ std::vector<PixelTruth> byQuadrature(const Scene& scene, const World& world, con
     });
 }
 
-LinearImage render(const Scene& scene, const LightSizes& sizes, std::uint32_t raysPerSample = 1,
+LinearImage render(const gltf::Scene& scene, const LightSizes& sizes, std::uint32_t raysPerSample = 1,
                    std::uint32_t more = 0) {
     EffectOptions options;
     options.effects = package::kEffectShadow | more;
@@ -67,7 +67,7 @@ LinearImage render(const Scene& scene, const LightSizes& sizes, std::uint32_t ra
 TEST(SoftShadow, OfADiskUnderTheSun) {
     SceneFile file = diskOverFloor();
     file.addLight({{"type", "directional"}, {"intensity", kPi}}, {0, 3, 0}, {0, 0, 0});
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const World world(scene);
     const LightSizes sizes{0.0, kSunDegrees * kPi / 180.0};
     const LinearImage image = render(scene, sizes);
@@ -93,7 +93,7 @@ TEST(SoftShadow, OfADiskUnderALamp) {
             light["spot"] = {{"innerConeAngle", 0.4}, {"outerConeAngle", 0.8}};
         }
         file.addLight(light, {0.4, 2.0, 0.3}, {0, 0, 0});
-        const Scene scene = file.import();
+        const gltf::Scene scene = file.import();
         const LightSizes sizes{0.3, 0.0};
         expectAgrees(render(scene, sizes, spot ? 2 : 1), byQuadrature(scene, World(scene), sizes),
                      {"shadow",
@@ -114,7 +114,7 @@ TEST(SoftShadow, OfADiskInAMirror) {
     file.addQuad(mirror, {-4, 0, -1.5}, {8, 0, 0}, {0, 3, 0});
     file.addCamera({0.2, 0.8, 1.2}, {0, 0.1, -1.5}, 35);
     file.addLight({{"type", "point"}, {"intensity", 4.0 * kPi}}, {0.4, 2.0, 0.3}, {0, 0, 0});
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const World world(scene);
     const LightSizes sizes{0.3, 0.0};
     const auto reflected = [&](const Ray& ray) -> std::optional<Ray> {
@@ -151,7 +151,7 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
     file.addCamera({0.2, 1.2, 3.0}, {-0.2, 0.0, 0.0}, 18);
     const Vec3 toSun = glm::normalize(Vec3(0.3, 1.0, 0.2));
     file.addLight({{"type", "directional"}, {"intensity", kPi}}, toSun, {0, 0, 0});
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     const World world(scene);
     const LightSizes sizes{0.0, kSunDegrees * kPi / 180.0};
     const auto closed = truths(scene, world, {5, 4}, [&](const Hit& hit, Random&) {

@@ -3,13 +3,13 @@
 namespace glint::oracle {
 namespace {
 
-Vec3 column(const Matrix4& m, std::size_t index) {
+Vec3 column(const gltf::Matrix4& m, std::size_t index) {
     return {m[4 * index], m[4 * index + 1], m[4 * index + 2]};
 }
 
 }  // namespace
 
-View::View(const Camera& camera, std::uint32_t width, std::uint32_t height)
+View::View(const gltf::Camera& camera, std::uint32_t width, std::uint32_t height)
     : origin_(column(camera.world, 3)),
       right_(glm::normalize(column(camera.world, 0))),
       up_(glm::normalize(column(camera.world, 1))),

@@ -12,7 +12,7 @@ namespace glint::oracle {
 // image.
 class View {
 public:
-    View(const Camera& camera, std::uint32_t width, std::uint32_t height);
+    View(const gltf::Camera& camera, std::uint32_t width, std::uint32_t height);
     // Rays start at `near`, metres along the view. `right` and `up` go from the middle of the image to its
     // edges, on the plane at distance 1 or, if rays are parallel, in world units.
     View(const Ray& middle, const Vec3& right, const Vec3& up, bool parallel, double near,

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kOwnSurface = 1e-9;  // share of the scene's size
 
-glm::dmat4 toMatrix(const Matrix4& m) {
+glm::dmat4 toMatrix(const gltf::Matrix4& m) {
     glm::dmat4 matrix;
     for (std::size_t i = 0; i < m.size(); ++i) {
         matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = m[i];
@@ -18,15 +18,15 @@ glm::dmat4 toMatrix(const Matrix4& m) {
     return matrix;
 }
 
-Vec3 colorAt(const Primitive& primitive, std::uint32_t index) {
+Vec3 colorAt(const gltf::Primitive& primitive, std::uint32_t index) {
     if (primitive.colors.empty()) {
         return Vec3(1.0);
     }
-    const Float4& color = primitive.colors[index];
+    const gltf::Float4& color = primitive.colors[index];
     return {color[0], color[1], color[2]};
 }
 
-void appendPrimitive(const Scene& scene, const Primitive& primitive, const glm::dmat4& world,
+void appendPrimitive(const gltf::Scene& scene, const gltf::Primitive& primitive, const glm::dmat4& world,
                      std::vector<Triangle>& triangles) {
     const glm::dmat3 linear(world);
     const glm::dmat3 normalMatrix = glm::transpose(glm::inverse(linear));
@@ -56,11 +56,12 @@ void appendPrimitive(const Scene& scene, const Primitive& primitive, const glm::
     }
 }
 
-std::vector<Triangle> trianglesOf(const Scene& scene) {
+std::vector<Triangle> trianglesOf(const gltf::Scene& scene) {
     std::vector<Triangle> triangles;
-    for (const Node& node : scene.nodes) {
-        for (const Matrix4& world : gltf::placesOf(scene, node)) {
-            for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+    for (const gltf::Node& node : scene.nodes) {
+        for (const gltf::Matrix4& world : gltf::placesOf(scene, node)) {
+            for (const gltf::Primitive& primitive :
+                 scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                 appendPrimitive(scene, primitive, toMatrix(world), triangles);
             }
         }
@@ -100,7 +101,7 @@ Hit surfaceAt(const Triangle& triangle, const TriangleHit& found, const Ray& ray
 
 World::World() : triangles_(std::make_unique<Triangles>(std::vector<Triangle>{})) {}
 
-World::World(const Scene& scene) {
+World::World(const gltf::Scene& scene) {
     std::vector<Triangle> triangles = trianglesOf(scene);
     size_ = largestCoordinate(triangles);
     triangles_ = std::make_unique<Triangles>(std::move(triangles));

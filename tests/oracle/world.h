@@ -37,7 +37,7 @@ public:
     // Makes a world without triangles.
     World();
     // Takes every primitive of every node, in the world. Only factors of materials and COLOR_0 are read.
-    explicit World(const Scene& scene);
+    explicit World(const gltf::Scene& scene);
 
     // Adds a sphere without facets, with its front outside.
     void addSphere(const Vec3& center, double radius, int material = 0);

@@ -91,7 +91,7 @@ TEST(OracleWorld, SpheresAndTheirTrianglesAgree) {
 TEST(OracleWorld, CornersOfTheImageAreAtTheFieldOfView) {
     SceneFile file;
     file.addCamera({1, 2, 3}, {1, 2, -5}, 60.0);
-    const Scene scene = file.import();
+    const gltf::Scene scene = file.import();
     ASSERT_EQ(scene.cameras.size(), 1U);
     const View view(scene.cameras[0], 40, 20);
     const Ray middle = view.ray(20, 10);

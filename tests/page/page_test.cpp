@@ -52,7 +52,7 @@ TEST(Page, EncodesEveryLengthOfImage) {
                                                          {"fooba", "Zm9vYmE="},
                                                          {"foobar", "Zm9vYmFy"}};
     for (const auto& [bytes, expected] : cases) {  // RFC 4648, section 10
-        const measure::PageImage image{"a", Bytes(bytes.begin(), bytes.end())};
+        const measure::PageImage image{"a", base::Bytes(bytes.begin(), bytes.end())};
         const std::string html = measure::makePage(samplePage().report, std::span(&image, 1));
         EXPECT_EQ(dataOf(html, "image-data").at("a"), "data:image/png;base64," + expected);
     }

@@ -47,8 +47,8 @@ private:
     SamplePage page_;
 };
 
-Bytes samplePng(double error, bool map) {
-    DisplayImage image{kWidth, kHeight, {}};
+base::Bytes samplePng(double error, bool map) {
+    image::DisplayImage image{kWidth, kHeight, {}};
     std::minstd_rand random(5);
     for (std::uint32_t y = 0; y < kHeight; ++y) {
         for (std::uint32_t x = 0; x < kWidth; ++x) {

@@ -22,8 +22,8 @@ using Double3 = std::array<double, 3>;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // The kernels here read no scene, but have to be compiled for one.
-Scene anyScene() {
-    Scene scene = emptyScene();
+gltf::Scene anyScene() {
+    gltf::Scene scene = emptyScene();
     const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
     addInstance(scene, addMesh(scene, makeQuad(material, {0, 0, 0}, {1, 0, 0}, {0, 1, 0})));
     return scene;
@@ -53,8 +53,8 @@ TEST(Directions, OfEveryLength) {
                                  gpu::vec3{nan, 0, 0}, gpu::vec3{1, nan, 2}, gpu::vec3{1, 2, nan}}) {
         rays.emplace_back().direction = none;
     }
-    const Scene scene = anyScene();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = anyScene();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "direction_or.comp");
     ASSERT_TRUE(kernel) << toString(kernel.error());
@@ -84,8 +84,8 @@ TEST(RunningMean, OfManySamplesIsThatInDoublePrecision) {
     constexpr std::uint32_t kSamples = 100'000;
     constexpr std::uint32_t kPixels = 64;
     constexpr std::uint32_t kSeed = 7;
-    const Scene scene = anyScene();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = anyScene();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "running_mean.comp");
     ASSERT_TRUE(kernel) << toString(kernel.error());

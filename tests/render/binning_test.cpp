@@ -18,8 +18,8 @@ using namespace glint::testing;
 constexpr Binning kBinnings[] = {Binning::None, Binning::Sign, Binning::Octahedral};
 
 // Returns mirrors that send rays in all directions, in front of unlit walls.
-Scene mirrors() {
-    Scene scene = emptyScene();
+gltf::Scene mirrors() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int wall = addMaterial(scene, unlitMaterial({0.8F, 0.3F, 0.2F}));
@@ -31,7 +31,7 @@ Scene mirrors() {
     return scene;
 }
 
-RenderSetup setupOf(const Scene& scene, std::uint32_t width, std::uint32_t height) {
+RenderSetup setupOf(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height) {
     return defaultSetup(scene, width, height);
 }
 
@@ -108,8 +108,8 @@ std::size_t expectSorted(const TracedFrame& frame, Binning binning, std::uint32_
 }
 
 TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
-    const Scene scene = mirrors();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = mirrors();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     constexpr std::array<std::uint32_t, 2> kSizes[] = {{65, 37}, {64, 40}, {7, 3}, {1, 1}, {9, 100}};
     for (const auto& [width, height] : kSizes) {
@@ -136,8 +136,8 @@ TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
 }
 
 TEST(RayBinning, ChangesNothingOfAnyStrategy) {
-    const Scene scene = mirrors();
-    CompileSettings settings;
+    const gltf::Scene scene = mirrors();
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility | package::kStrategySortedUber;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
@@ -161,11 +161,11 @@ TEST(RayBinning, ChangesNothingOfAnyStrategy) {
 }
 
 TEST(RayBinning, NoRaysMakeAnEmptyList) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, unlitMaterial({0.2F, 0.4F, 0.6F})),
                                                {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0})));
-    const LoadedScene loaded(scene, PlanOptions{});
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     LinearImage reference;
     for (const Binning binning : kBinnings) {

@@ -37,16 +37,16 @@ void writeWax(const fs::path& folder, const Wax& wax) {
     std::string macro = name;
     std::ranges::transform(macro, macro.begin(), [](char c) { return static_cast<char>(c - 'a' + 'A'); });
     fs::create_directories(folder / name);
-    ASSERT_TRUE(writeFile(folder / name / (name + ".json"), fmt::format(R"({{
+    ASSERT_TRUE(base::writeFile(folder / name / (name + ".json"), fmt::format(R"({{
     "name": "{0}", "stage": "layer", "extension": "TEST_{0}",
     "glsl": {{ "bsdf": "{0}_bsdf.glsl", "layer": "{0}.glsl", "reciprocal": true }},
     "parameters": [{{ "name": "{0}Factor", "type": "float", "default": 0, "range": [0, 1] }}],
     "neutral": [{{ "when": "{0}Factor == 0", "because": "{0}Factor is 0" }}]
 }})",
-                                                                        name)));
-    ASSERT_TRUE(
-        writeFile(folder / name / (name + ".glsl"),
-                  fmt::format(R"(#include "bsdf/layer.glsl"
+                                                                              name)));
+    ASSERT_TRUE(base::writeFile(
+        folder / name / (name + ".glsl"),
+        fmt::format(R"(#include "bsdf/layer.glsl"
 struct {1} {{ float factor; }};
 void {0}Prepare(inout {1} layer, vec3 view) {{}}
 LayerAlbedo {0}Shares({1} layer, vec3 view) {{ return LayerAlbedo(vec3({2}), {4}); }}
@@ -54,19 +54,19 @@ LayerLight {0}Evaluate({1} layer, vec3 view, vec3 l) {{ return LayerLight(vec3({
 vec3 {0}Sample({1} layer, vec3 view, vec2 u) {{ return {5}; }}
 float {0}Density({1} layer, vec3 view, vec3 l) {{ return {6}; }}
 )",
-                              name, capital, wax.share, wax.reflected, wax.passed, wax.sample, wax.density)));
-    ASSERT_TRUE(
-        writeFile(folder / name / (name + "_bsdf.glsl"), fmt::format(R"(#include "hit/surface_values.glsl"
+                    name, capital, wax.share, wax.reflected, wax.passed, wax.sample, wax.density)));
+    ASSERT_TRUE(base::writeFile(folder / name / (name + "_bsdf.glsl"),
+                                fmt::format(R"(#include "hit/surface_values.glsl"
 void {0}Bsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {{
     surface.bsdf.layers.{0} = {1}(GLINT_MATERIAL_{2}_FACTOR(hit));
 }}
 )",
-                                                                     name, capital, macro)));
+                                            name, capital, macro)));
 }
 
 class Silent final : public measure::Observer {
 public:
-    using Observer::report;
+    using measure::Observer::report;
     void report(const Diagnostic& diagnostic) const override {
         ADD_FAILURE() << toString(diagnostic);
     }
@@ -83,13 +83,13 @@ Result<measure::MaterialChecksReport> check(const fs::path& folder, bool picture
     return measure::checkMaterials(options, Silent());
 }
 
-CheckState stateOf(const FeatureChecks& feature, MaterialCheck check) {
+measure::CheckState stateOf(const measure::FeatureChecks& feature, measure::MaterialCheck check) {
     return std::ranges::find(feature.outcomes, check, &measure::CheckOutcome::check)->state;
 }
 
 struct Planted {
     Wax wax;
-    MaterialCheck fails;
+    measure::MaterialCheck fails;
     std::string id;
     std::string says;
 };
@@ -99,26 +99,27 @@ std::vector<Planted> plantedFaults() {
     Wax range{"notnumber"};
     // The direction of a vector without length.
     range.reflected = "layer.factor * cosineDensity(l) * dot(normalize(l.xy), normalize(l.xy))";
-    faults.push_back({range, MaterialCheck::Range, "check-range", "NaN or infinite"});
+    faults.push_back({range, measure::MaterialCheck::Range, "check-range", "NaN or infinite"});
     Wax density{"density"};
     density.density = "1.5 * cosineDensity(l)";
-    faults.push_back({density, MaterialCheck::Density, "check-density", "integrates to 1.5"});
+    faults.push_back({density, measure::MaterialCheck::Density, "check-density", "integrates to 1.5"});
     Wax samples{"samples"};
     // Uniform over the hemisphere.
     samples.sample =
         "vec3(sqrt(1.0 - u.x * u.x) * cos(2.0 * kPi * u.y), sqrt(1.0 - u.x * u.x) * sin(2.0 * kPi * u.y), "
         "u.x)";
-    faults.push_back({samples, MaterialCheck::Samples, "check-samples", "by chance"});
+    faults.push_back({samples, measure::MaterialCheck::Samples, "check-samples", "by chance"});
     Wax reciprocity{"oneway"};
     reciprocity.share = "layer.factor * view.z";
     reciprocity.reflected = "layer.factor * view.z * cosineDensity(l)";
-    faults.push_back({reciprocity, MaterialCheck::Reciprocity, "check-reciprocity", "in each other's place"});
+    faults.push_back(
+        {reciprocity, measure::MaterialCheck::Reciprocity, "check-reciprocity", "in each other's place"});
     Wax energy{"energy"};
     energy.passed = "1.0";
-    faults.push_back({energy, MaterialCheck::Energy, "check-energy", "of a white furnace leaves"});
+    faults.push_back({energy, measure::MaterialCheck::Energy, "check-energy", "of a white furnace leaves"});
     Wax albedo{"albedo"};
     albedo.share = "0.25 * layer.factor";
-    faults.push_back({albedo, MaterialCheck::Albedo, "check-albedo", "of a white sky, and says"});
+    faults.push_back({albedo, measure::MaterialCheck::Albedo, "check-albedo", "of a white sky, and says"});
     return faults;
 }
 
@@ -132,7 +133,7 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
     const Result<measure::MaterialChecksReport> report = check(folder.path());
     ASSERT_TRUE(report) << toString(report.error());
     ASSERT_EQ(report->features.size(), faults.size() + 1);
-    for (const FeatureChecks& feature : report->features) {
+    for (const measure::FeatureChecks& feature : report->features) {
         const auto planted = std::ranges::find(
             faults, feature.feature, [](const Planted& one) -> const std::string& { return one.wax.name; });
         const std::vector<Diagnostic> failures = failuresOf(feature);
@@ -147,12 +148,12 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
         EXPECT_NE(failures[0].message.find(feature.feature + "Factor "), std::string::npos)
             << failures[0].message;
         EXPECT_FALSE(failures[0].hint.empty());
-        EXPECT_EQ(stateOf(feature, planted->fails), CheckState::Failed);
+        EXPECT_EQ(stateOf(feature, planted->fails), measure::CheckState::Failed);
         // What samples should follow is not known if the density is wrong.
-        EXPECT_EQ(stateOf(feature, MaterialCheck::Samples),
-                  planted->fails == MaterialCheck::Density   ? CheckState::Unsure
-                  : planted->fails == MaterialCheck::Samples ? CheckState::Failed
-                                                             : CheckState::Passed)
+        EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Samples),
+                  planted->fails == measure::MaterialCheck::Density   ? measure::CheckState::Unsure
+                  : planted->fails == measure::MaterialCheck::Samples ? measure::CheckState::Failed
+                                                                      : measure::CheckState::Passed)
             << feature.feature;
     }
 }
@@ -164,14 +165,16 @@ TEST(CheckMaterials, TheExamplePacksPass) {
             check(std::string(GLINT_SOURCE_DIR) + folder, true);
         ASSERT_TRUE(report) << toString(report.error());
         features += report->features.size();
-        for (const FeatureChecks& feature : report->features) {
+        for (const measure::FeatureChecks& feature : report->features) {
             for (const Diagnostic& failure : failuresOf(feature)) {
                 ADD_FAILURE() << toString(failure);
             }
-            EXPECT_EQ(stateOf(feature, MaterialCheck::Range), CheckState::Passed) << feature.feature;
-            EXPECT_EQ(stateOf(feature, MaterialCheck::Energy), CheckState::Passed) << feature.feature;
-            EXPECT_EQ(stateOf(feature, MaterialCheck::Density),
-                      feature.isLayer ? CheckState::Passed : CheckState::Absent)
+            EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Range), measure::CheckState::Passed)
+                << feature.feature;
+            EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Energy), measure::CheckState::Passed)
+                << feature.feature;
+            EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Density),
+                      feature.isLayer ? measure::CheckState::Passed : measure::CheckState::Absent)
                 << feature.feature;
         }
         EXPECT_EQ(report->pictures.size(), 2 * report->features.size());
@@ -181,12 +184,12 @@ TEST(CheckMaterials, TheExamplePacksPass) {
 
 TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {
     const test::TemporaryFolder folder;
-    ASSERT_TRUE(writeFile(folder.path() / "mud.json", R"({
+    ASSERT_TRUE(base::writeFile(folder.path() / "mud.json", R"({
         "name": "mud", "stage": "surface", "extension": "TEST_mud", "glsl": { "surface": "mud.glsl" },
         "parameters": [{ "name": "mudAmount", "type": "float", "default": 0, "range": [0, 1] }],
         "neutral": [{ "when": "mudAmount < 2", "because": "there is no mud" }]
     })"));
-    ASSERT_TRUE(writeFile(folder.path() / "mud.glsl", "// mud\n"));
+    ASSERT_TRUE(base::writeFile(folder.path() / "mud.glsl", "// mud\n"));
     const Result<measure::MaterialChecksReport> report = check(folder.path());
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().id, "check-unreachable");

@@ -28,8 +28,8 @@ using namespace glint::testing;
 struct Room {
     unsigned number;
     const char* name;
-    Scene (*make)();
-    AlphaPolicy alpha;
+    gltf::Scene (*make)();
+    package::AlphaPolicy alpha;
 };
 
 // The choices of a renderer, for one strategy and tracer.
@@ -50,8 +50,9 @@ std::vector<Way> waysOf(std::uint32_t tracers) {
     return ways;
 }
 
-constexpr MergePolicy kPolicies[] = {MergePolicy::All, MergePolicy::None, MergePolicy::Family,
-                                     MergePolicy::Auto, MergePolicy::Profile};
+constexpr compiler::MergePolicy kPolicies[] = {compiler::MergePolicy::All, compiler::MergePolicy::None,
+                                               compiler::MergePolicy::Family, compiler::MergePolicy::Auto,
+                                               compiler::MergePolicy::Profile};
 constexpr package::ShadowPlacement kPlacements[] = {package::ShadowPlacement::Inline,
                                                     package::ShadowPlacement::Deferred};
 constexpr unsigned kOrderings = static_cast<unsigned>(package::Ordering::Count);
@@ -61,7 +62,7 @@ constexpr unsigned kRooms = 2;
 // One picture of the sweep.
 struct Combination {
     unsigned room;
-    MergePolicy merge;
+    compiler::MergePolicy merge;
     package::ShadowPlacement shadows;
     Way way;
     std::optional<package::Ordering> ordering;  // none where the strategy orders nothing
@@ -71,7 +72,7 @@ struct Combination {
 std::vector<Combination> allCombinations() {
     std::vector<Combination> all;
     // Adds the orderings and binnings of one way.
-    const auto addWay = [&](unsigned room, MergePolicy merge, package::ShadowPlacement shadows,
+    const auto addWay = [&](unsigned room, compiler::MergePolicy merge, package::ShadowPlacement shadows,
                             const Way& way) {
         const bool orders = (package::kOrderedStrategies & way.strategy) != 0;
         for (unsigned i = 0; i < (orders ? kOrderings : 1U) * kBinnings; ++i) {
@@ -83,7 +84,7 @@ std::vector<Combination> allCombinations() {
         }
     };
     for (unsigned room = 0; room < kRooms; ++room) {
-        for (const MergePolicy merge : kPolicies) {
+        for (const compiler::MergePolicy merge : kPolicies) {
             for (const package::ShadowPlacement shadows : kPlacements) {
                 for (const Way& way : waysOf(package::kAllTracers)) {
                     addWay(room, merge, shadows, way);
@@ -143,9 +144,9 @@ std::vector<Combination> chosenCombinations() {
 }
 
 // Makes a profile in which keys are hot, never hit and cold in turn. It does not contain the last key.
-std::map<FeatureMask, std::uint64_t> makeUpHits(const std::vector<Key>& keys) {
+std::map<materials::FeatureMask, std::uint64_t> makeUpHits(const std::vector<compiler::Key>& keys) {
     constexpr std::uint64_t kHits[] = {1000, 0, 1};
-    std::map<FeatureMask, std::uint64_t> hits;
+    std::map<materials::FeatureMask, std::uint64_t> hits;
     for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
         hits[keys[i].mask] = kHits[i % 3];
     }
@@ -153,13 +154,13 @@ std::map<FeatureMask, std::uint64_t> makeUpHits(const std::vector<Key>& keys) {
 }
 
 // Expects that the profile was used: hot keys are separate, and some of the others share a case.
-void expectMergedByHits(const Plan& plan) {
+void expectMergedByHits(const compiler::Plan& plan) {
     bool isHot = false;
     bool shares = false;
-    for (const Case& it : plan.cases) {
-        isHot = isHot || it.reason == CaseReason::Hot;
+    for (const compiler::Case& it : plan.cases) {
+        isHot = isHot || it.reason == compiler::CaseReason::Hot;
         shares = shares || it.keys.size() > 1;
-        EXPECT_TRUE(it.reason != CaseReason::Hot || it.keys.size() == 1) << it.name;
+        EXPECT_TRUE(it.reason != compiler::CaseReason::Hot || it.keys.size() == 1) << it.name;
     }
     EXPECT_TRUE(isHot);
     EXPECT_TRUE(shares);
@@ -167,7 +168,7 @@ void expectMergedByHits(const Plan& plan) {
 
 class Combinations : public ::testing::TestWithParam<Room> {
 protected:
-    RenderSetup setup(const Scene& scene) {
+    RenderSetup setup(const gltf::Scene& scene) {
         RenderSetup setup = defaultSetup(scene, 48, 32);
         setup.frame.maxReflectionRoughness = 1.0F;
         setup.frame.seed = 5;
@@ -175,7 +176,8 @@ protected:
         return setup;
     }
 
-    void expectReference(const LoadedScene& loaded, const Scene& scene, const Combination& combination) {
+    void expectReference(const LoadedScene& loaded, const gltf::Scene& scene,
+                         const Combination& combination) {
         RenderSetup frame = setup(scene);
         frame.frame.binning = combination.binning;
         RendererOptions options;
@@ -201,7 +203,7 @@ protected:
         expectSameImage(image, reference_, what + " against " + first_);
     }
 
-    std::vector<Key> keys_;  // of the last package
+    std::vector<compiler::Key> keys_;  // of the last package
 
 private:
     LinearImage reference_;
@@ -209,12 +211,12 @@ private:
 };
 
 TEST_P(Combinations, GiveOneImage) {
-    const Scene scene = GetParam().make();
+    const gltf::Scene scene = GetParam().make();
     const std::vector<Combination> combinations = chosenCombinations();
-    for (const MergePolicy merge : kPolicies) {
+    for (const compiler::MergePolicy merge : kPolicies) {
         for (const package::ShadowPlacement shadows : kPlacements) {
             // A package has only what it is rendered with, because compiling takes longest.
-            CompileSettings settings;
+            compiler::CompileSettings settings;
             settings.strategies = 0;
             settings.tracers = 0;
             std::vector<Combination> rendered;
@@ -232,14 +234,16 @@ TEST_P(Combinations, GiveOneImage) {
             settings.plan.keys.alpha = GetParam().alpha;
             settings.shadows = shadows;
             settings.plan.merge = merge;
-            settings.plan.maxShaders = merge == MergePolicy::Auto ? 3 : merge == MergePolicy::Profile ? 4 : 0;
-            if (merge == MergePolicy::Profile) {
+            settings.plan.maxShaders = merge == compiler::MergePolicy::Auto      ? 3
+                                       : merge == compiler::MergePolicy::Profile ? 4
+                                                                                 : 0;
+            if (merge == compiler::MergePolicy::Profile) {
                 settings.plan.hits = makeUpHits(keys_);
             }
             const LoadedScene loaded(scene, settings);
             ASSERT_TRUE(loaded.ok());
             keys_ = loaded.compiled().plan.keys;
-            if (merge == MergePolicy::Profile) {
+            if (merge == compiler::MergePolicy::Profile) {
                 expectMergedByHits(loaded.compiled().plan);
             }
             for (const Combination& combination : rendered) {
@@ -251,8 +255,8 @@ TEST_P(Combinations, GiveOneImage) {
 
 // Half the memory costs only the precision of its barycentrics and cone widths.
 TEST_P(Combinations, PackedHitsAreClose) {
-    const Scene scene = GetParam().make();
-    CompileSettings settings;
+    const gltf::Scene scene = GetParam().make();
+    compiler::CompileSettings settings;
     settings.strategies = package::kOrderedStrategies;
     settings.plan.keys.alpha = GetParam().alpha;
     const LoadedScene full(scene, settings);
@@ -279,8 +283,9 @@ TEST_P(Combinations, PackedHitsAreClose) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rooms, Combinations,
-                         ::testing::Values(Room{0, "Materials", roomOfMaterials, AlphaPolicy::Opaque},
-                                           Room{1, "Fence", roomWithFence, AlphaPolicy::Tested}),
+                         ::testing::Values(Room{0, "Materials", roomOfMaterials,
+                                                package::AlphaPolicy::Opaque},
+                                           Room{1, "Fence", roomWithFence, package::AlphaPolicy::Tested}),
                          [](const auto& room) { return std::string(room.param.name); });
 
 }  // namespace

@@ -39,9 +39,9 @@ double mean(const LinearImage& image) {
 
 // Removes highlights of point lights in smooth surfaces: a rare sample of one is as bright as the lobe is
 // narrow, and no picture of 4,096 samples has found them all.
-Scene roomWithoutSharpHighlights() {
-    Scene scene = roomOfMaterials();
-    for (Material& material : scene.materials) {
+gltf::Scene roomWithoutSharpHighlights() {
+    gltf::Scene scene = roomOfMaterials();
+    for (materials::Material& material : scene.materials) {
         material["roughnessFactor"] = std::max<float>(material["roughnessFactor"], 0.25F);
         material["clearcoatRoughnessFactor"] = 0.4F;
     }
@@ -51,9 +51,9 @@ Scene roomWithoutSharpHighlights() {
 class Convergence : public ::testing::Test {
 protected:
     Convergence() : scene_(roomWithoutSharpHighlights()) {
-        CompileSettings settings;
+        compiler::CompileSettings settings;
         settings.strategies = package::kAllStrategies;
-        settings.plan.merge = MergePolicy::All;
+        settings.plan.merge = compiler::MergePolicy::All;
         loaded_.emplace(scene_, settings);
     }
 
@@ -65,7 +65,7 @@ protected:
         return loaded_->render(strategy, setup);
     }
 
-    Scene scene_;
+    gltf::Scene scene_;
     std::optional<LoadedScene> loaded_;
 };
 

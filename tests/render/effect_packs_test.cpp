@@ -19,17 +19,17 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-constexpr Float3 kSheet{0.8F, 0.5F, 0.25F};
+constexpr gltf::Float3 kSheet{0.8F, 0.5F, 0.25F};
 constexpr float kTransmitted = 0.75F;
-constexpr Float3 kPanel{0.5F, 0.25F, 1.0F};
+constexpr gltf::Float3 kPanel{0.5F, 0.25F, 1.0F};
 
 // A sheet that fills the picture. All that it does with light is to transmit it diffusely. Behind it is a
 // panel of known radiance, so large and near that the sheet's far side sees next to nothing else; the panel
 // does without light.
-Scene sheetAndPanel(const MaterialModel& model) {
-    Scene scene = emptyScene();
+gltf::Scene sheetAndPanel(const materials::MaterialModel& model) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material sheet(model);
+    materials::Material sheet(model);
     sheet["baseColorFactor"] = {0, 0, 0, 1};
     sheet["metallicFactor"] = 0.0F;
     sheet.give("KHR_materials_specular");
@@ -38,7 +38,7 @@ Scene sheetAndPanel(const MaterialModel& model) {
     sheet["diffuseTransmissionFactor"] = kTransmitted;
     sheet["diffuseTransmissionColorFactor"] = kSheet;
     sheet.doubleSided = true;
-    Material panel(model);
+    materials::Material panel(model);
     panel.give("KHR_materials_unlit");
     panel["baseColorFactor"] = {kPanel[0], kPanel[1], kPanel[2], 1};
     const int sheetNumber = addMaterial(scene, sheet);
@@ -49,8 +49,8 @@ Scene sheetAndPanel(const MaterialModel& model) {
     return scene;
 }
 
-CompileSettings settingsWith(const std::vector<std::string>& effects) {
-    CompileSettings settings;
+compiler::CompileSettings settingsWith(const std::vector<std::string>& effects) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kAllStrategies;
     settings.tracers = package::kTracerRayQuery;
     settings.effects = {.ofPacks = effects};
@@ -58,7 +58,8 @@ CompileSettings settingsWith(const std::vector<std::string>& effects) {
 }
 
 // Returns pictures with each strategy; the sky is black.
-std::map<package::Strategy, LinearImage> picturesOf(const Scene& scene, const CompileSettings& settings,
+std::map<package::Strategy, LinearImage> picturesOf(const gltf::Scene& scene,
+                                                    const compiler::CompileSettings& settings,
                                                     FrameCounters* counters = nullptr) {
     RenderSetup setup = defaultSetup(scene, 16, 16);
     setup.samples = 2;
@@ -80,10 +81,11 @@ protected:
                                 {"translucency/translucency.json", "translucency/translucency.glsl"});
     }
 
-    const MaterialModel& model() {
-        const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder_.path().string()});
+    const materials::MaterialModel& model() {
+        const Result<const materials::MaterialModel*> model =
+            materials::loadMaterialModel(std::vector{folder_.path().string()});
         EXPECT_TRUE(model) << toString(model.error());
-        return model ? **model : builtinMaterialModel();
+        return model ? **model : materials::builtinMaterialModel();
     }
 
     test::TemporaryFolder folder_;
@@ -91,7 +93,7 @@ protected:
 
 // The two files are all that there is; no source of Glint's changes.
 TEST_F(EffectOfThePage, BringsTheLightFromBehind) {
-    const Scene scene = sheetAndPanel(model());
+    const gltf::Scene scene = sheetAndPanel(model());
     FrameCounters counters;
     const auto pictures = picturesOf(scene, settingsWith({"translucency"}), &counters);
     ASSERT_EQ(pictures.size(), package::kStrategies.size());
@@ -113,38 +115,38 @@ TEST_F(EffectOfThePage, BringsTheLightFromBehind) {
 }
 
 TEST_F(EffectOfThePage, LeavesNothingWhereItIsNotNamed) {
-    const Scene scene = sheetAndPanel(model());
-    CompileSettings settings = settingsWith({});
+    const gltf::Scene scene = sheetAndPanel(model());
+    compiler::CompileSettings settings = settingsWith({});
     settings.effects.automatic = true;
     settings.strategies = package::kStrategyUber;
-    const Result<CompiledPackage> package = compilePackage(scene, settings);
+    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings);
     ASSERT_TRUE(package) << toString(package.error());
     EXPECT_EQ(package->plan.effects.effects.all, 0U);
-    const EffectDecision& decision = package->plan.effects.decisions.back();
+    const compiler::EffectDecision& decision = package->plan.effects.decisions.back();
     EXPECT_EQ(decision.name, "translucency");
     EXPECT_TRUE(decision.usable);
     EXPECT_EQ(decision.reason, "refines the sky's light; no file asks for it, so it has to be named");
-    for (const CompiledModule& module : package->modules) {
+    for (const compiler::CompiledModule& module : package->modules) {
         EXPECT_EQ(module.name.find("translucency"), std::string::npos) << module.name;
     }
 }
 
 TEST_F(EffectOfThePage, MayComposeItsLight) {
     const auto path = folder_.path() / "translucency" / "translucency.json";
-    Result<Bytes> bytes = readFile(path);
+    Result<base::Bytes> bytes = base::readFile(path);
     ASSERT_TRUE(bytes);
     std::string text(bytes->begin(), bytes->end());
     const std::string sample = "\"sample\": \"translucency.glsl\"";
     const std::size_t place = text.find(sample);
     ASSERT_NE(place, std::string::npos);
     text.insert(place + sample.size(), ", \"compose\": \"compose.glsl\"");
-    ASSERT_TRUE(writeFile(path, text));
-    ASSERT_TRUE(writeFile(folder_.path() / "translucency" / "compose.glsl",
-                          "vec3 composeTranslucency(vec3 weight, vec3 radiance) {\n"
-                          "    return 0.5 * weight * radiance;\n}\n"));
-    CompileSettings settings = settingsWith({"translucency"});
+    ASSERT_TRUE(base::writeFile(path, text));
+    ASSERT_TRUE(base::writeFile(folder_.path() / "translucency" / "compose.glsl",
+                                "vec3 composeTranslucency(vec3 weight, vec3 radiance) {\n"
+                                "    return 0.5 * weight * radiance;\n}\n"));
+    compiler::CompileSettings settings = settingsWith({"translucency"});
     settings.strategies = package::kStrategyUber;
-    const Scene scene = sheetAndPanel(model());
+    const gltf::Scene scene = sheetAndPanel(model());
     RenderSetup setup = defaultSetup(scene, 8, 8);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LoadedScene loaded(scene, settings);
@@ -157,15 +159,16 @@ TEST_F(EffectOfThePage, MayComposeItsLight) {
 
 TEST_F(EffectOfThePage, ErrorsOfGlslNameTheFileTheLineAndTheEffect) {
     const auto path = folder_.path() / "translucency" / "translucency.glsl";
-    ASSERT_TRUE(writeFile(path,
-                          "#include \"effects/sample.glsl\"\n"
-                          "#include \"effects/sky_shares.glsl\"\n"
-                          "#include \"hit/surface.glsl\"\n"
-                          "EffectSample sampleTranslucency(Hit hit, Surface surface, Features features,\n"
-                          "                                inout SkyShares sky) {\n"
-                          "    return nonsense;\n"
-                          "}\n"));
-    const Result<CompiledPackage> package =
+    ASSERT_TRUE(
+        base::writeFile(path,
+                        "#include \"effects/sample.glsl\"\n"
+                        "#include \"effects/sky_shares.glsl\"\n"
+                        "#include \"hit/surface.glsl\"\n"
+                        "EffectSample sampleTranslucency(Hit hit, Surface surface, Features features,\n"
+                        "                                inout SkyShares sky) {\n"
+                        "    return nonsense;\n"
+                        "}\n"));
+    const Result<compiler::CompiledPackage> package =
         compilePackage(sheetAndPanel(model()), settingsWith({"translucency"}));
     ASSERT_FALSE(package);
     EXPECT_EQ(package.error().id, "glsl");
@@ -180,25 +183,27 @@ TEST_F(EffectOfThePage, IsTheSameInTheSources) {
     const std::string name = "effects/translucency/translucency";
     std::map<std::string, std::string> texts;
     for (const char* const extension : {".json", ".glsl"}) {
-        const Result<Bytes> bytes =
-            readFile(folder_.path() / ("translucency/translucency" + std::string(extension)));
+        const Result<base::Bytes> bytes =
+            base::readFile(folder_.path() / ("translucency/translucency" + std::string(extension)));
         ASSERT_TRUE(bytes);
         texts[extension] = std::string(bytes->begin(), bytes->end());
     }
-    std::vector<DeclarationFile> files;
-    for (const BuiltinFile& file : declarationFiles()) {
+    std::vector<materials::DeclarationFile> files;
+    for (const base::BuiltinFile& file : materials::declarationFiles()) {
         files.push_back({file.name, file.text});
     }
     const std::string declaration = name + ".json";
     files.push_back({declaration, texts[".json"]});
-    Result<MaterialModel> built = readDeclarations(files);
+    Result<materials::MaterialModel> built = readDeclarations(files);
     ASSERT_TRUE(built) << toString(built.error());
     built->sources.push_back({name + ".glsl", texts[".glsl"]});
-    const auto modulesOf = [](const Scene& scene) {
-        const Result<CompiledPackage> package = compilePackage(scene, settingsWith({"translucency"}));
+    const auto modulesOf = [](const gltf::Scene& scene) {
+        const Result<compiler::CompiledPackage> package =
+            compilePackage(scene, settingsWith({"translucency"}));
         EXPECT_TRUE(package) << toString(package.error());
         std::map<std::string, std::uint64_t> hashes;
-        for (const CompiledModule& module : package ? package->modules : std::vector<CompiledModule>{}) {
+        for (const compiler::CompiledModule& module :
+             package ? package->modules : std::vector<compiler::CompiledModule>{}) {
             hashes[module.name] = module.hash;
         }
         return hashes;

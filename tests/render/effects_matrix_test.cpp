@@ -22,20 +22,20 @@ struct Properties {
     bool lit;  // otherwise everything is unlit, whatever else it says
 };
 
-Scene sceneWith(const Properties& has) {
-    Scene scene = emptyScene();
+gltf::Scene sceneWith(const Properties& has) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material plaster;
+    materials::Material plaster;
     plaster["metallicFactor"] = 0.0F;
-    Material mirror = mirrorMaterial();
+    materials::Material mirror = mirrorMaterial();
     if (!has.lit) {
         plaster.give("KHR_materials_unlit");
         mirror.give("KHR_materials_unlit");
     }
-    Material glass = plaster;
+    materials::Material glass = plaster;
     glass.give("KHR_materials_transmission");
     glass["transmissionFactor"] = 0.75F;
-    const auto place = [&](const Material& material, float x) {
+    const auto place = [&](const materials::Material& material, float x) {
         addInstance(
             scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, -1, -1}, {1, 0, 0}, {0, 2, 0})));
     };
@@ -63,9 +63,9 @@ struct Modules {
     std::size_t cases = 0;
 };
 
-Modules modulesOf(const CompiledPackage& package) {
+Modules modulesOf(const compiler::CompiledPackage& package) {
     Modules modules;
-    for (const CompiledModule& module : package.modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         if (module.key.role == package::ModuleRole::ShadeCase) {
             ++modules.cases;
         } else {
@@ -94,11 +94,11 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const Properties has{(GetParam() & 1) != 0, (GetParam() & 2) != 0, (GetParam() & 4) != 0,
                          (GetParam() & 8) != 0};
     SCOPED_TRACE(describe(has));
-    const Scene scene = sceneWith(has);
-    CompileSettings settings;
+    const gltf::Scene scene = sceneWith(has);
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility;
     settings.effects = {true, 0};
-    settings.plan.merge = MergePolicy::None;
+    settings.plan.merge = compiler::MergePolicy::None;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
 
@@ -128,7 +128,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const std::size_t keys = loaded.compiled().plan.keys.size();
     EXPECT_EQ(modules.cases, rays ? keys : 0);
     // Without shadows, only the list's own passes trace.
-    for (const CompiledModule& module : loaded.compiled().modules) {
+    for (const compiler::CompiledModule& module : loaded.compiled().modules) {
         const bool traces = module.statistics.rayQueries > 0;
         const bool mayTrace =
             module.name == "trace.comp" || module.name == "refraction_walk.comp" ||

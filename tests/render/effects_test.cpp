@@ -17,15 +17,15 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-CompileSettings allEffects() {
-    CompileSettings settings;
+compiler::CompileSettings allEffects() {
+    compiler::CompileSettings settings;
     settings.effects = {false, package::kAllEffects};
     settings.strategies = package::kAllStrategies;
     settings.tracers = package::kAllTracers;
     return settings;
 }
 
-RenderSetup smallSetup(const Scene& scene) {
+RenderSetup smallSetup(const gltf::Scene& scene) {
     RenderSetup setup = defaultSetup(scene, 48, 32);
     setup.frame.maxReflectionRoughness = 1.0F;
     setup.frame.countsLight = true;
@@ -42,9 +42,9 @@ RendererOptions optionsOf(package::Strategy strategy, package::Tracer tracer) {
 }
 
 // Returns the room behind panes of glass: one thin, one thick, both partly clear.
-Scene roomBehindGlass() {
-    Scene scene = roomOfMaterials();
-    Material pane;
+gltf::Scene roomBehindGlass() {
+    gltf::Scene scene = roomOfMaterials();
+    materials::Material pane;
     pane["metallicFactor"] = 0.0F;
     pane["roughnessFactor"] = 0.1F;
     pane["transmissionFactor"] = 0.8F;
@@ -68,7 +68,7 @@ struct Way {
 };
 
 TEST(AllEffects, EveryWayMakesTheSamePicture) {
-    const Scene scene = roomBehindGlass();
+    const gltf::Scene scene = roomBehindGlass();
     const LoadedScene loaded(scene, allEffects());
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = smallSetup(scene);
@@ -107,9 +107,9 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
 }
 
 TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
-    const Scene scene = roomBehindGlass();
+    const gltf::Scene scene = roomBehindGlass();
     RenderSetup setup = smallSetup(scene);
-    CompileSettings settings = allEffects();
+    compiler::CompileSettings settings = allEffects();
     settings.tracers = package::kTracerRayQuery;
     settings.strategies = package::kStrategyVisibility;
     const LoadedScene plain(scene, settings);
@@ -133,9 +133,9 @@ TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
 
 // If effects are off at run time, the picture is that of a package without them.
 TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
-    const Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfMaterials();
     const RenderSetup setup = smallSetup(scene);
-    CompileSettings settings = allEffects();
+    compiler::CompileSettings settings = allEffects();
     settings.strategies = package::kStrategyUber;
     settings.tracers = package::kTracerRayQuery;
     const LoadedScene all(scene, settings);
@@ -152,15 +152,15 @@ TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
 
 // Under a uniform sky, indirect light and occlusion change nothing.
 TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material white;
+    materials::Material white;
     white["metallicFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, white), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
     RenderSetup setup = squareSetup(scene);
     setup.samples = 4;
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.effects.named = 0;
     const LoadedScene sky(scene, settings);
@@ -175,8 +175,8 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
 }
 
 // Returns glass that reflects nothing, so that a path does not depend on chance.
-Material clearGlass(float ior) {
-    Material glass;
+materials::Material clearGlass(float ior) {
+    materials::Material glass;
     glass["metallicFactor"] = 0.0F;
     glass["roughnessFactor"] = 0.0F;
     glass["transmissionFactor"] = 1.0F;
@@ -190,8 +190,8 @@ Material clearGlass(float ior) {
 
 // Adds a block in front of the camera, as wide as its view, from `near` to `far` along its axis, with fronts
 // outside.
-void addBlock(Scene& scene, int material, float near, float far, float half) {
-    const auto face = [&](Float3 corner, Float3 right, Float3 up) {
+void addBlock(gltf::Scene& scene, int material, float near, float far, float half) {
+    const auto face = [&](gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
         addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
     };
     const float size = 2.0F * half;
@@ -205,8 +205,8 @@ void addBlock(Scene& scene, int material, float near, float far, float half) {
 }
 
 // Returns a wall of coloured squares that shows where a ray goes.
-Scene squaresBehind() {
-    Scene scene = emptyScene();
+gltf::Scene squaresBehind() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < 16 * 16; ++i) {
@@ -215,15 +215,15 @@ Scene squaresBehind() {
         texels.insert(texels.end(),
                       {across, down, (i + i / 16) % 2 != 0 ? std::uint8_t{255} : std::uint8_t{0}, 255});
     }
-    Material squares = unlitMaterial({1, 1, 1});
+    materials::Material squares = unlitMaterial({1, 1, 1});
     squares.texture("baseColorTexture").texture = addTexture(scene, 16, 16, std::move(texels));
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, squares), {-8, -8, -6}, {16, 0, 0}, {0, 16, 0})));
     return scene;
 }
 
-LinearImage refracted(const Scene& scene) {
-    CompileSettings settings;
+LinearImage refracted(const gltf::Scene& scene) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.effects.named = package::kEffectRefraction;
     const LoadedScene loaded(scene, settings);
@@ -246,20 +246,20 @@ double differingShare(const LinearImage& a, const LinearImage& b) {
 }
 
 TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
-    Scene whole = squaresBehind();
+    gltf::Scene whole = squaresBehind();
     addBlock(whole, addMaterial(whole, clearGlass(1.5F)), 1.0F, 4.0F, 12.0F);
     const LinearImage block = refracted(whole);
 
     // A block with the same index within is invisible.
-    Scene matched = whole;
+    gltf::Scene matched = whole;
     addBlock(matched, addMaterial(matched, clearGlass(1.5F)), 2.0F, 3.0F, 11.0F);
     EXPECT_LT(differingShare(refracted(matched), block), 0.02);
 
     // A block of air within leaves two panes.
-    Scene hollow = whole;
+    gltf::Scene hollow = whole;
     addBlock(hollow, addMaterial(hollow, clearGlass(1.0F)), 2.0F, 3.0F, 11.0F);
     const LinearImage hole = refracted(hollow);
-    Scene panes = squaresBehind();
+    gltf::Scene panes = squaresBehind();
     const int glass = addMaterial(panes, clearGlass(1.5F));
     addBlock(panes, glass, 1.0F, 2.0F, 12.0F);
     addBlock(panes, glass, 3.0F, 4.0F, 12.0F);
@@ -270,15 +270,15 @@ TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
 
 // A sample whose weight is below the bound sends no ray, and is counted.
 TEST(Gates, FaintSamplesAreSkipped) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material glossy;
+    materials::Material glossy;
     glossy["metallicFactor"] = 0.0F;
     glossy["roughnessFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, glossy), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
     RenderSetup setup = squareSetup(scene);
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
@@ -294,25 +294,25 @@ TEST(Gates, FaintSamplesAreSkipped) {
 
 // A spot light misses half of the wall, and the range of a point light ends in front of it.
 TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material wall;
+    materials::Material wall;
     wall["metallicFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, wall), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
-    Light light;
-    light.type = LightType::Point;
+    gltf::Light light;
+    light.type = gltf::LightType::Point;
     light.range = 0.5F;
     light.position = {0, 0, 0};
     scene.lights.push_back(light);
-    light.type = LightType::Spot;
+    light.type = gltf::LightType::Spot;
     light.range = 0.0F;
     light.direction = {0, 0, 1};  // away
     scene.lights.push_back(light);
     addDirectionalLight(scene, {0, 0, 1}, 1.0F);  // from behind
     RenderSetup setup = squareSetup(scene);
     setup.frame.countsLight = true;
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.effects.named = package::kEffectShadow;
     const LoadedScene loaded(scene, settings);

@@ -22,14 +22,14 @@ const std::string kScene = GLINT_SOURCE_DIR "/examples/engine/scene/engine.gltf"
 
 // Reflections by one ray in the mirror's direction, as the engine has them.
 LinearImage picturedByGlint() {
-    ImportOptions import;
+    gltf::ImportOptions import;
     import.decodeImages = true;
-    const Result<Scene> scene = importScene(kScene, import);
+    const Result<gltf::Scene> scene = importScene(kScene, import);
     EXPECT_TRUE(scene) << toString(scene.error());
     RenderSetup setup = defaultSetup(*scene, kWidth, kHeight);
     setup.frame.maxReflectionRoughness = 1.0F;
     setup.frame.mirrorRoughness = 1.0F;
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility;
     const LoadedScene loaded(*scene, settings);
     return loaded.ok() ? loaded.render(package::kStrategyVisibility, setup) : LinearImage{};

@@ -16,7 +16,7 @@ using namespace glint::testing;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-using Value = std::function<Float3(Float3)>;
+using Value = std::function<gltf::Float3(gltf::Float3)>;
 
 // Makes a map with `value` at the centre of each texel: u goes from +X towards +Z, with +X in the middle; v
 // goes from +Y down.
@@ -27,7 +27,7 @@ LinearImage makeMap(std::uint32_t width, std::uint32_t height, const Value& valu
         for (std::uint32_t column = 0; column < width; ++column) {
             const float azimuth =
                 2.0F * kPi * ((static_cast<float>(column) + 0.5F) / static_cast<float>(width) - 0.5F);
-            const Float3 c = value(
+            const gltf::Float3 c = value(
                 {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)});
             image.pixels.push_back({c[0], c[1], c[2], 1.0F});
         }
@@ -45,12 +45,12 @@ std::unique_ptr<Environment> makeEnvironment(std::uint32_t width, std::uint32_t 
     return std::move(*environment);
 }
 
-constexpr Float3 kAxisColors[6] = {{1, 0, 0}, {0, 1, 1}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 0}};
-constexpr Float3 kAxes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+constexpr gltf::Float3 kAxisColors[6] = {{1, 0, 0}, {0, 1, 1}, {0, 0, 1}, {1, 1, 0}, {1, 0, 1}, {0, 1, 0}};
+constexpr gltf::Float3 kAxes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 
 // Returns the colour of the axis that is nearest to the direction: +X red, +Y blue, +Z magenta; opposite axes
 // have complementary colours.
-Float3 axisColor(Float3 d) {
+gltf::Float3 axisColor(gltf::Float3 d) {
     std::size_t nearest = 0;
     float most = -2.0F;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -63,29 +63,29 @@ Float3 axisColor(Float3 d) {
     return kAxisColors[nearest];
 }
 
-RenderSetup setupWith(const Scene& scene, const Environment* environment) {
+RenderSetup setupWith(const gltf::Scene& scene, const Environment* environment) {
     RenderSetup setup = squareSetup(scene);
     setup.width = setup.height = 33;  // a pixel in the middle, whose ray is the axis
     setup.frame.environment = environment;
     return setup;
 }
 
-LoadedScene loadForMap(const Scene& scene) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::All;
+LoadedScene loadForMap(const gltf::Scene& scene) {
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::All;
     settings.environmentMap = true;
     settings.energyCompensation = false;
     return LoadedScene(scene, settings);
 }
 
-Scene emptySceneWithCamera() {
-    Scene scene = emptyScene();
+gltf::Scene emptySceneWithCamera() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     return scene;
 }
 
-Scene wallScene(const Material& material) {
-    Scene scene = emptySceneWithCamera();
+gltf::Scene wallScene(const materials::Material& material) {
+    gltf::Scene scene = emptySceneWithCamera();
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     // Only the sky lights the scene.
@@ -93,8 +93,8 @@ Scene wallScene(const Material& material) {
     return scene;
 }
 
-Material roughMetal(float roughness) {
-    Material material;
+materials::Material roughMetal(float roughness) {
+    materials::Material material;
     material["roughnessFactor"] = roughness;
     return material;
 }
@@ -104,7 +104,7 @@ constexpr package::Strategy kBoth[] = {package::kStrategyUber, package::kStrateg
 class EnvironmentMap : public ::testing::Test {};
 
 TEST_F(EnvironmentMap, StandsAsItsAxesSay) {
-    const Scene scene = emptySceneWithCamera();
+    const gltf::Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);
     const std::unique_ptr<Environment> environment = makeEnvironment(512, 256, axisColor);
     ASSERT_TRUE(loaded.ok() && environment);
@@ -125,7 +125,7 @@ TEST_F(EnvironmentMap, StandsAsItsAxesSay) {
 }
 
 TEST_F(EnvironmentMap, TurnsAboutTheVertical) {
-    const Scene scene = emptySceneWithCamera();
+    const gltf::Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);
     const std::unique_ptr<Environment> environment = makeEnvironment(512, 256, axisColor);
     ASSERT_TRUE(loaded.ok() && environment);
@@ -135,16 +135,16 @@ TEST_F(EnvironmentMap, TurnsAboutTheVertical) {
         setup.frame.environmentRotation = 2.0F * kPi * turns;
         setup.frame.environmentIntensity = 3.0F;
         const LinearImage image = loaded.render(package::kStrategyVisibility, setup);
-        const Float3 color = kAxisColors[axis];
+        const gltf::Float3 color = kAxisColors[axis];
         expectColor(at(image, 16, 16), {3 * color[0], 3 * color[1], 3 * color[2]}, 1e-4F, "centre");
     }
 }
 
 // At -X, where u jumps from 1 to 0, the map is as smooth as everywhere else.
 TEST_F(EnvironmentMap, HasNoSeam) {
-    const Scene scene = emptySceneWithCamera();
+    const gltf::Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);
-    const auto sky = [](Float3 d) { return Float3{1.5F + d[0], 1.5F + d[1], 1.5F + d[2]}; };
+    const auto sky = [](gltf::Float3 d) { return gltf::Float3{1.5F + d[0], 1.5F + d[1], 1.5F + d[2]}; };
     const std::unique_ptr<Environment> environment = makeEnvironment(1024, 512, sky);
     ASSERT_TRUE(loaded.ok() && environment);
     RenderSetup setup = setupWith(scene, environment.get());
@@ -163,7 +163,7 @@ TEST_F(EnvironmentMap, HasNoSeam) {
 }
 
 TEST_F(EnvironmentMap, ShowsInMirrorsOfEveryStrategy) {
-    Scene scene = wallScene(mirrorMaterial());
+    gltf::Scene scene = wallScene(mirrorMaterial());
     const LoadedScene loaded = loadForMap(scene);
     const std::unique_ptr<Environment> environment = makeEnvironment(512, 256, axisColor);
     ASSERT_TRUE(loaded.ok() && environment);
@@ -176,8 +176,8 @@ TEST_F(EnvironmentMap, ShowsInMirrorsOfEveryStrategy) {
 
 // A sky of one colour gives the same by a map and by a gradient, for every lobe that takes light from it.
 TEST_F(EnvironmentMap, OfOneColourEqualsTheGradient) {
-    constexpr Float3 kColor{0.75F, 1.5F, 3.0F};
-    Material coated;
+    constexpr gltf::Float3 kColor{0.75F, 1.5F, 3.0F};
+    materials::Material coated;
     coated["metallicFactor"] = 0.0F;
     coated["roughnessFactor"] = 0.6F;
     coated["baseColorFactor"] = {0.5F, 0.7F, 0.2F, 1.0F};
@@ -186,13 +186,14 @@ TEST_F(EnvironmentMap, OfOneColourEqualsTheGradient) {
     coated.give("KHR_materials_sheen");
     coated["sheenColorFactor"] = {0.3F, 0.3F, 0.5F};
     coated["sheenRoughnessFactor"] = 0.5F;
-    const Scene scene = wallScene(coated);
+    const gltf::Scene scene = wallScene(coated);
     const LoadedScene forMap = loadForMap(scene);
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::All;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::All;
     settings.energyCompensation = false;
     const LoadedScene forGradient(scene, settings);
-    const std::unique_ptr<Environment> environment = makeEnvironment(64, 32, [&](Float3) { return kColor; });
+    const std::unique_ptr<Environment> environment =
+        makeEnvironment(64, 32, [&](gltf::Float3) { return kColor; });
     ASSERT_TRUE(forMap.ok() && forGradient.ok() && environment);
     RenderSetup gradient = setupWith(scene, nullptr);
     gradient.frame.sky = {kColor, kColor, kColor};
@@ -204,13 +205,13 @@ TEST_F(EnvironmentMap, OfOneColourEqualsTheGradient) {
 // cosine.
 TEST_F(EnvironmentMap, RoughSurfacesSeeItsLevels) {
     for (const auto& [roughness, worth] : {std::pair{0.0F, 2.0F}, {1.0F, 5.0F / 3.0F}}) {
-        const Scene scene = wallScene(roughMetal(roughness));
+        const gltf::Scene scene = wallScene(roughMetal(roughness));
         const LoadedScene loaded = loadForMap(scene);
-        const std::unique_ptr<Environment> one = makeEnvironment(512, 256, [](Float3) {
-            return Float3{1, 1, 1};
+        const std::unique_ptr<Environment> one = makeEnvironment(512, 256, [](gltf::Float3) {
+            return gltf::Float3{1, 1, 1};
         });
-        const std::unique_ptr<Environment> slope = makeEnvironment(512, 256, [](Float3 d) {
-            return Float3{1 + d[2], 1 + d[2], 1 + d[2]};
+        const std::unique_ptr<Environment> slope = makeEnvironment(512, 256, [](gltf::Float3 d) {
+            return gltf::Float3{1 + d[2], 1 + d[2], 1 + d[2]};
         });
         ASSERT_TRUE(loaded.ok() && one && slope);
         RenderSetup setup = setupWith(scene, one.get());
@@ -225,13 +226,13 @@ TEST_F(EnvironmentMap, RoughSurfacesSeeItsLevels) {
 // Diffuse light from one side: for a sky of 1 + z it is 1 + 2/3 towards +Z, and 1 + 2/3 cos 60° after
 // turning.
 TEST_F(EnvironmentMap, DiffuseLightTurnsWithIt) {
-    Material material;
+    materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["specularFactor"] = 0.0F;
-    const Scene scene = wallScene(material);
+    const gltf::Scene scene = wallScene(material);
     const LoadedScene loaded = loadForMap(scene);
-    const std::unique_ptr<Environment> environment = makeEnvironment(512, 256, [](Float3 d) {
-        return Float3{1 + d[2], 1 + d[0], 1 + d[1]};
+    const std::unique_ptr<Environment> environment = makeEnvironment(512, 256, [](gltf::Float3 d) {
+        return gltf::Float3{1 + d[2], 1 + d[0], 1 + d[1]};
     });
     ASSERT_TRUE(loaded.ok() && environment);
     RenderSetup setup = setupWith(scene, environment.get());
@@ -247,8 +248,10 @@ TEST_F(EnvironmentMap, DiffuseLightTurnsWithIt) {
 
 // A device that can't filter 32-bit images gets 16-bit ones. Values above their range are scaled, not lost.
 TEST_F(EnvironmentMap, HalfFloatsShowTheSame) {
-    const auto sky = [](Float3 d) { return d[2] > 0.9F ? Float3{4e6F, 2e6F, 1e6F} : Float3{800, 40, 2}; };
-    const Scene scene = wallScene(roughMetal(0.0F));
+    const auto sky = [](gltf::Float3 d) {
+        return d[2] > 0.9F ? gltf::Float3{4e6F, 2e6F, 1e6F} : gltf::Float3{800, 40, 2};
+    };
+    const gltf::Scene scene = wallScene(roughMetal(0.0F));
     const LoadedScene loaded = loadForMap(scene);
     const std::unique_ptr<Environment> full = makeEnvironment(256, 128, sky);
     bool& filteredFloats = sharedContext().state().limits.filteredFloats;
@@ -270,11 +273,11 @@ TEST_F(EnvironmentMap, HalfFloatsShowTheSame) {
 }
 
 TEST_F(EnvironmentMap, PackageAndFrameMustAgree) {
-    const Scene scene = emptySceneWithCamera();
+    const gltf::Scene scene = emptySceneWithCamera();
     const LoadedScene forMap = loadForMap(scene);
-    const LoadedScene forGradient(scene, CompileSettings{});
-    const std::unique_ptr<Environment> environment = makeEnvironment(4, 2, [](Float3) {
-        return Float3{1, 1, 1};
+    const LoadedScene forGradient(scene, compiler::CompileSettings{});
+    const std::unique_ptr<Environment> environment = makeEnvironment(4, 2, [](gltf::Float3) {
+        return gltf::Float3{1, 1, 1};
     });
     ASSERT_TRUE(forMap.ok() && forGradient.ok() && environment);
     const auto errorOf = [](const LoadedScene& loaded, const RenderSetup& setup) {
@@ -295,14 +298,15 @@ TEST_F(EnvironmentMap, PackageAndFrameMustAgree) {
 
 // A renderer keeps the map of its last frame, and takes another one for the next frame.
 TEST_F(EnvironmentMap, ChangesBetweenFrames) {
-    const Scene scene = emptySceneWithCamera();
+    const gltf::Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);
     ASSERT_TRUE(loaded.ok());
     Result<std::unique_ptr<Renderer>> renderer = Renderer::create(
         sharedContext(), loaded.package(), loaded.gpuScene(), {package::kStrategyVisibility, 33, 33});
     ASSERT_TRUE(renderer);
-    for (const Float3& color : {kRed, kGreen, kBlue}) {
-        const std::unique_ptr<Environment> environment = makeEnvironment(8, 4, [&](Float3) { return color; });
+    for (const gltf::Float3& color : {kRed, kGreen, kBlue}) {
+        const std::unique_ptr<Environment> environment =
+            makeEnvironment(8, 4, [&](gltf::Float3) { return color; });
         ASSERT_TRUE(environment);
         const Result<LinearImage> image = (*renderer)->render(setupWith(scene, environment.get()).frame);
         ASSERT_TRUE(image);

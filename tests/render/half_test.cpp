@@ -18,8 +18,8 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-CompileSettings settingsOf(package::Strategy strategy, package::ShadingPrecision precision) {
-    CompileSettings settings;
+compiler::CompileSettings settingsOf(package::Strategy strategy, package::ShadingPrecision precision) {
+    compiler::CompileSettings settings;
     settings.strategies = strategy;
     settings.precision = precision;
     settings.effects = {false, package::kEffectShadow | package::kEffectReflection |
@@ -27,8 +27,8 @@ CompileSettings settingsOf(package::Strategy strategy, package::ShadingPrecision
     return settings;
 }
 
-LinearImage rendered(const Scene& scene, package::Strategy strategy, package::ShadingPrecision precision,
-                     const RenderSetup& setup) {
+LinearImage rendered(const gltf::Scene& scene, package::Strategy strategy,
+                     package::ShadingPrecision precision, const RenderSetup& setup) {
     const LoadedScene loaded(scene, settingsOf(strategy, precision));
     FrameCounters counters;
     LinearImage image = loaded.ok() ? loaded.render(strategy, setup, &counters) : LinearImage{};
@@ -37,7 +37,7 @@ LinearImage rendered(const Scene& scene, package::Strategy strategy, package::Sh
 }
 
 // `bound` limits relMSE; it is about eight times what was measured on lavapipe.
-void expectAlike(const Scene& scene, package::Strategy strategy, double bound) {
+void expectAlike(const gltf::Scene& scene, package::Strategy strategy, double bound) {
     RenderSetup setup = defaultSetup(scene, 64, 36);
     setup.frame.maxReflectionRoughness = 1.0F;
     setup.samples = 4;
@@ -45,7 +45,7 @@ void expectAlike(const Scene& scene, package::Strategy strategy, double bound) {
     const LinearImage half = rendered(scene, strategy, package::ShadingPrecision::Half, setup);
     ASSERT_EQ(single.pixels.size(), half.pixels.size());
     ASSERT_FALSE(half.pixels.empty());
-    const Result<ImageDifference> difference = compareImages(half, single, "half", "single");
+    const Result<image::ImageDifference> difference = image::compareImages(half, single, "half", "single");
     ASSERT_TRUE(difference) << toString(difference.error());
     EXPECT_EQ(difference->nonFinite, 0U);
     EXPECT_EQ(difference->referenceNonFinite, 0U);
@@ -60,9 +60,9 @@ TEST(Half, TheGalleryIsNearlyTheSame) {
     if (!test::nightly()) {
         GTEST_SKIP() << "takes a minute to compile: scripts/nightly.sh runs it";
     }
-    ImportOptions options;
+    gltf::ImportOptions options;
     options.decodeImages = true;
-    const Result<Scene> scene = importScene(GLINT_GALLERY_SCENE, options);
+    const Result<gltf::Scene> scene = importScene(GLINT_GALLERY_SCENE, options);
     ASSERT_TRUE(scene) << toString(scene.error());
     expectAlike(*scene, package::kStrategyUber, 2e-6);
 }
@@ -76,12 +76,12 @@ TEST(Half, HitShadersShadeSoToo) {
 }
 
 // Returns materials that each are at a limit of what files may contain.
-std::vector<Material> extremeMaterials() {
-    std::vector<Material> list;
+std::vector<materials::Material> extremeMaterials() {
+    std::vector<materials::Material> list;
     for (const float roughness : {0.0F, 0.01F, 1.0F}) {
         for (const float metallic : {0.0F, 1.0F}) {
             for (const float colour : {0.0F, 1e-7F, 1.0F}) {
-                Material material;
+                materials::Material material;
                 material["roughnessFactor"] = roughness;
                 material["metallicFactor"] = metallic;
                 material["baseColorFactor"] = {colour, 1.0F, colour, 1.0F};
@@ -91,7 +91,7 @@ std::vector<Material> extremeMaterials() {
     }
     const std::size_t plain = list.size();
     for (std::size_t i = 0; i < plain; ++i) {
-        Material& material = list[i];
+        materials::Material& material = list[i];
         switch (i % 6) {
             case 0:
                 material.give("KHR_materials_clearcoat");
@@ -131,22 +131,23 @@ std::vector<Material> extremeMaterials() {
 
 // Returns quads of those materials, from facing the camera to edge-on, with vertex colours from 0 to 1e6,
 // under lamps of a millionth and a million.
-Scene extremeScene() {
-    Scene scene = emptyScene();
+gltf::Scene extremeScene() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    const std::vector<Material> materials = extremeMaterials();
+    const std::vector<materials::Material> materials = extremeMaterials();
     constexpr int kColumns = 6;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const auto column = static_cast<float>(i % kColumns);
         const std::size_t whole = i / kColumns;
         const auto row = static_cast<float>(whole);
         const float turn = 1.5F * row / (static_cast<float>(materials.size()) / kColumns);
-        Primitive quad = makeQuad(addMaterial(scene, materials[i]),
-                                  {0.33F * column - 1.0F, 0.6F * row - 0.9F, -1.0F - 0.1F * column},
-                                  {0.3F * std::cos(turn), 0.0F, -0.3F * std::sin(turn)}, {0.0F, 0.5F, 0.0F});
+        gltf::Primitive quad =
+            makeQuad(addMaterial(scene, materials[i]),
+                     {0.33F * column - 1.0F, 0.6F * row - 0.9F, -1.0F - 0.1F * column},
+                     {0.3F * std::cos(turn), 0.0F, -0.3F * std::sin(turn)}, {0.0F, 0.5F, 0.0F});
         if (i % 3 == 0) {
             quad.colors.assign(4, {i % 2 == 0 ? 1e6F : 0.5F, 1.0F, 1e-30F, 1.0F});
-            quad.colorContent = ColorContent::Varying;
+            quad.colorContent = materials::ColorContent::Varying;
         }
         addInstance(scene, addMesh(scene, std::move(quad)));
     }
@@ -156,7 +157,7 @@ Scene extremeScene() {
 }
 
 TEST(Half, ExtremesStayFinite) {
-    const Scene scene = extremeScene();
+    const gltf::Scene scene = extremeScene();
     RenderSetup setup = defaultSetup(scene, 96, 64);
     setup.frame.maxReflectionRoughness = 1.0F;
     setup.samples = 2;
@@ -172,12 +173,12 @@ TEST(Half, ExtremesStayFinite) {
 
 // A device that was made without the feature is refused, and the error names the feature.
 TEST(Half, NeedsTheFeature) {
-    const Scene scene = roomWithFence();
+    const gltf::Scene scene = roomWithFence();
     const auto compiled =
         compilePackage(scene, settingsOf(package::kStrategyUber, package::ShadingPrecision::Half));
     ASSERT_TRUE(compiled) << toString(compiled.error());
     std::vector<package::EmbeddedFile> files;
-    for (const PackageFile& file : compiled->files) {
+    for (const compiler::PackageFile& file : compiled->files) {
         files.push_back({file.name, file.bytes});
     }
     const Result<Package> package = Package::load(files);

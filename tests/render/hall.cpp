@@ -8,16 +8,16 @@
 namespace glint::testing {
 namespace {
 
-Material glossyMaterial(Float3 color, float roughness) {
-    Material material;
+materials::Material glossyMaterial(gltf::Float3 color, float roughness) {
+    materials::Material material;
     material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
     material["metallicFactor"] = 0.0F;
     material["roughnessFactor"] = roughness;
     return material;
 }
 
-Material coatedMaterial(Float3 color) {
-    Material material = glossyMaterial(color, 0.6F);
+materials::Material coatedMaterial(gltf::Float3 color) {
+    materials::Material material = glossyMaterial(color, 0.6F);
     material.give("KHR_materials_clearcoat");
     material["clearcoatFactor"] = 1.0F;
     material["clearcoatRoughnessFactor"] = 0.1F;
@@ -25,9 +25,9 @@ Material coatedMaterial(Float3 color) {
 }
 
 // Returns a chequerboard of holes.
-Material fenceMaterial(Scene& scene) {
-    Material material = glossyMaterial({0.9F, 0.8F, 0.3F}, 0.4F);
-    material.alphaMode = AlphaMode::Mask;
+materials::Material fenceMaterial(gltf::Scene& scene) {
+    materials::Material material = glossyMaterial({0.9F, 0.8F, 0.3F}, 0.4F);
+    material.alphaMode = materials::AlphaMode::Mask;
     material.doubleSided = true;
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < 64; ++i) {
@@ -40,8 +40,8 @@ Material fenceMaterial(Scene& scene) {
 
 }  // namespace
 
-Scene hallScene() {
-    Scene scene = emptyScene();
+gltf::Scene hallScene() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int fence = addMaterial(scene, fenceMaterial(scene));
     const int coated = addMaterial(scene, coatedMaterial(kRed));
@@ -49,7 +49,7 @@ Scene hallScene() {
     const int unlit = addMaterial(scene, unlitMaterial(kBlue));
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
                                                {0, 0, -8})));
-    Mesh wall;
+    gltf::Mesh wall;
     wall.primitives = {makeQuad(coated, {-4, -0.9F, -5}, {3, 0, 0}, {0, 4, 0}),
                        makeQuad(glossy, {-1, -0.9F, -5}, {2, 0, 0}, {0, 4, 0}),
                        makeQuad(unlit, {1, -0.9F, -5}, {2, 0, 0}, {0, 4, 0}),
@@ -59,12 +59,12 @@ Scene hallScene() {
     // A second, mirrored instance stands with its fence in front of the walls of the first.
     addInstance(scene, static_cast<int>(scene.meshes.size()) - 1, scaling(-1.2, 0.9, 1.1));
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
-    Light lamp;
-    lamp.type = LightType::Point;
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
     lamp.position = {0.5F, 1.5F, -1.0F};
     lamp.intensity = 9.0F;
     scene.lights.push_back(lamp);
-    lamp.type = LightType::Spot;
+    lamp.type = gltf::LightType::Spot;
     lamp.position = {-2.0F, 1.0F, -1.0F};
     lamp.direction = {0.0F, 0.0F, -1.0F};
     scene.lights.push_back(lamp);

@@ -34,14 +34,14 @@ bool allFinite(const LinearImage& image) {
 // Two quads are side by side in front of the camera, and the left one has a NaN among its vertex colours. The
 // importer repairs such a file, but a host application may upload it.
 TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int material = addMaterial(scene, unlitMaterial(kGreen));
-    Primitive left = makeQuad(material, {-1, -1, -1}, {1, 0, 0}, {0, 2, 0});
+    gltf::Primitive left = makeQuad(material, {-1, -1, -1}, {1, 0, 0}, {0, 2, 0});
     left.colors.assign(4, {1, 1, 1, 1});
-    left.colorContent = ColorContent::Varying;
-    Primitive right = left;
-    for (Float3& position : right.positions) {
+    left.colorContent = materials::ColorContent::Varying;
+    gltf::Primitive right = left;
+    for (gltf::Float3& position : right.positions) {
         position[0] += 1.0F;
     }
     left.colors[0][1] = std::numeric_limits<float>::quiet_NaN();  // a corner of both triangles
@@ -50,7 +50,7 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
     RenderSetup setup = squareSetup(scene);
     setup.samples = 3;
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
     // Jitter moves samples of the middle columns to either side, and those of the border off the quads.
     for (std::uint32_t y = 1; y < 31; ++y) {
@@ -67,23 +67,24 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
 
     // A new accumulation starts to count again, and a scene without NaN counts nothing.
     scene.meshes[0].primitives[0].colors[0][1] = 1.0F;
-    const LinearImage sound = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    const LinearImage sound = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(counters.nonFinite, 0U);
     expectColor(at(sound, 8, 16), kGreen, 1e-5F, "repaired");
 }
 
 TEST_P(HardCases, NumbersThatAreNoneDoNotSpreadFromAMirror) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Primitive behind = makeQuad(addMaterial(scene, unlitMaterial(kRed)), {9, 0, 3}, {-18, 0, 0}, {0, 9, 0});
+    gltf::Primitive behind =
+        makeQuad(addMaterial(scene, unlitMaterial(kRed)), {9, 0, 3}, {-18, 0, 0}, {0, 9, 0});
     behind.colors.assign(4, {std::numeric_limits<float>::infinity(), 1, 1, 1});
-    behind.colorContent = ColorContent::Varying;
+    behind.colorContent = materials::ColorContent::Varying;
     addInstance(scene, addMesh(scene, behind));
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
                                                {0, 2, 0})));
     RenderSetup setup = squareSetup(scene);
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
     expectColor(at(image, 16, 4), {0, 0, 0}, 0.0F, "sees the infinite wall");
     expectColor(at(image, 16, 28), {1, 1, 1}, 1e-4F, "sees the sky");
@@ -91,9 +92,9 @@ TEST_P(HardCases, NumbersThatAreNoneDoNotSpreadFromAMirror) {
 }
 
 TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material lamp;
+    materials::Material lamp;
     lamp["baseColorFactor"] = {0, 0, 0, 1};
     lamp["emissiveFactor"] = {1.0F, 0.5F, 0.25F};
     lamp["emissiveStrength"] = 1e5F;
@@ -106,8 +107,8 @@ TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
     ASSERT_TRUE(allFinite(image));
     const test::TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "lamp.exr";
-    ASSERT_TRUE(writeImage(file, image, 0.0));
-    const Result<LinearImage> read = readImage(file);
+    ASSERT_TRUE(image::writeImage(file, image, 0.0));
+    const Result<LinearImage> read = image::readImage(file);
     ASSERT_TRUE(read) << toString(read.error());
     // The value is above 65504, where half floats end.
     const Pixel pixel = at(*read, 16, 16);
@@ -119,10 +120,10 @@ TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
 }
 
 // Returns a lit quad that fills the view and, on the right, a mirror of one behind the camera.
-Scene litScene(Primitive quad, const Matrix4& world) {
-    Scene scene = emptyScene();
+gltf::Scene litScene(gltf::Primitive quad, const gltf::Matrix4& world) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material material;
+    materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["roughnessFactor"] = 0.6F;
     material["baseColorFactor"] = {0.8F, 0.5F, 0.2F, 1.0F};
@@ -136,9 +137,9 @@ Scene litScene(Primitive quad, const Matrix4& world) {
 }
 
 // Returns walls that face the camera: in front of it on the left, and behind it on all sides.
-Primitive roomWalls() {
-    Primitive walls = makeQuad(0, {-3, -3, -2}, {3, 0, 0}, {0, 6, 0});
-    const Primitive behind = makeQuad(0, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
+gltf::Primitive roomWalls() {
+    gltf::Primitive walls = makeQuad(0, {-3, -3, -2}, {3, 0, 0}, {0, 6, 0});
+    const gltf::Primitive behind = makeQuad(0, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
     for (std::size_t i = 0; i < 4; ++i) {
         walls.positions.push_back(behind.positions[i]);
         walls.normals.push_back(behind.normals[i]);
@@ -159,9 +160,9 @@ struct Space {
     std::array<std::array<double, 3>, 3> inverse;
 };
 
-Primitive intoSpace(Primitive walls, const Space& space) {
-    for (Float3& position : walls.positions) {
-        const Float3 p = position;
+gltf::Primitive intoSpace(gltf::Primitive walls, const Space& space) {
+    for (gltf::Float3& position : walls.positions) {
+        const gltf::Float3 p = position;
         for (std::size_t row = 0; row < 3; ++row) {
             position[row] = static_cast<float>(space.inverse[row][0] * p[0] + space.inverse[row][1] * p[1] +
                                                space.inverse[row][2] * p[2]);
@@ -170,8 +171,8 @@ Primitive intoSpace(Primitive walls, const Space& space) {
     for (std::size_t i = 0; space.mirrors && i < walls.indices.size(); i += 3) {
         std::swap(walls.indices[i], walls.indices[i + 1]);
     }
-    for (Float3& normal : walls.normals) {
-        const Float3 n = normal;
+    for (gltf::Float3& normal : walls.normals) {
+        const gltf::Float3 n = normal;
         std::array<double, 3> moved{};
         for (std::size_t row = 0; row < 3; ++row) {
             moved[row] =
@@ -185,8 +186,8 @@ Primitive intoSpace(Primitive walls, const Space& space) {
     return walls;
 }
 
-Matrix4 matrixOf(const Space& space) {
-    Matrix4 matrix{};
+gltf::Matrix4 matrixOf(const Space& space) {
+    gltf::Matrix4 matrix{};
     for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t column = 0; column < 3; ++column) {
             matrix[4 * column + row] = space.linear[row][column];
@@ -205,44 +206,44 @@ constexpr Space kSpaces[] = {
 };
 
 TEST_P(HardCases, TransformsOfEveryKindShowTheSamePicture) {
-    const Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
+    const gltf::Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
     const RenderSetup setup = squareSetup(plain);
     const LinearImage expected = render(plain, setup);
     ASSERT_TRUE(allFinite(expected));
     EXPECT_GT(at(expected, 8, 16)[0], 0.3F) << "the wall is lit";
     for (const Space& space : kSpaces) {
         SCOPED_TRACE(space.name);
-        Primitive walls = intoSpace(roomWalls(), space);
+        gltf::Primitive walls = intoSpace(roomWalls(), space);
         FrameCounters counters;
-        const LinearImage image =
-            render(litScene(std::move(walls), matrixOf(space)), setup, AlphaPolicy::Opaque, &counters);
+        const LinearImage image = render(litScene(std::move(walls), matrixOf(space)), setup,
+                                         package::AlphaPolicy::Opaque, &counters);
         expectSameImage(image, expected, space.name);
         EXPECT_EQ(counters.nonFinite, 0U);
     }
 }
 
 TEST_P(HardCases, FlattenedInstancesAreNotThere) {
-    const Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
+    const gltf::Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
     const RenderSetup setup = squareSetup(plain);
     const LinearImage expected = render(plain, setup);
-    Scene scene = plain;
+    gltf::Scene scene = plain;
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (const Matrix4& flat :
+    for (const gltf::Matrix4& flat :
          {scaling(0, 0, 0), scaling(1, 1, 0), scaling(1, 1, 1e-40), scaling(1, nan, 1)}) {
         addInstance(scene, scene.nodes[0].mesh, flat);
     }
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(image.pixels, expected.pixels);
     EXPECT_EQ(counters.nonFinite, 0U);
 }
 
 // The triangles are a point, a line with a repeated vertex, a line of three vertices, and every vertex twice.
 TEST_P(HardCases, DegenerateTrianglesChangeNothing) {
-    const Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
+    const gltf::Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
     const RenderSetup setup = squareSetup(plain);
     const LinearImage expected = render(plain, setup);
-    Primitive walls = roomWalls();
+    gltf::Primitive walls = roomWalls();
     walls.positions.push_back({-1.5F, 0.0F, -2.0F});
     walls.normals.push_back({0.0F, 0.0F, 1.0F});
     walls.texCoords0.push_back({0.5F, 0.5F});
@@ -259,34 +260,34 @@ TEST_P(HardCases, DegenerateTrianglesChangeNothing) {
     }
     FrameCounters counters;
     const LinearImage image =
-        render(litScene(std::move(walls), scaling(1, 1, 1)), setup, AlphaPolicy::Opaque, &counters);
+        render(litScene(std::move(walls), scaling(1, 1, 1)), setup, package::AlphaPolicy::Opaque, &counters);
     expectSameImage(image, expected, "with degenerate triangles");
     EXPECT_EQ(counters.nonFinite, 0U);
 }
 
 // A flat normal texture gives the same wall as no texture, whatever happens to the texture's frame.
 TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
-    const Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
+    const gltf::Scene plain = litScene(roomWalls(), scaling(1, 1, 1));
     const RenderSetup setup = squareSetup(plain);
     const LinearImage expected = render(plain, setup);
     ASSERT_TRUE(allFinite(expected));
-    const std::vector<std::vector<Float2>> layouts{
-        std::vector<Float2>(8, {0.5F, 0.5F}),                                  // a point
+    const std::vector<std::vector<gltf::Float2>> layouts{
+        std::vector<gltf::Float2>(8, {0.5F, 0.5F}),                            // a point
         {{0, 0}, {1, 1}, {2, 2}, {1, 1}, {0, 0}, {1, 1}, {2, 2}, {1, 1}},      // a line
         {{0, 0}, {-1, 0}, {-1, 1}, {0, 1}, {0, 0}, {-1, 0}, {-1, 1}, {0, 1}},  // mirrored
         {{0, 0}, {1e6F, 0}, {1e6F, 1e6F}, {0, 1e6F}, {0, 0}, {1e-20F, 0}, {1, 1}, {0, 1e-20F}}};
     for (std::size_t i = 0; i < layouts.size(); ++i) {
         SCOPED_TRACE("layout " + std::to_string(i));
-        Primitive walls = roomWalls();
+        gltf::Primitive walls = roomWalls();
         walls.texCoords0 = layouts[i];
-        Scene scene = litScene(std::move(walls), scaling(1, 1, 1));
+        gltf::Scene scene = litScene(std::move(walls), scaling(1, 1, 1));
         // The texel has 16 bits, so that it is flat up to 1 / 65535; an 8-bit texel would be off by half a
         // level.
         const int texture = addTexture(scene, 1, 1, {0x00, 0x80, 0x00, 0x80, 0xFF, 0xFF, 0xFF, 0xFF});
-        scene.images.back().format = PixelFormat::Rgba16;
+        scene.images.back().format = gltf::PixelFormat::Rgba16;
         scene.materials[0].texture("normalTexture").texture = texture;
         FrameCounters counters;
-        const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+        const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
         ASSERT_TRUE(allFinite(image));
         EXPECT_EQ(counters.nonFinite, 0U);
         expectSameImage(image, expected, "flat normals");
@@ -295,10 +296,10 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
 
 // A quad of 8 x 8 pixels that shows this texture, 8 x 8 texels a pixel, unlit; whole squares of a
 // checkerboard.
-Scene checkeredScene(bool masked) {
-    Scene scene = emptyScene();
+gltf::Scene checkeredScene(bool masked) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material material = unlitMaterial({1, 1, 1});
+    materials::Material material = unlitMaterial({1, 1, 1});
     std::vector<std::uint8_t> texels;
     for (int y = 0; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
@@ -308,7 +309,7 @@ Scene checkeredScene(bool masked) {
         }
     }
     if (masked) {
-        material.alphaMode = AlphaMode::Mask;
+        material.alphaMode = materials::AlphaMode::Mask;
         material["alphaCutoff"] = 0.6F;
     }
     material.texture("baseColorTexture").texture = addTexture(scene, 64, 64, texels);
@@ -320,17 +321,17 @@ Scene checkeredScene(bool masked) {
 
 // A fine checkerboard far off: cones blend it to grey; mip 0, read at level 0, keeps black and white.
 TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
-    const Scene scene = checkeredScene(false);
+    const gltf::Scene scene = checkeredScene(false);
     RenderSetup setup = squareSetup(scene);
     setup.width = setup.height = 8;
-    for (const TextureLod lod : {TextureLod::Cones, TextureLod::Mip0}) {
-        CompileSettings settings;
+    for (const compiler::TextureLod lod : {compiler::TextureLod::Cones, compiler::TextureLod::Mip0}) {
+        compiler::CompileSettings settings;
         settings.textureLod = lod;
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
         const LinearImage image = loaded.render(GetParam(), setup);
         for (const Pixel& pixel : image.pixels) {
-            if (lod == TextureLod::Mip0) {
+            if (lod == compiler::TextureLod::Mip0) {
                 EXPECT_TRUE(pixel[0] == 0.0F || pixel[0] == 1.0F) << pixel[0];
             } else {
                 // The value is half of the texels' light, in 8 bits of sRGB.
@@ -343,10 +344,10 @@ TEST_P(HardCases, Mip0ReadsTheFinestLevel) {
 // A picture that averages 1024 samples has cones a quarter of a texel wide here: each sample reads the finest
 // level, and the mean of samples is the grey that one wide cone reads.
 TEST_P(HardCases, ConesShrinkWithTheSamplesThatAPixelAverages) {
-    const Scene scene = checkeredScene(false);
+    const gltf::Scene scene = checkeredScene(false);
     RenderSetup setup = squareSetup(scene);
     setup.width = setup.height = 8;
-    const LoadedScene loaded(scene, CompileSettings{});
+    const LoadedScene loaded(scene, compiler::CompileSettings{});
     ASSERT_TRUE(loaded.ok());
     for (const Pixel& pixel : loaded.render(GetParam(), setup).pixels) {
         EXPECT_NEAR(pixel[0], 0.5F, 0.01F) << "one sample, as wide as the pixel";
@@ -367,11 +368,11 @@ TEST_P(HardCases, ConesShrinkWithTheSamplesThatAPixelAverages) {
 
 // The alpha test of the raster pass chooses its level by derivatives of the screen, with the same bias.
 TEST_P(HardCases, MasksShrinkWithTheSamplesThatAPixelAverages) {
-    const Scene scene = checkeredScene(true);
+    const gltf::Scene scene = checkeredScene(true);
     RenderSetup setup = squareSetup(scene);
     setup.width = setup.height = 8;
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    const LoadedScene loaded(scene, CompileSettings{});
+    const LoadedScene loaded(scene, compiler::CompileSettings{});
     ASSERT_TRUE(loaded.ok());
     const auto mean = [](const LinearImage& image) {
         float sum = 0.0F;

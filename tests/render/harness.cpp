@@ -37,10 +37,10 @@ void expectNoValidationMessages() {
     }
 }
 
-LoadedScene::LoadedScene(const Scene& scene, const PlanOptions& plan)
-    : LoadedScene(scene, CompileSettings{.plan = plan}) {}
+LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& plan)
+    : LoadedScene(scene, compiler::CompileSettings{.plan = plan}) {}
 
-LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings,
+LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                          const std::function<void(scene_view::SceneViewData&)>& change) {
     const Status loaded = load(scene, settings, change);
     if (!loaded) {
@@ -48,9 +48,9 @@ LoadedScene::LoadedScene(const Scene& scene, const CompileSettings& settings,
     }
 }
 
-Status LoadedScene::load(const Scene& scene, const CompileSettings& settings,
+Status LoadedScene::load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                          const std::function<void(scene_view::SceneViewData&)>& change) {
-    Result<CompiledPackage> compiled = compilePackage(scene, settings, &sharedModules());
+    Result<compiler::CompiledPackage> compiled = compilePackage(scene, settings, &sharedModules());
     if (!compiled) {
         return compiled.error();
     }
@@ -112,7 +112,7 @@ LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setu
     return std::move(*image);
 }
 
-RenderSetup defaultSetup(const Scene& scene, std::uint32_t width, std::uint32_t height) {
+RenderSetup defaultSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height) {
     RenderSetup setup;
     setup.width = width;
     setup.height = height;
@@ -125,10 +125,11 @@ RenderSetup defaultSetup(const Scene& scene, std::uint32_t width, std::uint32_t 
 }
 
 void expectSameImage(const LinearImage& image, const LinearImage& reference, const std::string& what) {
-    const Result<ImageDifference> difference = compareImages(image, reference, "image", "reference");
+    const Result<image::ImageDifference> difference =
+        image::compareImages(image, reference, "image", "reference");
     ASSERT_TRUE(difference.ok()) << what << ": " << toString(difference.error());
     EXPECT_EQ(difference->nonFinite + difference->referenceNonFinite, 0U) << what;
-    const LargestError& worst = difference->relative;
+    const image::LargestError& worst = difference->relative;
     EXPECT_LE(worst.value, 1e-4) << what << ": at (" << worst.x << ", " << worst.y << "), channel "
                                  << worst.channel;
 }

@@ -34,16 +34,16 @@ struct RenderSetup {
 class LoadedScene {
 public:
     // Compiles into its own temporary folder. On failure ok() is false and the test fails.
-    LoadedScene(const Scene& scene, const PlanOptions& plan);
+    LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& plan);
     // `change`, if there is one, is called with the data before they are uploaded.
-    LoadedScene(const Scene& scene, const CompileSettings& settings,
+    LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                 const std::function<void(scene_view::SceneViewData&)>& change = {});
     ~LoadedScene();
 
     bool ok() const {
         return gpuScene_ != nullptr;
     }
-    const CompiledPackage& compiled() const {
+    const compiler::CompiledPackage& compiled() const {
         return compiled_;
     }
     // Requires ok().
@@ -61,17 +61,17 @@ public:
                        FrameCounters* counters = nullptr) const;
 
 private:
-    Status load(const Scene& scene, const CompileSettings& settings,
+    Status load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                 const std::function<void(scene_view::SceneViewData&)>& change);
 
-    CompiledPackage compiled_;
+    compiler::CompiledPackage compiled_;
     std::unique_ptr<Package> package_;
     std::unique_ptr<GpuScene> gpuScene_;
 };
 
 // Returns the scene's first camera or a framing one, and a sun if the scene has no light, as `glint render`
 // does.
-RenderSetup defaultSetup(const Scene& scene, std::uint32_t width, std::uint32_t height);
+RenderSetup defaultSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height);
 
 // Expects |a - b| <= 1e-4 max(1, |b|) for every channel of every pixel, and no NaN or infinity.
 void expectSameImage(const LinearImage& image, const LinearImage& reference, const std::string& what);

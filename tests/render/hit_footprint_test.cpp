@@ -20,11 +20,11 @@ constexpr float kEndless = std::numeric_limits<float>::infinity();
 // A square metre has 1024 x 512 texels, so a footprint of w metres has w * sqrt(1024 * 512) texels a side.
 constexpr std::array<double, 2> kTexels{1024.0, 512.0};
 
-Scene squareScene(const std::vector<double>& scales) {
-    Scene scene = emptyScene();
-    Material material;
+gltf::Scene squareScene(const std::vector<double>& scales) {
+    gltf::Scene scene = emptyScene();
+    materials::Material material;
     material.texture("baseColorTexture").texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
-    const Primitive quad = makeQuad(addMaterial(scene, material), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const gltf::Primitive quad = makeQuad(addMaterial(scene, material), {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     const int mesh = addMesh(scene, quad);
     for (const double scale : scales) {
         addInstance(scene, mesh, scaling(scale, scale, scale));
@@ -32,7 +32,7 @@ Scene squareScene(const std::vector<double>& scales) {
     return scene;
 }
 
-double texelsAlong(const Float2& gradient) {
+double texelsAlong(const gltf::Float2& gradient) {
     return std::hypot(gradient[0] * kTexels[0], gradient[1] * kTexels[1]);
 }
 
@@ -50,7 +50,7 @@ bool isFinite(const Values& values) {
 
 TEST(HitFootprint, LevelOfDetailOfAPlaneIsAnalytic) {
     const std::vector<double> scales{1.0, 1e6, 1e-6, 1e-12};
-    const Scene scene = squareScene(scales);
+    const gltf::Scene scene = squareScene(scales);
     std::vector<Query> queries;
     std::vector<double> expected;
     for (std::uint32_t i = 0; i < scales.size(); ++i) {
@@ -80,7 +80,7 @@ TEST(HitFootprint, LevelOfDetailOfAPlaneIsAnalytic) {
 TEST(HitFootprint, GradientsAreTheAxesOfTheFootprint) {
     constexpr double kWidth = 0.01;
     constexpr float kAnisotropy = 16.0F;
-    const Scene scene = squareScene({1.0});
+    const gltf::Scene scene = squareScene({1.0});
     struct Expectation {
         double cosine;
         double turn;
@@ -130,13 +130,13 @@ TEST(HitFootprint, GradientsAreTheAxesOfTheFootprint) {
 TEST(HitFootprint, NoLevelOfDetailWithoutAnArea) {
     // After the square's two triangles come: one without texels, one whose texels are on a line, one without
     // an area in the world, and one without either.
-    Scene scene = squareScene({1.0});
-    Primitive& square = scene.meshes[0].primitives[0];
+    gltf::Scene scene = squareScene({1.0});
+    gltf::Primitive& square = scene.meshes[0].primitives[0];
     for (const bool flat : {false, true}) {
         for (std::size_t k = 0; k < 3; ++k) {
             square.positions.push_back(square.positions[flat && k == 1 ? 0 : k]);
             square.normals.push_back(square.normals[k]);
-            square.texCoords0.push_back(flat ? square.texCoords0[k] : Float2{0.5F, 0.5F});
+            square.texCoords0.push_back(flat ? square.texCoords0[k] : gltf::Float2{0.5F, 0.5F});
         }
     }
     for (std::size_t k = 0; k < 3; ++k) {
@@ -168,7 +168,8 @@ TEST(HitFootprint, NoLevelOfDetailWithoutAnArea) {
     };
     std::vector<Query> queries;
     for (const Expectation& expectation : expectations) {
-        for (const Float3 direction : {Float3{0.0F, 0.0F, -1.0F}, Float3{0.6F, 0.0F, -0.8F}}) {
+        for (const gltf::Float3 direction :
+             {gltf::Float3{0.0F, 0.0F, -1.0F}, gltf::Float3{0.6F, 0.0F, -0.8F}}) {
             for (const float anisotropy : {1.0F, 16.0F}) {
                 queries.push_back(
                     {0, expectation.triangle, {0.3F, 0.3F}, direction, expectation.coneWidth, anisotropy});

@@ -11,19 +11,20 @@ namespace glint::testing {
 
 namespace {
 
-Result<std::vector<std::uint32_t>> compileKernel(const Scene& scene, const LoadedScene& loaded,
+Result<std::vector<std::uint32_t>> compileKernel(const gltf::Scene& scene, const LoadedScene& loaded,
                                                  const std::string& shader) {
-    const Result<Bytes> text =
-        readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests" / "render" / "shaders" / shader);
+    const Result<base::Bytes> text =
+        base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests" / "render" / "shaders" / shader);
     if (!text) {
         return text.error();
     }
-    const Result<SourceSet> sources = makeSourceSet(SceneList({&scene, 1}), loaded.compiled().plan, {});
+    const Result<compiler::SourceSet> sources =
+        makeSourceSet(gltf::SceneList({&scene, 1}), loaded.compiled().plan, {});
     if (!sources) {
         return sources.error();
     }
-    const Result<GlslUnit> glsl =
-        flatten(shader, std::string(text->begin(), text->end()), sources->lookup(), FlattenSide::Glsl);
+    const Result<compiler::GlslUnit> glsl = flatten(shader, std::string(text->begin(), text->end()),
+                                                    sources->lookup(), compiler::FlattenSide::Glsl);
     if (!glsl) {
         return glsl.error();
     }
@@ -34,7 +35,7 @@ Result<std::vector<std::uint32_t>> compileKernel(const Scene& scene, const Loade
 
 HitKernel::HitKernel(std::unique_ptr<SceneKernel> kernel) : kernel_(std::move(kernel)) {}
 
-Result<std::unique_ptr<HitKernel>> HitKernel::create(const Scene& scene, const LoadedScene& loaded,
+Result<std::unique_ptr<HitKernel>> HitKernel::create(const gltf::Scene& scene, const LoadedScene& loaded,
                                                      const std::string& shader) {
     const Result<std::vector<std::uint32_t>> words = compileKernel(scene, loaded, shader);
     return words ? create(loaded, *words) : words.error();

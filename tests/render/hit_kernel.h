@@ -18,7 +18,7 @@ public:
     // `shader` is a file of tests/render/shaders. It finds the scene through FrameConstants, runs `width`
     // invocations in workgroups of kRayGroupSize, reads its input from `rays` and `lights`, and writes words
     // to `counters`. Errors: those of compileShader, "vulkan-call". `scene` must outlive the kernel.
-    static Result<std::unique_ptr<HitKernel>> create(const Scene& scene, const LoadedScene& loaded,
+    static Result<std::unique_ptr<HitKernel>> create(const gltf::Scene& scene, const LoadedScene& loaded,
                                                      const std::string& shader);
 
     // The same for a compiled shader.

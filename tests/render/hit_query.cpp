@@ -12,8 +12,8 @@ constexpr std::size_t kWords = sizeof(Values) / sizeof(std::uint32_t);
 
 }  // namespace
 
-std::vector<Values> ask(const Scene& scene, const std::vector<Query>& queries) {
-    CompileSettings settings;
+std::vector<Values> ask(const gltf::Scene& scene, const std::vector<Query>& queries) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads the scene only
     // Queries name triangles by the numbers that they have in the scene.
     const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) {

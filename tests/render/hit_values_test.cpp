@@ -18,15 +18,15 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-Double3 directionOf(const Double3& v) {
-    const double length = std::sqrt(dot(v, v));
+base::Double3 directionOf(const base::Double3& v) {
+    const double length = std::sqrt(base::dot(v, v));
     return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-Double3 blend(const std::array<Float3, 3>& corners, const Float2& barycentrics) {
+base::Double3 blend(const std::array<gltf::Float3, 3>& corners, const gltf::Float2& barycentrics) {
     const double weights[] = {1.0 - double{barycentrics[0]} - double{barycentrics[1]}, barycentrics[0],
                               barycentrics[1]};
-    Double3 sum{};
+    base::Double3 sum{};
     for (std::size_t k = 0; k < 3; ++k) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             sum[axis] += weights[k] * corners[k][axis];
@@ -35,60 +35,63 @@ Double3 blend(const std::array<Float3, 3>& corners, const Float2& barycentrics) 
     return sum;
 }
 
-Double3 rowOf(const std::array<float, 12>& rows, std::size_t row) {
+base::Double3 rowOf(const std::array<float, 12>& rows, std::size_t row) {
     return {rows[4 * row], rows[4 * row + 1], rows[4 * row + 2]};
 }
 
 // Transforms a normal by the inverse transpose, times the determinant's magnitude.
-Double3 transformNormal(const std::array<float, 12>& rows, const Double3& n) {
-    Double3 result{};
+base::Double3 transformNormal(const std::array<float, 12>& rows, const base::Double3& n) {
+    base::Double3 result{};
     for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = dot(cross(rowOf(rows, (row + 1) % 3), rowOf(rows, (row + 2) % 3)), n);
+        result[row] = base::dot(base::cross(rowOf(rows, (row + 1) % 3), rowOf(rows, (row + 2) % 3)), n);
     }
-    const double determinant = dot(rowOf(rows, 0), cross(rowOf(rows, 1), rowOf(rows, 2)));
+    const double determinant = base::dot(rowOf(rows, 0), base::cross(rowOf(rows, 1), rowOf(rows, 2)));
     for (double& value : result) {
         value = determinant < 0.0 ? -value : value;
     }
     return directionOf(result);
 }
 
-Double3 transformPoint(const std::array<float, 12>& rows, const Double3& p) {
-    Double3 result{};
+base::Double3 transformPoint(const std::array<float, 12>& rows, const base::Double3& p) {
+    base::Double3 result{};
     for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = dot(rowOf(rows, row), p) + rows[4 * row + 3];
+        result[row] = base::dot(rowOf(rows, row), p) + rows[4 * row + 3];
     }
     return result;
 }
 
-constexpr std::array<Float3, 3> kPositions{{{0.1F, 0.2F, 0.3F}, {1.0F, 0.3F, 0.1F}, {0.2F, 1.1F, 0.4F}}};
-constexpr std::array<Float3, 3> kNormals{{{0.0F, 0.6F, 0.8F}, {0.48F, 0.64F, 0.6F}, {-0.36F, 0.48F, 0.8F}}};
-constexpr std::array<Float2, 3> kTexCoords{{{0.1F, 0.7F}, {3.3F, -0.2F}, {1e-5F, 7.1F}}};
-constexpr std::array<Float4, 3> kColors{
+constexpr std::array<gltf::Float3, 3> kPositions{
+    {{0.1F, 0.2F, 0.3F}, {1.0F, 0.3F, 0.1F}, {0.2F, 1.1F, 0.4F}}};
+constexpr std::array<gltf::Float3, 3> kNormals{
+    {{0.0F, 0.6F, 0.8F}, {0.48F, 0.64F, 0.6F}, {-0.36F, 0.48F, 0.8F}}};
+constexpr std::array<gltf::Float2, 3> kTexCoords{{{0.1F, 0.7F}, {3.3F, -0.2F}, {1e-5F, 7.1F}}};
+constexpr std::array<gltf::Float4, 3> kColors{
     {{0.1F, 0.2F, 0.7F, 1.0F}, {0.9F, 1e-6F, 0.3F, 1.0F}, {0.123F, 1.0F, 0.77F, 1.0F}}};
 
-Scene triangleScene(const std::vector<Matrix4>& placements) {
-    Scene scene = emptyScene();
-    Material material;
+gltf::Scene triangleScene(const std::vector<gltf::Matrix4>& placements) {
+    gltf::Scene scene = emptyScene();
+    materials::Material material;
     material.texture("baseColorTexture").texture = addTexture(scene, 1, 1, {255, 255, 255, 255});
-    Primitive triangle;
+    gltf::Primitive triangle;
     triangle.pointer = "/meshes/0/primitives/0";
     triangle.material = addMaterial(scene, material);
     triangle.positions.assign(kPositions.begin(), kPositions.end());
     triangle.normals.assign(kNormals.begin(), kNormals.end());
     triangle.texCoords0.assign(kTexCoords.begin(), kTexCoords.end());
     triangle.colors.assign(kColors.begin(), kColors.end());
-    triangle.colorContent = ColorContent::Varying;
+    triangle.colorContent = materials::ColorContent::Varying;
     triangle.indices = {0, 1, 2};
     const int mesh = addMesh(scene, triangle);
-    for (const Matrix4& placement : placements) {
+    for (const gltf::Matrix4& placement : placements) {
         addInstance(scene, mesh, placement);
     }
     return scene;
 }
 
 // Returns a column-major matrix from the rows of the linear part and a translation.
-Matrix4 matrix(const std::array<Double3, 3>& linear, const Double3& translation, double scale) {
-    Matrix4 result{};
+gltf::Matrix4 matrix(const std::array<base::Double3, 3>& linear, const base::Double3& translation,
+                     double scale) {
+    gltf::Matrix4 result{};
     for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t column = 0; column < 3; ++column) {
             result[4 * column + row] = scale * linear[row][column];
@@ -99,49 +102,52 @@ Matrix4 matrix(const std::array<Double3, 3>& linear, const Double3& translation,
     return result;
 }
 
-constexpr std::array<Double3, 3> kRotated{{{0.8, -0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
-constexpr std::array<Double3, 3> kMirrored{{{-0.8, 0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
-constexpr std::array<Double3, 3> kSheared{{{1.0, 7.0, 0.0}, {0.0, 1.0, 3.0}, {0.5, 0.0, -1.0}}};
-constexpr std::array<Double3, 3> kStretched{{{100.0, 0.0, 0.0}, {0.0, 0.8e-3, -0.6}, {0.0, 0.6e-3, 0.8}}};
+constexpr std::array<base::Double3, 3> kRotated{{{0.8, -0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
+constexpr std::array<base::Double3, 3> kMirrored{{{-0.8, 0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
+constexpr std::array<base::Double3, 3> kSheared{{{1.0, 7.0, 0.0}, {0.0, 1.0, 3.0}, {0.5, 0.0, -1.0}}};
+constexpr std::array<base::Double3, 3> kStretched{
+    {{100.0, 0.0, 0.0}, {0.0, 0.8e-3, -0.6}, {0.0, 0.6e-3, 0.8}}};
 
 // The rounding in and after the sums of a normal is a few units in the last place, and more where a shear
 // cancels.
 constexpr double kNormalError = 4e-6;
 
-void expectSameDirection(const Float3& got, const Double3& expected, const std::string& where) {
-    EXPECT_NEAR(dot(toDouble3(got), toDouble3(got)), 1.0, 1e-6) << where;
+void expectSameDirection(const gltf::Float3& got, const base::Double3& expected, const std::string& where) {
+    EXPECT_NEAR(base::dot(base::toDouble3(got), base::toDouble3(got)), 1.0, 1e-6) << where;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         EXPECT_NEAR(got[axis], expected[axis], kNormalError) << where << ", axis " << axis;
     }
 }
 
 TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
-    std::vector<Matrix4> placements;
+    std::vector<gltf::Matrix4> placements;
     for (const auto& linear : {kRotated, kMirrored, kSheared, kStretched}) {
         for (const double scale : {1.0, 1e6, 1e-6, 1e10, 1e-10}) {
             placements.push_back(matrix(linear, {3.0, -5.0, 7.0}, scale));
         }
     }
-    const Scene scene = triangleScene(placements);
+    const gltf::Scene scene = triangleScene(placements);
     const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     std::vector<Query> queries;
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
-        for (const Float2 barycentrics : {Float2{0.0F, 0.0F}, Float2{0.25F, 0.5F}, Float2{0.01F, 0.98F}}) {
+        for (const gltf::Float2 barycentrics :
+             {gltf::Float2{0.0F, 0.0F}, gltf::Float2{0.25F, 0.5F}, gltf::Float2{0.01F, 0.98F}}) {
             queries.push_back({i, 0, barycentrics, {0.48F, -0.6F, -0.64F}, 0.0F});
             queries.push_back({i, 0, barycentrics, {-0.48F, 0.6F, 0.64F}, 0.0F});
         }
     }
     const std::vector<Values> values = ask(scene, queries);
     ASSERT_EQ(values.size(), queries.size());
-    const Double3 winding = cross(difference(toDouble3(kPositions[1]), toDouble3(kPositions[0])),
-                                  difference(toDouble3(kPositions[2]), toDouble3(kPositions[0])));
+    const base::Double3 winding =
+        base::cross(base::difference(base::toDouble3(kPositions[1]), base::toDouble3(kPositions[0])),
+                    base::difference(base::toDouble3(kPositions[2]), base::toDouble3(kPositions[0])));
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const Query& query = queries[i];
         const std::string where =
             "placement " + std::to_string(query.geometry) + ", query " + std::to_string(i);
         const auto& rows = data.instances[query.geometry].objectToWorld;
-        const Double3 front = transformNormal(rows, winding);
-        const double facing = -dot(front, toDouble3(query.direction));
+        const base::Double3 front = transformNormal(rows, winding);
+        const double facing = -base::dot(front, base::toDouble3(query.direction));
         ASSERT_GT(std::abs(facing), 1e-3) << where << ": rounding decides the side";
         EXPECT_EQ(values[i].frontFace, facing >= 0.0 ? 1.0F : 0.0F) << where;
         const double side = facing >= 0.0 ? 1.0 : -1.0;
@@ -149,23 +155,24 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
                             where);
         expectSameDirection(values[i].normal, transformNormal(rows, blend(kNormals, query.barycentrics)),
                             where);
-        const Double3 off = difference(toDouble3(values[i].position),
-                                       transformPoint(rows, blend(kPositions, query.barycentrics)));
-        EXPECT_LE(std::abs(dot(off, front)), double{values[i].clearance}) << where;
+        const base::Double3 off = base::difference(
+            base::toDouble3(values[i].position), transformPoint(rows, blend(kPositions, query.barycentrics)));
+        EXPECT_LE(std::abs(base::dot(off, front)), double{values[i].clearance}) << where;
         EXPECT_GT(values[i].clearance, 0.0F) << where;
     }
 }
 
 TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
-    const Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
+    const gltf::Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
     const std::vector<Values> values =
         ask(scene,
             {{.barycentrics = {0.0F, 0.0F}}, {.barycentrics = {1.0F, 0.0F}}, {.barycentrics = {0.0F, 1.0F}}});
     ASSERT_EQ(values.size(), 3U);
     for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_EQ(values[k].texCoord, kTexCoords[k]) << "vertex " << k;
-        EXPECT_EQ(values[k].color, (Float3{kColors[k][0], kColors[k][1], kColors[k][2]})) << "vertex " << k;
-        expectSameDirection(values[k].normal, directionOf(toDouble3(kNormals[k])),
+        EXPECT_EQ(values[k].color, (gltf::Float3{kColors[k][0], kColors[k][1], kColors[k][2]}))
+            << "vertex " << k;
+        expectSameDirection(values[k].normal, directionOf(base::toDouble3(kNormals[k])),
                             "vertex " + std::to_string(k));
     }
 }
@@ -173,7 +180,7 @@ TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
 // Along edges and inside, a value that is the same at all vertices stays the same, because the weights sum to
 // 1.
 TEST(HitValues, WeightsSumToOne) {
-    Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
+    gltf::Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
     scene.meshes[0].primitives[0].texCoords0.assign(3, {0.7F, 1234.5F});
     std::vector<Query> queries;
     for (int i = 0; i <= 32; ++i) {
@@ -197,14 +204,14 @@ bool hasFiniteGradients(const Values& values) {
 }
 
 TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
-    Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
+    gltf::Scene scene = triangleScene({scaling(1.0, 1.0, 1.0)});
     // The triangles are a point, a line with a repeated vertex, a line of three vertices, and one whose area
     // underflows a float.
-    Primitive& primitive = scene.meshes[0].primitives[0];
+    gltf::Primitive& primitive = scene.meshes[0].primitives[0];
     primitive.positions.push_back({0.55F, 0.25F, 0.2F});
     primitive.positions.push_back({0.1F, 0.2F, 0.3F});
-    for (const Float3 tiny :
-         {Float3{0.0F, 0.0F, 0.0F}, Float3{1e-25F, 0.0F, 0.0F}, Float3{0.0F, 1e-25F, 0.0F}}) {
+    for (const gltf::Float3 tiny : {gltf::Float3{0.0F, 0.0F, 0.0F}, gltf::Float3{1e-25F, 0.0F, 0.0F},
+                                    gltf::Float3{0.0F, 1e-25F, 0.0F}}) {
         primitive.positions.push_back(tiny);
     }
     primitive.normals.assign(8, {0.0F, 0.0F, 0.0F});
@@ -218,11 +225,13 @@ TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
     const std::vector<Values> values = ask(scene, queries);
     ASSERT_EQ(values.size(), 4U);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        for (const Float3& vector : {values[i].geometricNormal, values[i].normal}) {
-            EXPECT_NEAR(dot(toDouble3(vector), toDouble3(vector)), 1.0, 1e-6) << "triangle " << i;
+        for (const gltf::Float3& vector : {values[i].geometricNormal, values[i].normal}) {
+            EXPECT_NEAR(base::dot(base::toDouble3(vector), base::toDouble3(vector)), 1.0, 1e-6)
+                << "triangle " << i;
         }
         EXPECT_TRUE(std::isfinite(values[i].clearance) && hasFiniteGradients(values[i])) << "triangle " << i;
-        EXPECT_TRUE(std::isfinite(dot(toDouble3(values[i].position), {1, 1, 1}))) << "triangle " << i;
+        EXPECT_TRUE(std::isfinite(base::dot(base::toDouble3(values[i].position), {1, 1, 1})))
+            << "triangle " << i;
     }
     EXPECT_NEAR(values[0].normal[2], 0.64F, 1e-6F) << "without a side, it faces the viewer";
 }
@@ -230,7 +239,7 @@ TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
 // A ray that leaves a wall must still hit what is close to it.
 TEST(HitValues, NoLightLeaksThroughThinGaps) {
     for (const float gap : {1e-3F, 5e-5F}) {
-        Scene scene = emptyScene();
+        gltf::Scene scene = emptyScene();
         const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
         addInstance(scene, addMesh(scene, makeQuad(material, {-1, -1, 0.5F}, {2, 0, 0}, {0, 2, 0})));
         addInstance(scene, addMesh(scene, makeQuad(material, {-1, -1, 0.5F + gap}, {2, 0, 0}, {0, 2, 0})));

@@ -36,14 +36,15 @@ constexpr std::uint32_t kTilts = 4;
 constexpr const char* kProduct =
     "#include \"bsdf/sample.glsl\"\n#include \"hit/shade.glsl\"\n#include \"generated/cases.glsl\"\n";
 
-const Scene& packsScene() {
-    static const Scene kScene = [] {
-        const Result<const MaterialModel*> model = loadMaterialModel(std::vector{kPacks});
+const gltf::Scene& packsScene() {
+    static const gltf::Scene kScene = [] {
+        const Result<const materials::MaterialModel*> model =
+            materials::loadMaterialModel(std::vector{kPacks});
         EXPECT_TRUE(model) << toString(model.error());
-        ImportOptions import;
+        gltf::ImportOptions import;
         import.decodeImages = true;
         import.materialModel = *model;
-        Result<Scene> scene = importScene(kPacks + "/scene.gltf", import);
+        Result<gltf::Scene> scene = importScene(kPacks + "/scene.gltf", import);
         EXPECT_TRUE(scene) << toString(scene.error());
         return std::move(*scene);
     }();
@@ -51,10 +52,10 @@ const Scene& packsScene() {
 }
 
 // The same with three materials: flakes under a clearcoat, fibres, and triplanar textures.
-const Scene& libraryScene() {
-    static const Scene kScene = [] {
-        Scene scene = packsScene();
-        for (Node& node : scene.nodes) {
+const gltf::Scene& libraryScene() {
+    static const gltf::Scene kScene = [] {
+        gltf::Scene scene = packsScene();
+        for (gltf::Node& node : scene.nodes) {
             const bool kept =
                 node.mesh >= 0 &&
                 scene.meshes[static_cast<std::size_t>(node.mesh)].primitives[0].material % 2 == 0;
@@ -65,24 +66,24 @@ const Scene& libraryScene() {
     return kScene;
 }
 
-CompileSettings librarySettings() {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+compiler::CompileSettings librarySettings() {
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.strategies = package::kStrategyUber;
     settings.effects = {};
     return settings;
 }
 
 std::string textAt(const std::string& path) {
-    const Result<Bytes> bytes = readFile(path);
+    const Result<base::Bytes> bytes = base::readFile(path);
     EXPECT_TRUE(bytes) << toString(bytes.error());
     return bytes ? std::string(bytes->begin(), bytes->end()) : std::string();
 }
 
 // The functions of each case. If they are inlined, compiling takes several times as long.
-std::vector<std::string> functionsOfCases(const Plan& plan) {
+std::vector<std::string> functionsOfCases(const compiler::Plan& plan) {
     std::vector<std::string> names;
-    for (const Case& shaderCase : plan.cases) {
+    for (const compiler::Case& shaderCase : plan.cases) {
         names.push_back("shade" + shaderCase.name);
         for (const char* const function :
              {"surface", "evaluate", "sample", "density", "radiance", "mirror"}) {
@@ -97,17 +98,17 @@ class Library : public ::testing::Test {
 protected:
     void SetUp() override {
         ASSERT_TRUE(loaded_.ok());
-        CompileSettings settings = librarySettings();
+        compiler::CompileSettings settings = librarySettings();
         settings.emitLibrary = true;
         settings.emitLinkable = true;
-        Result<std::vector<PackageFile>> files =
-            makeLibrary(SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings, &sharedModules());
+        Result<std::vector<compiler::PackageFile>> files = makeLibrary(
+            gltf::SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings, &sharedModules());
         ASSERT_TRUE(files) << toString(files.error());
         files_ = std::move(*files);
     }
 
     std::string fileText(std::string_view name) const {
-        for (const PackageFile& file : files_) {
+        for (const compiler::PackageFile& file : files_) {
             if (file.name == name) {
                 return {file.bytes.begin(), file.bytes.end()};
             }
@@ -118,7 +119,7 @@ protected:
 
     std::uint32_t hits() const {
         std::size_t geometries = 0;
-        for (const Node& node : libraryScene().nodes) {
+        for (const gltf::Node& node : libraryScene().nodes) {
             geometries += node.mesh < 0
                               ? 0
                               : libraryScene().meshes[static_cast<std::size_t>(node.mesh)].primitives.size();
@@ -127,10 +128,10 @@ protected:
     }
 
     // The kernel's source with a text in the place of the library.
-    ShaderSource kernel(const std::string& library, bool product) const {
-        ShaderSource source{"library_values.comp", ShaderStage::Compute, {}, {}};
-        Result<SourceSet> sources =
-            makeSourceSet(SceneList({&libraryScene(), 1}), loaded_.compiled().plan, librarySettings());
+    compiler::ShaderSource kernel(const std::string& library, bool product) const {
+        compiler::ShaderSource source{"library_values.comp", compiler::ShaderStage::Compute, {}, {}};
+        Result<compiler::SourceSet> sources =
+            makeSourceSet(gltf::SceneList({&libraryScene(), 1}), loaded_.compiled().plan, librarySettings());
         EXPECT_TRUE(sources) << toString(sources.error());
         sources->add("library.glsl", library);
         sources->add("library_host.glsl", textAt(kShaders + "library_host.glsl"));
@@ -138,7 +139,8 @@ protected:
         text.insert(text.find('\n') + 1,
                     fmt::format("#define PRODUCT {}\nconst uint kTestMaterials = {}u;\n{}", product ? 1 : 0,
                                 libraryScene().materials.size(), product ? kProduct : ""));
-        const Result<GlslUnit> glsl = flatten(source.name, text, sources->lookup(), FlattenSide::Glsl);
+        const Result<compiler::GlslUnit> glsl =
+            flatten(source.name, text, sources->lookup(), compiler::FlattenSide::Glsl);
         EXPECT_TRUE(glsl) << toString(glsl.error());
         source.glsl = glsl ? glsl->withPlaces() : "";
         source.functionsApart = functionsOfCases(loaded_.compiled().plan);
@@ -172,7 +174,7 @@ protected:
     }
 
     LoadedScene loaded_{libraryScene(), librarySettings()};
-    std::vector<PackageFile> files_;
+    std::vector<compiler::PackageFile> files_;
     gpu::vec3 sky_[3] = {{0.3F, 0.5F, 0.9F}, {0.8F, 0.7F, 0.6F}, {0.1F, 0.2F, 0.1F}};
 };
 
@@ -236,7 +238,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
 
     // The declarations of the library, with bodies that are not used.
     std::string declared = library.substr(0, library.find("\n// Reads the surface that a ray has hit"));
-    LinkNames names;
+    compiler::LinkNames names;
     names.keepsEntryPoint = true;
     const std::pair<const char*, const char*> functions[] = {
         {"GlintSurface glintSurface", "const GlintHit hit"},
@@ -256,7 +258,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
           "Materials", "Texture", "TextureFilter", "LightCount", "Light", "Random", "Attribute", "Time"}) {
         names.exported.push_back(std::string("glintHost") + name);
     }
-    ShaderSource source = kernel(declared, false);
+    compiler::ShaderSource source = kernel(declared, false);
     // Every function that is exported is called.
     const std::string calls =
         "    store(glintHostNormal(0u, 0u) + glintHostTangent(0u, 0u).xyz + glintHostColor(0u, 0u).xyz);\n"
@@ -283,7 +285,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
     ASSERT_TRUE(tools.Assemble(kSky, &sky));
     std::vector<std::uint32_t> linked;
     ASSERT_EQ(spvtools::Link(context, {*program, sky, module}, &linked), SPV_SUCCESS) << message;
-    const Status valid = validateSpirv(linked, "linked");
+    const Status valid = compiler::validateSpirv(linked, "linked");
     ASSERT_TRUE(valid) << toString(valid.error());
 
     const std::vector<float> values = valuesOf(linked, kValues);
@@ -295,7 +297,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
 
 #endif
 
-std::string textOf(const PackageFile& file) {
+std::string textOf(const compiler::PackageFile& file) {
     return {file.bytes.begin(), file.bytes.end()};
 }
 
@@ -316,14 +318,14 @@ std::string hostBodies(const std::string& host) {
 
 // A shader of a user's own has nothing of Glint's but the library.
 TEST(LibraryFiles, CompileInAShaderOfAUser) {
-    const Result<Scene> scene = importScene(GLINT_GALLERY_SCENE);
+    const Result<gltf::Scene> scene = gltf::importScene(GLINT_GALLERY_SCENE);
     ASSERT_TRUE(scene) << toString(scene.error());
-    const SceneList list({&*scene, 1});
-    CompileSettings settings = librarySettings();
-    settings.plan.merge = MergePolicy::Family;
+    const gltf::SceneList list({&*scene, 1});
+    compiler::CompileSettings settings = librarySettings();
+    settings.plan.merge = compiler::MergePolicy::Family;
     settings.emitLibrary = true;
-    const Plan plan = makePlan(list.materials(), list.primitives(), settings.plan);
-    const Result<std::vector<PackageFile>> files = makeLibrary(list, plan, settings);
+    const compiler::Plan plan = makePlan(list.materials(), list.primitives(), settings.plan);
+    const Result<std::vector<compiler::PackageFile>> files = makeLibrary(list, plan, settings);
     ASSERT_TRUE(files) << toString(files.error());
     ASSERT_EQ(files->size(), 2 + plan.cases.size());
     EXPECT_GE(plan.cases.size(), 10U);
@@ -345,8 +347,8 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
         for (const char* const foreign : {"void main", "binding", "push_constant", "#include", "#line"}) {
             EXPECT_EQ(text.find(foreign), std::string::npos) << (*files)[i].name << ": " << foreign;
         }
-        const Result<std::vector<std::uint32_t>> words = compileShader(
-            {(*files)[i].name, ShaderStage::Compute,
+        const Result<std::vector<std::uint32_t>> words = compiler::compileShader(
+            {(*files)[i].name, compiler::ShaderStage::Compute,
              "#version 460\n" + host + text + hostBodies(host) + user + (i <= 2 ? calls : "") + "}\n",
              functionsOfCases(plan)},
             {});
@@ -356,9 +358,9 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
 
 TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {
     RenderSetup setup = defaultSetup(packsScene(), 75, 30);
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.merge = MergePolicy::All;
+    settings.plan.merge = compiler::MergePolicy::All;
     const LoadedScene own(packsScene(), settings);
     settings.host = GLINT_SOURCE_DIR "/tests/render/host";
     const LoadedScene other(packsScene(), settings);
@@ -369,7 +371,7 @@ TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {
     expectNoValidationMessages();
     // It is not the same shader.
     for (std::size_t i = 0; i < own.compiled().modules.size(); ++i) {
-        const CompiledModule& module = own.compiled().modules[i];
+        const compiler::CompiledModule& module = own.compiled().modules[i];
         if (module.key.role == package::ModuleRole::UberShade) {
             EXPECT_NE(module.spirv, other.compiled().modules[i].spirv);
         }

@@ -27,9 +27,9 @@ INSTANTIATE_TEST_SUITE_P(Strategies, Lights,
 // Tests a diffuse surface. f0 = 0 by a metallic factor of 1 and black, plus emission, would hide the light,
 // so this uses the dielectric BRDF at normal incidence: (1 - F) albedo / π + F D V with F = 0.04.
 TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material material;
+    materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
     addInstance(scene,
@@ -53,11 +53,11 @@ float wallRadiance(float irradiance) {
     return irradiance * (0.96F * 0.5F / pi + 0.04F / pi * 0.25F);
 }
 
-float litWall(const Light& light,
-              const std::function<LinearImage(const Scene&, const RenderSetup&)>& render) {
-    Scene scene = emptyScene();
+float litWall(const gltf::Light& light,
+              const std::function<LinearImage(const gltf::Scene&, const RenderSetup&)>& render) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material material;
+    materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
     addInstance(scene,
@@ -71,9 +71,11 @@ float litWall(const Light& light,
 }
 
 TEST_P(Lights, PunctualLightsFollowTheirExtension) {
-    const auto toImage = [&](const Scene& scene, const RenderSetup& setup) { return render(scene, setup); };
-    Light point;
-    point.type = LightType::Point;
+    const auto toImage = [&](const gltf::Scene& scene, const RenderSetup& setup) {
+        return render(scene, setup);
+    };
+    gltf::Light point;
+    point.type = gltf::LightType::Point;
     point.intensity = 8.0F;
     point.position = {0.0F, 0.0F, 1.0F};  // 2 m from the wall
     EXPECT_NEAR(litWall(point, toImage), wallRadiance(8.0F / 4.0F), 1e-5F) << "inverse square";
@@ -83,9 +85,9 @@ TEST_P(Lights, PunctualLightsFollowTheirExtension) {
     point.range = 2.0F;
     EXPECT_NEAR(litWall(point, toImage), 0.0F, 1e-6F) << "at its range";
 
-    Light spot = point;
+    gltf::Light spot = point;
     spot.range = 0.0F;
-    spot.type = LightType::Spot;
+    spot.type = gltf::LightType::Spot;
     spot.direction = {0.0F, 0.0F, -1.0F};
     spot.innerConeAngle = 0.2F;
     spot.outerConeAngle = 0.6F;
@@ -99,17 +101,17 @@ TEST_P(Lights, PunctualLightsFollowTheirExtension) {
 
 // Extreme lights stay finite, and are dark if they have no direction or do not reach the surface.
 TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
-    const auto toImage = [&](const Scene& scene, const RenderSetup& setup) {
+    const auto toImage = [&](const gltf::Scene& scene, const RenderSetup& setup) {
         FrameCounters counters;
-        LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+        LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
         EXPECT_EQ(counters.nonFinite, 0U);
         for (const Pixel& pixel : image.pixels) {
             EXPECT_TRUE(std::isfinite(pixel[0] + pixel[1] + pixel[2]));
         }
         return image;
     };
-    Light point;
-    point.type = LightType::Point;
+    gltf::Light point;
+    point.type = gltf::LightType::Point;
     point.intensity = 8.0F;
     point.position = {0.0F, 0.0F, -1.0F};
     EXPECT_EQ(litWall(point, toImage), 0.0F) << "at the shaded point, on no side of it";
@@ -126,8 +128,8 @@ TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
     point.position = {0.0F, 0.0F, 1e20F};
     EXPECT_NEAR(litWall(point, toImage), 0.0F, 1e-30F) << "farther than a square can tell";
 
-    Light spot = point;
-    spot.type = LightType::Spot;
+    gltf::Light spot = point;
+    spot.type = gltf::LightType::Spot;
     spot.position = {0.0F, 0.0F, 1.0F};
     spot.direction = {0.0F, 0.0F, -1.0F};
     spot.innerConeAngle = spot.outerConeAngle = 0.3F;
@@ -140,7 +142,7 @@ TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
     spot.outerConeAngle = std::numbers::pi_v<float> / 2.0F;
     EXPECT_NEAR(litWall(spot, toImage), 0.0F, 1e-6F) << "wide spot without a direction";
 
-    Light sun;
+    gltf::Light sun;
     sun.intensity = 3.0F;
     sun.direction = {0.0F, 0.0F, 0.0F};
     EXPECT_EQ(litWall(sun, toImage), 0.0F) << "sun without a direction";
@@ -149,9 +151,9 @@ TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
 // A hit takes one random light. Over many samples it shows the sum of all, which a primary surface shows at
 // once.
 TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material white;
+    materials::Material white;
     white["metallicFactor"] = 0.0F;
     const int wall = addMaterial(scene, white);
     // The left half of the view shows the wall behind the camera in a mirror. The right half shows the same
@@ -162,8 +164,8 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
     addInstance(scene, addMesh(scene, makeQuad(wall, {0.001F, -9, -5}, {9, 0, 0}, {0, 18, 0})));
     // Two lights are in front of each wall, mirrored in the same way. Their range ends in front of the other
     // wall.
-    Light light;
-    light.type = LightType::Point;
+    gltf::Light light;
+    light.type = gltf::LightType::Point;
     light.range = 5.0F;
     for (const float side : {-1.0F, 1.0F}) {
         light.intensity = 8.0F;
@@ -194,16 +196,16 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
 
 // A wall is lit by the sun with a plate in between. The plate's shadow lies on the wall, in the picture and
 // in a mirror.
-Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
-    Scene scene = emptyScene();
+gltf::Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material white;
+    materials::Material white;
     white["metallicFactor"] = 0.0F;
     const int wall = addMaterial(scene, white);
-    Material plate = unlitMaterial(kRed);
+    materials::Material plate = unlitMaterial(kRed);
     plate.doubleSided = true;
     if (plateMaterialKind == 1) {
-        plate.alphaMode = AlphaMode::Mask;
+        plate.alphaMode = materials::AlphaMode::Mask;
         plate["baseColorFactor"][3] = 0.0F;  // cut out entirely
     }
     const int plateMaterial = addMaterial(scene, plate);
@@ -223,7 +225,7 @@ Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
 }
 
 TEST_P(Lights, AShadowFallsOnAWall) {
-    const Scene scene = shadowScene(false, 0);
+    const gltf::Scene scene = shadowScene(false, 0);
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LinearImage image = render(scene, setup);
@@ -236,7 +238,7 @@ TEST_P(Lights, AShadowFallsOnAWall) {
 }
 
 TEST_P(Lights, AReflectedSurfaceHasItsShadow) {
-    const Scene scene = shadowScene(true, 0);
+    const gltf::Scene scene = shadowScene(true, 0);
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LinearImage image = render(scene, setup);
@@ -249,11 +251,11 @@ TEST_P(Lights, AReflectedSurfaceHasItsShadow) {
 }
 
 TEST_P(Lights, AlphaIsTestedOrForcedOpaqueAsThePackageSays) {
-    const Scene scene = shadowScene(true, 1);
+    const gltf::Scene scene = shadowScene(true, 1);
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    const LinearImage opaque = render(scene, setup, AlphaPolicy::Opaque);
-    const LinearImage tested = render(scene, setup, AlphaPolicy::Tested);
+    const LinearImage opaque = render(scene, setup, package::AlphaPolicy::Opaque);
+    const LinearImage tested = render(scene, setup, package::AlphaPolicy::Tested);
     ASSERT_FALSE(opaque.pixels.empty() || tested.pixels.empty());
     expectColor(at(opaque, 16, 16), {0, 0, 0}, 1e-6F, "opaque: the cut-out plate throws a shadow");
     EXPECT_GT(at(tested, 16, 16)[1], 0.1F) << "tested: it does not";

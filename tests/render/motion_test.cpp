@@ -25,7 +25,8 @@ constexpr std::uint32_t kHeight = 36;
 
 // An uploaded scene that moves.
 struct Moving {
-    explicit Moving(Scene posed, bool moves = true) : scene(std::move(posed)), package(scene, PlanOptions{}) {
+    explicit Moving(gltf::Scene posed, bool moves = true)
+        : scene(std::move(posed)), package(scene, compiler::PlanOptions{}) {
         data = scene_view::makeSceneView(scene);
         data.moves = moves;
         if (!package.ok()) {
@@ -73,13 +74,13 @@ struct Moving {
         return image ? std::move(*image) : LinearImage{};
     }
 
-    Scene scene;
+    gltf::Scene scene;
     LoadedScene package;
     scene_view::SceneViewData data;
     std::unique_ptr<GpuScene> gpuScene;
 };
 
-LinearImage renderStill(const Scene& scene) {
+LinearImage renderStill(const gltf::Scene& scene) {
     const Moving still(scene, false);
     return still.ok() ? still.render() : LinearImage{};
 }
@@ -113,7 +114,7 @@ TEST(Motion, NodesCamerasAndLightsMove) {
     const LinearImage first = moving.render();
     expectSameImage(first, renderStill(moving.scene), "as uploaded");
     moving.scene.nodes[1].world = placed(0, 0.5, -2.5, 0.6);
-    Matrix4 mirrored = placed(1.2, -0.2, -4);
+    gltf::Matrix4 mirrored = placed(1.2, -0.2, -4);
     mirrored[0] = -2.0;
     moving.scene.nodes[2].world = mirrored;
     moving.scene.lights[0].direction = {0.6F, 0.0F, -0.8F};
@@ -145,7 +146,7 @@ TEST(Motion, TheTopLevelFollowsItsRule) {
 // and an update keeps the order.
 TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
     constexpr std::uint32_t kCount = 64;
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
     const int mesh = addMesh(scene, makeQuad(material, {-0.4F, -0.4F, 0}, {0.8F, 0, 0}, {0, 0.8F, 0}));
     for (std::uint32_t i = 0; i < kCount; ++i) {
@@ -166,7 +167,7 @@ TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
     // Returns the cost of the tree as a multiple of the least cost.
     const auto cost = [&] {
         std::vector<LeafBox> leaves;
-        for (const Node& node : moving.scene.nodes) {
+        for (const gltf::Node& node : moving.scene.nodes) {
             LeafBox& leaf = leaves.emplace_back();
             for (const double corner : {-0.4, 0.4}) {
                 leaf.extend(std::array<float, 3>{static_cast<float>(node.world[12] + corner),
@@ -203,7 +204,7 @@ TEST(Motion, FlattenedInstancesHideAndComeBack) {
     moving.update();
     expectSameImage(moving.render(), whole, "back again");
     // An instance that is flat at upload appears later.
-    Scene flat = moving.scene;
+    gltf::Scene flat = moving.scene;
     flat.nodes[2].world = scaling(0.0, 0.0, 0.0);
     Moving later(flat);
     ASSERT_TRUE(later.ok());
@@ -247,8 +248,8 @@ TEST(Motion, RefitsSeeWhatRebuildsSee) {
 // the joint stretches and mirrors.
 TEST(Motion, OneJointIsATransform) {
     for (const double stretch : {1.5, -1.5}) {
-        Scene scene = skinnedScene(0.0);
-        Primitive& strip = scene.meshes[1].primitives[0];
+        gltf::Scene scene = skinnedScene(0.0);
+        gltf::Primitive& strip = scene.meshes[1].primitives[0];
         strip.influences = {1, std::vector<std::uint16_t>(strip.positions.size(), 0),
                             std::vector<float>(strip.positions.size(), 1.0F)};
         for (std::size_t i = 0; i < strip.normals.size(); ++i) {
@@ -260,7 +261,7 @@ TEST(Motion, OneJointIsATransform) {
         scene.materials.back().give("KHR_materials_anisotropy");
         scene.materials.back()["anisotropyStrength"] = 0.8F;
         scene.materials.back()["anisotropyRotation"] = 0.0F;
-        Matrix4 place = placed(0.2, -0.9, -2.5, 0.4);
+        gltf::Matrix4 place = placed(0.2, -0.9, -2.5, 0.4);
         for (std::size_t row = 0; row < 3; ++row) {
             place[row] *= stretch;
         }
@@ -268,7 +269,7 @@ TEST(Motion, OneJointIsATransform) {
         scene.nodes[2].world = place;
         // The mesh's own transform decides which side is the front.
         scene.nodes[1].world = place;
-        Scene rigid = scene;
+        gltf::Scene rigid = scene;
         rigid.nodes[1].skin = -1;
         rigid.meshes[1].primitives[0].influences = {};
         expectAlike(renderStill(scene), renderStill(rigid), "stretched by " + std::to_string(stretch));
@@ -289,18 +290,18 @@ TEST(Motion, TargetsMorphMeshes) {
 
 // Differences of normals turn them as if the mesh had been made with other normals.
 TEST(Motion, TargetsTurnNormals) {
-    Scene scene = morphedScene({1.0, 0.0});
-    Primitive& strip = scene.meshes[1].primitives[0];
-    Scene baked = scene;
+    gltf::Scene scene = morphedScene({1.0, 0.0});
+    gltf::Primitive& strip = scene.meshes[1].primitives[0];
+    gltf::Scene baked = scene;
     strip.targets[0] = {};
     strip.targets[0].normals.assign(strip.positions.size(), {1.0F, 0.0F, 0.0F});
-    Primitive& turned = baked.meshes[1].primitives[0];
+    gltf::Primitive& turned = baked.meshes[1].primitives[0];
     turned.targets.clear();
     const float half = static_cast<float>(std::numbers::sqrt2 / 2.0);
     turned.normals.assign(turned.positions.size(), {half, 0.0F, half});
     baked.nodes[1].weights.clear();
     expectAlike(renderStill(scene), renderStill(baked), "turned");
-    Scene straight = scene;
+    gltf::Scene straight = scene;
     straight.nodes[1].weights = {0.0, 0.0};
     expectUnlike(renderStill(scene), renderStill(straight), "turned");
 }
@@ -323,22 +324,23 @@ TEST(Motion, WornStructuresAreBuiltAnew) {
 }
 
 // The material of node 1 gets a coat and another colour within a second.
-Scene paintedScene() {
-    Scene scene = rigidScene();
+gltf::Scene paintedScene() {
+    gltf::Scene scene = rigidScene();
     const int painted = scene.meshes[1].primitives[0].material;
-    Material& material = scene.materials[static_cast<std::size_t>(painted)];
+    materials::Material& material = scene.materials[static_cast<std::size_t>(painted)];
     material.give("KHR_materials_clearcoat");
     material["clearcoatFactor"] = 0.0F;
     material["clearcoatRoughnessFactor"] = 0.1F;
     material["clearcoatNormalScale"] = 1.0F;
-    AnimatedMaterial& animated = scene.animatedMaterials.emplace_back();
+    gltf::AnimatedMaterial& animated = scene.animatedMaterials.emplace_back();
     animated.material = painted;
     animated.rest = material;
-    Animation& animation = scene.animations.emplace_back();
+    gltf::Animation& animation = scene.animations.emplace_back();
     const auto drive = [&](const char* name, std::size_t width, std::vector<float> values) {
-        animation.channels.push_back({0, AnimationPath::Material, static_cast<int>(animation.samplers.size()),
-                                      *findMaterialProperty(builtinMaterialModel(), name)});
-        animation.samplers.push_back({Interpolation::Linear, {0.0F, 1.0F}, width, std::move(values)});
+        animation.channels.push_back({0, gltf::AnimationPath::Material,
+                                      static_cast<int>(animation.samplers.size()),
+                                      *gltf::findMaterialProperty(materials::builtinMaterialModel(), name)});
+        animation.samplers.push_back({gltf::Interpolation::Linear, {0.0F, 1.0F}, width, std::move(values)});
     };
     drive("extensions/KHR_materials_clearcoat/clearcoatFactor", 1, {0, 1});
     drive("pbrMetallicRoughness/baseColorFactor", 4, {0, 0, 0, 1, 0.9F, 0.1F, 0.4F, 1});
@@ -348,7 +350,7 @@ Scene paintedScene() {
 
 // Returns the scene with the values of a time in place of the file's. Its key then has only the features that
 // these values need.
-Scene plainScene(Scene scene, double time) {
+gltf::Scene plainScene(gltf::Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
     const int painted = scene.animatedMaterials[0].material;
     scene.materials[static_cast<std::size_t>(painted)] = scene_view::poseAt(scene, kFirst, time).materials[0];
@@ -358,13 +360,13 @@ Scene plainScene(Scene scene, double time) {
 }
 
 TEST(Motion, MaterialsChange) {
-    const Scene scene = paintedScene();
+    const gltf::Scene scene = paintedScene();
     Moving moving(scene);
     ASSERT_TRUE(moving.ok());
     const std::size_t painted = static_cast<std::size_t>(scene.animatedMaterials[0].material);
     std::vector<LinearImage> images;
     for (const double time : {0.0, 1.0}) {
-        const Scene plain = plainScene(scene, time);
+        const gltf::Scene plain = plainScene(scene, time);
         moving.scene.materials[painted] = plain.materials[painted];
         EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Kept);
         images.push_back(moving.render());
@@ -372,7 +374,7 @@ TEST(Motion, MaterialsChange) {
     }
     expectUnlike(images[1], images[0], "painted");
     // A scene that does not move, but was uploaded with the values of a time, shows the same picture.
-    Scene posed = scene;
+    gltf::Scene posed = scene;
     posed.materials[painted] = plainScene(scene, 1.0).materials[painted];
     expectSameImage(renderStill(posed), images[1], "uploaded as painted");
     MotionView motion = moving.data.motion();
@@ -382,7 +384,7 @@ TEST(Motion, MaterialsChange) {
 }
 
 TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
-    Scene scene = rigidScene();
+    gltf::Scene scene = rigidScene();
     Moving moving(scene);
     ASSERT_TRUE(moving.ok());
     const LinearImage whole = moving.render();
@@ -391,7 +393,7 @@ TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
     moving.update();
     const LinearImage hidden = moving.render();
     expectUnlike(hidden, whole, "hidden");
-    Scene without = scene;
+    gltf::Scene without = scene;
     without.nodes[1].mesh = -1;
     without.lights[0].intensity = 0.0F;
     expectSameImage(hidden, renderStill(without), "hidden");
@@ -407,24 +409,24 @@ TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
 
 // Placements of one node are drawn like nodes at the same places, with fewer calls. One of them is mirrored.
 TEST(Motion, InstancesAreDrawnAsNodesAre) {
-    Scene nodes = rigidScene();
-    Primitive second = nodes.meshes[1].primitives[0];
+    gltf::Scene nodes = rigidScene();
+    gltf::Primitive second = nodes.meshes[1].primitives[0];
     second.pointer = "/meshes/1/primitives/1";
     second.material = nodes.meshes[0].primitives[0].material;
-    for (Float3& position : second.positions) {
+    for (gltf::Float3& position : second.positions) {
         position[2] += 0.3F;
         position[0] += 0.4F;
     }
     nodes.meshes[1].primitives.push_back(second);
-    Scene instanced = nodes;
-    Instancing& instancing = instanced.instancings.emplace_back();
+    gltf::Scene instanced = nodes;
+    gltf::Instancing& instancing = instanced.instancings.emplace_back();
     instancing.count = 4;
     instancing.translations = {{0, 0, 0}, {0.6F, 0.9F, -0.5F}, {1.2F, 1.5F, -1}, {1.8F, 0.2F, -1.5F}};
     instancing.scales = {{1, 1, 1}, {0.5F, 0.5F, 0.5F}, {0.5F, 1, 1}, {-1, 1, 1}};
     instanced.nodes[1].instancing = 0;
-    const Node node = nodes.nodes[1];
+    const gltf::Node node = nodes.nodes[1];
     for (std::size_t i = 0; i < instancing.count; ++i) {
-        Node copy = node;
+        gltf::Node copy = node;
         copy.world = gltf::multiply(node.world, gltf::instanceTransform(instancing, i));
         if (i == 0) {
             nodes.nodes[1] = copy;
@@ -505,9 +507,9 @@ TEST(Motion, RefusesWhatIsNotItsScene) {
     joints[1][3] = 0.0F;
     EXPECT_EQ(errorId(moving.gpuScene->updateAndWait(motion)), "done");
     // A package of the scene without its skin lacks the pass.
-    Scene rigid = skinnedScene(0.0);
+    gltf::Scene rigid = skinnedScene(0.0);
     rigid.nodes[1].skin = -1;
-    const LoadedScene other(rigid, PlanOptions{});
+    const LoadedScene other(rigid, compiler::PlanOptions{});
     ASSERT_TRUE(other.ok());
     const Result<std::unique_ptr<GpuScene>> uploaded =
         GpuScene::upload(sharedContext(), other.package(), moving.data.view());

@@ -13,8 +13,8 @@
 namespace glint::testing {
 namespace {
 
-Material coloured(Float3 color) {
-    Material material;
+materials::Material coloured(gltf::Float3 color) {
+    materials::Material material;
     material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
     material["metallicFactor"] = 0.0F;
     material["roughnessFactor"] = 0.5F;
@@ -22,7 +22,7 @@ Material coloured(Float3 color) {
 }
 
 // Adds a mirror below, whose reflections show the content of the TLAS.
-void addRoom(Scene& scene) {
+void addRoom(gltf::Scene& scene) {
     addCamera(scene);
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 3.0F);
     const int mirror = addMaterial(scene, mirrorMaterial());
@@ -31,8 +31,8 @@ void addRoom(Scene& scene) {
 
 // Returns a strip of 1 x 2 m with `segments` rows above (0, 0, 0). All its vertices have normals and
 // tangents.
-Primitive makeStrip(int material, std::uint32_t segments) {
-    Primitive strip;
+gltf::Primitive makeStrip(int material, std::uint32_t segments) {
+    gltf::Primitive strip;
     strip.pointer = "/meshes/1/primitives/0";
     strip.material = material;
     for (std::uint32_t row = 0; row <= segments; ++row) {
@@ -52,14 +52,14 @@ Primitive makeStrip(int material, std::uint32_t segments) {
 
 }  // namespace
 
-Matrix4 placed(double x, double y, double z, double angle) {
+gltf::Matrix4 placed(double x, double y, double z, double angle) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     return {c, s, 0, 0, -s, c, 0, 0, 0, 0, 1, 0, x, y, z, 1};
 }
 
-Scene rigidScene() {
-    Scene scene = emptyScene();
+gltf::Scene rigidScene() {
+    gltf::Scene scene = emptyScene();
     addRoom(scene);
     const int red = addMaterial(scene, coloured({0.9F, 0.1F, 0.1F}));
     const int quad = addMesh(scene, makeQuad(red, {-0.5F, -0.5F, 0}, {1, 0, 0}, {0, 1, 0}));
@@ -68,24 +68,24 @@ Scene rigidScene() {
     return scene;
 }
 
-Scene skinnedScene(double angle) {
-    Scene scene = emptyScene();
+gltf::Scene skinnedScene(double angle) {
+    gltf::Scene scene = emptyScene();
     addRoom(scene);
-    Primitive strip = makeStrip(addMaterial(scene, coloured({0.1F, 0.6F, 0.9F})), 16);
+    gltf::Primitive strip = makeStrip(addMaterial(scene, coloured({0.1F, 0.6F, 0.9F})), 16);
     strip.influences.count = 2;
-    for (const Float3& position : strip.positions) {
+    for (const gltf::Float3& position : strip.positions) {
         const float up = position[1] / 2.0F;
         strip.influences.joints.insert(strip.influences.joints.end(), {0, 1});
         strip.influences.weights.insert(strip.influences.weights.end(), {1.0F - up, up});
     }
     // The node's own transform has no effect.
     addInstance(scene, addMesh(scene, std::move(strip)), placed(40, 40, 40));
-    Node joint;
+    gltf::Node joint;
     joint.world = placed(0, -0.8, -2.5);
     scene.nodes.push_back(joint);
     joint.world = placed(0, 0.2, -2.5, angle);
     scene.nodes.push_back(joint);
-    Skin skin;
+    gltf::Skin skin;
     skin.joints = {2, 3};
     skin.inverseBinds = {placed(0, 0, 0), placed(0, -1, 0)};
     scene.skins.push_back(skin);
@@ -93,12 +93,12 @@ Scene skinnedScene(double angle) {
     return scene;
 }
 
-Scene bakedScene(const Scene& scene) {
-    Scene baked = scene;
-    Node& node = baked.nodes[1];
-    Primitive& primitive = baked.meshes[static_cast<std::size_t>(node.mesh)].primitives[0];
-    const std::vector<Matrix4> joints =
-        node.skin >= 0 ? scene_view::jointMatrices(scene, scene.skins[0]) : std::vector<Matrix4>();
+gltf::Scene bakedScene(const gltf::Scene& scene) {
+    gltf::Scene baked = scene;
+    gltf::Node& node = baked.nodes[1];
+    gltf::Primitive& primitive = baked.meshes[static_cast<std::size_t>(node.mesh)].primitives[0];
+    const std::vector<gltf::Matrix4> joints =
+        node.skin >= 0 ? scene_view::jointMatrices(scene, scene.skins[0]) : std::vector<gltf::Matrix4>();
     const auto positions = scene_view::deformedPositions(primitive, node.weights, joints);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         primitive.positions[i] = {static_cast<float>(positions[i][0]), static_cast<float>(positions[i][1]),
@@ -112,12 +112,12 @@ Scene bakedScene(const Scene& scene) {
     return baked;
 }
 
-Scene morphedScene(std::vector<double> weights) {
-    Scene scene = emptyScene();
+gltf::Scene morphedScene(std::vector<double> weights) {
+    gltf::Scene scene = emptyScene();
     addRoom(scene);
-    Primitive strip = makeStrip(addMaterial(scene, coloured({0.9F, 0.7F, 0.1F})), 8);
+    gltf::Primitive strip = makeStrip(addMaterial(scene, coloured({0.9F, 0.7F, 0.1F})), 8);
     strip.targets.resize(2);
-    for (const Float3& position : strip.positions) {
+    for (const gltf::Float3& position : strip.positions) {
         strip.targets[0].positions.push_back({0.5F * position[1] * position[1], 0, 0});
         strip.targets[1].positions.push_back({0, -0.25F * position[1], 0.2F});
     }

@@ -9,19 +9,19 @@
 namespace glint::testing {
 
 // Returns a translation, turned about Z by `angle` radians.
-Matrix4 placed(double x, double y, double z, double angle = 0.0);
+gltf::Matrix4 placed(double x, double y, double z, double angle = 0.0);
 
 // Returns two squares: the nodes 1 and 2.
-Scene rigidScene();
+gltf::Scene rigidScene();
 
 // Returns a strip, node 1, that follows two joints at its ends, nodes 2 and 3. The second joint is turned by
 // `angle` radians.
-Scene skinnedScene(double angle);
+gltf::Scene skinnedScene(double angle);
 
 // Returns a strip, node 1, with two morph targets.
-Scene morphedScene(std::vector<double> weights);
+gltf::Scene morphedScene(std::vector<double> weights);
 
 // Returns the same scene with vertices of node 1 that the host has moved.
-Scene bakedScene(const Scene& scene);
+gltf::Scene bakedScene(const gltf::Scene& scene);
 
 }  // namespace glint::testing

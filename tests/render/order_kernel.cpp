@@ -43,11 +43,11 @@ void main() {
 )";
 
 // Compiles the modules of a plan with that many cases, whatever they shade.
-Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
-                                                    package::HitRecordFormat hitRecord) {
-    Plan plan;
+Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t caseCount,
+                                                              package::HitRecordFormat hitRecord) {
+    compiler::Plan plan;
     for (std::uint32_t i = 0; i < caseCount; ++i) {
-        Case shaderCase;
+        compiler::Case shaderCase;
         shaderCase.shaderId = static_cast<int>(i);
         shaderCase.keys = {static_cast<int>(i)};
         shaderCase.name = fmt::format("Case{}", i);
@@ -55,20 +55,20 @@ Result<std::vector<CompiledModule>> compileOrdering(std::uint32_t caseCount,
     }
     // Without an effect that sends rays nothing is ordered.
     plan.effects.effects.add({package::kEffectReflection, package::EffectKind::Rays});
-    const Scene scene;
-    const SceneList scenes({&scene, 1});
-    CompileSettings settings;
+    const gltf::Scene scene;
+    const gltf::SceneList scenes({&scene, 1});
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategySortedUber;
     settings.hitRecord = hitRecord;
-    const Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
+    const Result<compiler::SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources.error();
     }
-    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings);
+    Result<std::vector<compiler::ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings);
     if (!modules) {
         return modules.error();
     }
-    std::erase_if(*modules, [](const ModuleSource& module) {
+    std::erase_if(*modules, [](const compiler::ModuleSource& module) {
         return std::ranges::find(kRoles, module.key.role) == std::end(kRoles);
     });
     return compileModules(std::move(*modules), 0, false, &sharedModules());
@@ -108,11 +108,11 @@ Status OrderKernel::createPipelines() {
         return vulkanError("vkCreatePipelineLayout", result);
     }
     layout_ = UniquePipelineLayout(context_, layout);
-    Result<std::vector<CompiledModule>> modules = compileOrdering(caseCount_, hitRecord_);
+    Result<std::vector<compiler::CompiledModule>> modules = compileOrdering(caseCount_, hitRecord_);
     if (!modules) {
         return modules.error();
     }
-    for (const CompiledModule& module : *modules) {
+    for (const compiler::CompiledModule& module : *modules) {
         PipelineCreation creation;
         creation.threads = chosenThreads(context_.limits, module.key, caseCount_ + 1);
         Result<UniquePipeline> pipeline =

@@ -26,10 +26,10 @@ protected:
 };
 
 TEST_P(OrderingImages, AreTheSame) {
-    const Scene scene = roomOfMaterials();
-    CompileSettings settings;
+    const gltf::Scene scene = roomOfMaterials();
+    compiler::CompileSettings settings;
     settings.strategies = GetParam();
-    settings.plan.merge = MergePolicy::None;
+    settings.plan.merge = compiler::MergePolicy::None;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     // 77 x 45 pixels are not a whole number of workgroups.
@@ -61,10 +61,10 @@ TEST_P(OrderingImages, AreTheSame) {
 
 // The check also runs without rays: every bucket must be empty.
 TEST_P(OrderingImages, NeedNoRays) {
-    const Scene scene = roomOfMaterials();
-    CompileSettings settings;
+    const gltf::Scene scene = roomOfMaterials();
+    compiler::CompileSettings settings;
     settings.strategies = GetParam();
-    settings.plan.merge = MergePolicy::All;
+    settings.plan.merge = compiler::MergePolicy::All;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = defaultSetup(scene, 16, 16);

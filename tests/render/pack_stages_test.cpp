@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 
 // A pack of four features: "tint" emits an attribute of the vertices, "clock" the time of the frame, "half"
 // cuts away what is right of x = 0, and "shift" moves coordinates by half a texture.
-const MaterialModel& stagesModel() {
+const materials::MaterialModel& stagesModel() {
     static const test::TemporaryFolder folder;
-    static const Result<const MaterialModel*> model = [&] {
+    static const Result<const materials::MaterialModel*> model = [&] {
         const struct {
             const char* name;
             const char* text;
@@ -65,16 +65,16 @@ const MaterialModel& stagesModel() {
              "    point.texCoords[0].x += 0.5;\n}\n"},
         };
         for (const auto& file : files) {
-            EXPECT_TRUE(writeFile(folder.path() / file.name, std::string_view(file.text)));
+            EXPECT_TRUE(base::writeFile(folder.path() / file.name, std::string_view(file.text)));
         }
-        return loadMaterialModel(std::vector{folder.path().string()});
+        return materials::loadMaterialModel(std::vector{folder.path().string()});
     }();
     EXPECT_TRUE(model) << toString(model.error());
     return **model;
 }
 
-Material blackWith(const char* extension) {
-    Material material(stagesModel());
+materials::Material blackWith(const char* extension) {
+    materials::Material material(stagesModel());
     material["baseColorFactor"] = {0, 0, 0, 1};
     material["metallicFactor"] = 0.0F;
     material.give("KHR_materials_specular");
@@ -84,23 +84,23 @@ Material blackWith(const char* extension) {
 }
 
 // A quad whose colour changes along a diagonal; in its middle it is (0.5, 0.25, 0.5).
-Primitive tintedQuad(int material, Float3 corner, Float3 right, Float3 up) {
-    Primitive quad = makeQuad(material, corner, right, up);
+gltf::Primitive tintedQuad(int material, gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
+    gltf::Primitive quad = makeQuad(material, corner, right, up);
     quad.attributes.push_back(
         {"_TINT", 3, {0.6F, 0.2F, 0.5F, 0.5F, 0.25F, 0.5F, 0.4F, 0.3F, 0.5F, 0.5F, 0.25F, 0.5F}});
     return quad;
 }
 
-RenderSetup darkSetup(const Scene& scene) {
+RenderSetup darkSetup(const gltf::Scene& scene) {
     RenderSetup setup = defaultSetup(scene, 33, 33);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     setup.frame.maxReflectionRoughness = 1.0F;
     return setup;
 }
 
-CompileSettings separateCases(AlphaPolicy alpha = AlphaPolicy::Opaque) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+compiler::CompileSettings separateCases(package::AlphaPolicy alpha = package::AlphaPolicy::Opaque) {
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.keys.alpha = alpha;
     return settings;
 }
@@ -108,11 +108,11 @@ CompileSettings separateCases(AlphaPolicy alpha = AlphaPolicy::Opaque) {
 // The camera sees a mirror on the left and the tinted quad on the right. Another tinted quad is behind the
 // camera.
 TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     const int clock = addMaterial(scene, blackWith("TEST_clock"));
-    Material mirror(stagesModel());
+    materials::Material mirror(stagesModel());
     mirror["roughnessFactor"] = 0.0F;
     const int reflecting = addMaterial(scene, mirror);
     addInstance(scene, addMesh(scene, makeQuad(reflecting, {-2, -0.5F, -2}, {1, 0, 0}, {0, 1, 0})));
@@ -126,7 +126,8 @@ TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
     setup.frame.time = 2.5F;
     const LoadedScene loaded(scene, separateCases());
     ASSERT_TRUE(loaded.ok());
-    const auto dropped = std::ranges::find(loaded.compiled().plan.dropped, "tint", &DroppedFeature::feature);
+    const auto dropped =
+        std::ranges::find(loaded.compiled().plan.dropped, "tint", &compiler::DroppedFeature::feature);
     ASSERT_NE(dropped, loaded.compiled().plan.dropped.end());
     EXPECT_EQ(dropped->reason, "the primitive has no _TINT");
     ASSERT_EQ(loaded.package().attributes().size(), 2U);
@@ -134,7 +135,7 @@ TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
     const LinearImage image = loaded.render(package::kStrategyVisibility, setup);
     ASSERT_FALSE(image.pixels.empty());
     // The default of _SCALE doubles the colour. A pixel is 1/8 m wide there, so the colour changes within it.
-    constexpr Float3 kMiddle{1.0F, 0.5F, 1.0F};
+    constexpr gltf::Float3 kMiddle{1.0F, 0.5F, 1.0F};
     expectColor(at(image, 16, 16), kMiddle, 1e-3F, "primary surface");
     expectColor(at(image, 4, 16), kMiddle, 0.1F, "in the mirror");
     expectColor(at(image, 28, 16), {2.5F, 2.5F, 2.5F}, 1e-6F, "time");
@@ -143,15 +144,15 @@ TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
 }
 
 TEST(PackStages, AttributesThatDoNotFitAreErrors) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
-    const Result<CompiledPackage> compiled = compilePackage(scene, separateCases());
+    const Result<compiler::CompiledPackage> compiled = compilePackage(scene, separateCases());
     ASSERT_TRUE(compiled) << toString(compiled.error());
     const Result<Package> package = scene_view::loadPackage(*compiled);
     ASSERT_TRUE(package) << toString(package.error());
-    const auto upload = [&](std::vector<VertexValues> attributes) {
+    const auto upload = [&](std::vector<gltf::VertexValues> attributes) {
         scene.meshes[0].primitives[0].attributes = std::move(attributes);
         const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
         const Result<std::unique_ptr<GpuScene>> uploaded =
@@ -166,16 +167,16 @@ TEST(PackStages, AttributesThatDoNotFitAreErrors) {
 
 // A cut quad before a wall. The light comes from the left, so that the shadow of the part that is left falls
 // to the right of it.
-Scene cutScene() {
-    Scene scene = emptyScene();
+gltf::Scene cutScene() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material wall(stagesModel());
+    materials::Material wall(stagesModel());
     wall["baseColorFactor"] = {1, 1, 1, 1};
     wall["metallicFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, wall), {-4, -4, -4}, {8, 0, 0}, {0, 8, 0})));
-    Material cut = blackWith("TEST_half");
-    cut.alphaMode = AlphaMode::Mask;
+    materials::Material cut = blackWith("TEST_half");
+    cut.alphaMode = materials::AlphaMode::Mask;
     cut.doubleSided = true;
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, cut), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
     addDirectionalLight(scene, {0.4472136F, 0, -0.8944272F}, 2.0F);
@@ -183,8 +184,8 @@ Scene cutScene() {
 }
 
 TEST(PackStages, OpacityCutsRasterAndShadowsAlike) {
-    const Scene scene = cutScene();
-    const LoadedScene loaded(scene, separateCases(AlphaPolicy::Tested));
+    const gltf::Scene scene = cutScene();
+    const LoadedScene loaded(scene, separateCases(package::AlphaPolicy::Tested));
     ASSERT_TRUE(loaded.ok());
     const LinearImage image = loaded.render(package::kStrategyVisibility, darkSetup(scene));
     ASSERT_FALSE(image.pixels.empty());
@@ -197,11 +198,11 @@ TEST(PackStages, OpacityCutsRasterAndShadowsAlike) {
 }
 
 TEST(PackStages, CoordinatesMoveTextures) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int texture = addTexture(scene, 2, 1, {255, 0, 0, 255, 0, 255, 0, 255});
     for (const bool shifts : {false, true}) {
-        Material material(stagesModel());
+        materials::Material material(stagesModel());
         material.give("KHR_materials_unlit");
         material.texture("baseColorTexture").texture = texture;
         if (shifts) {
@@ -221,15 +222,15 @@ TEST(PackStages, CoordinatesMoveTextures) {
 }
 
 // All stages in one picture: a mirror on the floor shows the cut quad, the tinted wall and the time.
-Scene stagesRoom() {
-    Scene scene = cutScene();
-    Material floor(stagesModel());
+gltf::Scene stagesRoom() {
+    gltf::Scene scene = cutScene();
+    materials::Material floor(stagesModel());
     floor["roughnessFactor"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, floor), {-4, -1, 0}, {8, 0, 0}, {0, 0, -4})));
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {0.5F, 0, -3.5F}, {1, 0, 0}, {0, 1, 0})));
-    Material clock = blackWith("TEST_clock");
+    materials::Material clock = blackWith("TEST_clock");
     const int texture = addTexture(scene, 2, 1, {255, 40, 0, 255, 0, 255, 90, 255});
     clock["baseColorFactor"] = {1, 1, 1, 1};
     clock.texture("baseColorTexture").texture = texture;
@@ -241,19 +242,19 @@ Scene stagesRoom() {
 
 // The nightly sweep sets GLINT_NIGHTLY and takes all policies.
 TEST(PackStages, EveryStrategyTracerAndMergePolicyGivesOneImage) {
-    const Scene scene = stagesRoom();
+    const gltf::Scene scene = stagesRoom();
     RenderSetup setup = darkSetup(scene);
     setup.width = 40;
     setup.height = 24;
     setup.frame.time = 0.25F;
-    std::vector<MergePolicy> policies{MergePolicy::None, MergePolicy::All};
+    std::vector<compiler::MergePolicy> policies{compiler::MergePolicy::None, compiler::MergePolicy::All};
     if (std::getenv("GLINT_NIGHTLY") != nullptr) {
-        policies.insert(policies.end(), {MergePolicy::Family, MergePolicy::Auto});
+        policies.insert(policies.end(), {compiler::MergePolicy::Family, compiler::MergePolicy::Auto});
     }
     LinearImage reference;
     int pictures = 0;
-    for (const MergePolicy merge : policies) {
-        CompileSettings settings = separateCases(AlphaPolicy::Tested);
+    for (const compiler::MergePolicy merge : policies) {
+        compiler::CompileSettings settings = separateCases(package::AlphaPolicy::Tested);
         settings.plan.merge = merge;
         settings.strategies = package::kAllStrategies;
         settings.tracers = package::kAllTracers;

@@ -25,14 +25,14 @@ namespace fs = std::filesystem;
 const std::string kPacks = GLINT_SOURCE_DIR "/examples/materials";
 const std::string kDrafts = kPacks + "/drafts";
 
-const MaterialModel& modelOf(const std::string& folder) {
-    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder});
+const materials::MaterialModel& modelOf(const std::string& folder) {
+    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(std::vector{folder});
     EXPECT_TRUE(model) << toString(model.error());
     return **model;
 }
 
-const MaterialModel& packs() {
-    static const MaterialModel& model = modelOf(kPacks);
+const materials::MaterialModel& packs() {
+    static const materials::MaterialModel& model = modelOf(kPacks);
     return model;
 }
 
@@ -45,22 +45,23 @@ INSTANTIATE_TEST_SUITE_P(Folders, ExamplePacks, ::testing::Values("materials", "
 
 TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
     const std::string folder = GLINT_SOURCE_DIR "/examples/" + GetParam();
-    ImportOptions import;
+    gltf::ImportOptions import;
     import.decodeImages = true;
     import.materialModel = &modelOf(folder);
-    const Result<Scene> scene = importScene(folder + "/scene.gltf", import);
+    const Result<gltf::Scene> scene = importScene(folder + "/scene.gltf", import);
     ASSERT_TRUE(scene) << toString(scene.error());
     EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
     RenderSetup setup = defaultSetup(*scene, 75, 30);
     setup.frame.maxReflectionRoughness = 1.0F;
     LinearImage reference;
     // PackStages has all strategies; here they are few, because the scene has many cases.
-    const std::pair<MergePolicy, package::Strategy> ways[] = {
-        {MergePolicy::None, package::kStrategyVisibility}, {MergePolicy::All, package::kStrategyUber}};
+    const std::pair<compiler::MergePolicy, package::Strategy> ways[] = {
+        {compiler::MergePolicy::None, package::kStrategyVisibility},
+        {compiler::MergePolicy::All, package::kStrategyUber}};
     for (const auto& [merge, strategy] : ways) {
-        CompileSettings settings;
+        compiler::CompileSettings settings;
         settings.plan.merge = merge;
-        settings.plan.keys.alpha = AlphaPolicy::Tested;
+        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
         settings.strategies = strategy;
         const LoadedScene loaded(*scene, settings);
         ASSERT_TRUE(loaded.ok());
@@ -74,8 +75,8 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
 
 // A black wall with a layer, under one directional light without a sky. Returns the radiance along the axis
 // of the camera, whose direction is the wall's normal turned by `tilt` radians about x.
-Pixel litWall(const Material& material, double tilt, Float3 light) {
-    Scene scene = emptyScene();
+Pixel litWall(const materials::Material& material, double tilt, gltf::Float3 light) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const auto cosine = static_cast<float>(std::cos(tilt));
     const auto sine = static_cast<float>(std::sin(tilt));
@@ -84,8 +85,8 @@ Pixel litWall(const Material& material, double tilt, Float3 light) {
     addDirectionalLight(scene, light, 2.0F);
     RenderSetup setup = defaultSetup(scene, 33, 33);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.effects = {};
     const LoadedScene loaded(scene, settings);
     const LinearImage image =
@@ -98,14 +99,14 @@ struct Direction {
 };
 
 // The wall of litWall() has x along the picture, y up the slope and its normal for z.
-Direction toWall(Float3 world, double tilt) {
+Direction toWall(gltf::Float3 world, double tilt) {
     return {world[0], world[1] * std::cos(tilt) + world[2] * std::sin(tilt),
             -world[1] * std::sin(tilt) + world[2] * std::cos(tilt)};
 }
 
 // Returns a material that reflects nothing but what layers add.
-Material blackMaterial(const MaterialModel& model) {
-    Material material(model);
+materials::Material blackMaterial(const materials::MaterialModel& model) {
+    materials::Material material(model);
     material["baseColorFactor"] = {0, 0, 0, 1};
     material["metallicFactor"] = 0.0F;
     material.give("KHR_materials_specular");
@@ -114,10 +115,10 @@ Material blackMaterial(const MaterialModel& model) {
 }
 
 constexpr double kTilt = -0.5;
-constexpr Float3 kLight{0.18F, -0.1F, -0.97857550F};  // unit; light goes this way
+constexpr gltf::Float3 kLight{0.18F, -0.1F, -0.97857550F};  // unit; light goes this way
 
 TEST(Packs, RetroreflectionIsThatOfDoublePrecision) {
-    Material material = blackMaterial(packs());
+    materials::Material material = blackMaterial(packs());
     material.give("EXAMPLE_materials_retroreflection");
     material["retroreflectionFactor"] = 0.75F;
     material["retroreflectionColor"] = {1.0F, 0.5F, 0.25F};
@@ -140,7 +141,7 @@ TEST(Packs, RetroreflectionIsThatOfDoublePrecision) {
 }
 
 TEST(Packs, FibresAreThoseOfDoublePrecision) {
-    Material material = blackMaterial(packs());
+    materials::Material material = blackMaterial(packs());
     material.give("EXAMPLE_materials_fibre");
     material["fibreFactor"] = 0.5F;
     material["fibreWidth"] = 0.2F;
@@ -160,8 +161,8 @@ TEST(Packs, FibresAreThoseOfDoublePrecision) {
 }
 
 TEST(Packs, AGroovedCoatIsThatOfDoublePrecision) {
-    static const MaterialModel& model = modelOf(kDrafts);
-    Material material = blackMaterial(model);
+    static const materials::MaterialModel& model = modelOf(kDrafts);
+    materials::Material material = blackMaterial(model);
     material.give("KHR_materials_coat");
     material["coatFactor"] = 0.75F;
     material["coatRoughnessFactor"] = 0.5F;
@@ -200,9 +201,10 @@ TEST(Packs, ThePageAddsALobe) {
     const test::TemporaryFolder folder;
     test::writePrintedFiles("material_features.md", folder.path(),
                             {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"});
-    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder.path().string()});
+    const Result<const materials::MaterialModel*> model =
+        materials::loadMaterialModel(std::vector{folder.path().string()});
     ASSERT_TRUE(model) << toString(model.error());
-    Material material = blackMaterial(**model);
+    materials::Material material = blackMaterial(**model);
     material.give("EXAMPLE_materials_wax");
     material["waxFactor"] = 0.5F;
     const Pixel pixel = litWall(material, kTilt, kLight);
@@ -216,22 +218,24 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
     const test::TemporaryFolder folder;
     fs::copy(kPacks + "/retroreflection", folder.path() / "retroreflection");
     const fs::path file = folder.path() / "retroreflection" / "retroreflection_bsdf.glsl";
-    ASSERT_TRUE(writeFile(file,
-                          "#include \"hit/surface_values.glsl\"\n\n"
-                          "void retroreflectionBsdf(Hit hit, Features features, inout SurfaceValues values,\n"
-                          "                         inout Surface surface) {\n"
-                          "    nonsense = 1.0;\n"
-                          "}\n"));
-    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder.path().string()});
+    ASSERT_TRUE(
+        base::writeFile(file,
+                        "#include \"hit/surface_values.glsl\"\n\n"
+                        "void retroreflectionBsdf(Hit hit, Features features, inout SurfaceValues values,\n"
+                        "                         inout Surface surface) {\n"
+                        "    nonsense = 1.0;\n"
+                        "}\n"));
+    const Result<const materials::MaterialModel*> model =
+        materials::loadMaterialModel(std::vector{folder.path().string()});
     ASSERT_TRUE(model) << toString(model.error());
-    Material material = blackMaterial(**model);
+    materials::Material material = blackMaterial(**model);
     material.give("EXAMPLE_materials_retroreflection");
     material["retroreflectionFactor"] = 0.75F;
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
-    const Result<CompiledPackage> package = compilePackage(scene, {});
+    const Result<compiler::CompiledPackage> package = compiler::compilePackage(scene, {});
     ASSERT_FALSE(package);
     EXPECT_EQ(package.error().id, "glsl");
     EXPECT_EQ(package.error().where, file.string() + ":5");
@@ -241,19 +245,19 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
 
 // Returns the texts of the modules of the example scene, by name, with the packs of `folder`.
 std::map<std::string, std::string> moduleTexts(const std::string& folder) {
-    ImportOptions import;
-    const Result<const MaterialModel*> model = loadMaterialModel(std::vector{folder});
+    gltf::ImportOptions import;
+    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(std::vector{folder});
     EXPECT_TRUE(model) << toString(model.error());
     import.materialModel = *model;
-    const Result<Scene> scene = importScene(kPacks + "/scene.gltf", import);
+    const Result<gltf::Scene> scene = importScene(kPacks + "/scene.gltf", import);
     EXPECT_TRUE(scene) << toString(scene.error());
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.strategies = package::kStrategyVisibility;
-    const Result<PackagePlan> plan = planPackage({&*scene, 1}, settings);
+    const Result<compiler::PackagePlan> plan = planPackage({&*scene, 1}, settings);
     EXPECT_TRUE(plan) << toString(plan.error());
     std::map<std::string, std::string> texts;
-    for (const PlannedModule& module : plan->modules) {
+    for (const compiler::PlannedModule& module : plan->modules) {
         texts[module.name] = module.text;
     }
     return texts;
@@ -264,13 +268,13 @@ TEST(Packs, AChangeOfGlslChangesItsCaseAndTheLightingAlone) {
     fs::copy(kPacks, folder.path(), fs::copy_options::recursive);
     const std::map<std::string, std::string> before = moduleTexts(folder.path().string());
     const fs::path file = folder.path() / "fibre" / "fibre.glsl";
-    const Result<Bytes> bytes = readFile(file);
+    const Result<base::Bytes> bytes = base::readFile(file);
     ASSERT_TRUE(bytes);
     std::string text(bytes->begin(), bytes->end());
     const std::size_t place = text.find("return kInversePi /");
     ASSERT_NE(place, std::string::npos);
     text.insert(place + 7, "0.5 * ");
-    ASSERT_TRUE(writeFile(file, text));
+    ASSERT_TRUE(base::writeFile(file, text));
     const std::map<std::string, std::string> after = moduleTexts(folder.path().string());
     ASSERT_EQ(before.size(), after.size());
     std::vector<std::string> changed;

@@ -18,19 +18,19 @@ inline Pixel at(const LinearImage& image, std::uint32_t x, std::uint32_t y) {
     return image.pixels[static_cast<std::size_t>(y) * image.width + x];
 }
 
-inline void expectColor(const Pixel& pixel, Float3 expected, float tolerance, const char* where) {
+inline void expectColor(const Pixel& pixel, gltf::Float3 expected, float tolerance, const char* where) {
     for (int channel = 0; channel < 3; ++channel) {
         EXPECT_NEAR(pixel[channel], expected[channel], tolerance) << where << ", channel " << channel;
     }
 }
 
-inline constexpr Float3 kRed{0.8F, 0.1F, 0.1F};
-inline constexpr Float3 kGreen{0.1F, 0.7F, 0.1F};
-inline constexpr Float3 kBlue{0.1F, 0.2F, 0.9F};
+inline constexpr gltf::Float3 kRed{0.8F, 0.1F, 0.1F};
+inline constexpr gltf::Float3 kGreen{0.1F, 0.7F, 0.1F};
+inline constexpr gltf::Float3 kBlue{0.1F, 0.2F, 0.9F};
 
 // Returns a square picture with the camera of addCamera(). The sky is white, so that ambient light is easy to
 // compute.
-inline RenderSetup squareSetup(const Scene& scene) {
+inline RenderSetup squareSetup(const gltf::Scene& scene) {
     RenderSetup setup = defaultSetup(scene, 32, 32);
     setup.frame.sky = {{1.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}, {1.0F, 1.0F, 1.0F}};
     return setup;
@@ -39,11 +39,12 @@ inline RenderSetup squareSetup(const Scene& scene) {
 // Renders with the strategy of the parameter.
 class PixelTest : public ::testing::TestWithParam<package::Strategy> {
 protected:
-    LinearImage render(const Scene& scene, const RenderSetup& setup, AlphaPolicy alpha = AlphaPolicy::Opaque,
+    LinearImage render(const gltf::Scene& scene, const RenderSetup& setup,
+                       package::AlphaPolicy alpha = package::AlphaPolicy::Opaque,
                        FrameCounters* counters = nullptr) {
-        CompileSettings settings;
+        compiler::CompileSettings settings;
         settings.plan.keys.alpha = alpha;
-        settings.plan.merge = MergePolicy::None;
+        settings.plan.merge = compiler::MergePolicy::None;
         settings.energyCompensation = energyCompensation_;
         const LoadedScene loaded(scene, settings);
         return loaded.ok() ? loaded.render(GetParam(), setup, counters) : LinearImage{};

@@ -18,12 +18,12 @@ INSTANTIATE_TEST_SUITE_P(Strategies, Pixels,
                          strategyName);
 
 TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 0U);
     EXPECT_EQ(counters.of(package::kEffectReflection).skippedSky, 32U * 32U);
@@ -35,9 +35,9 @@ TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {
 }
 
 TEST_P(Pixels, TextureStandsUpright) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
+    materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
     // The first row is red and green, the second blue and white.
     material.texture("baseColorTexture").texture =
         addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
@@ -52,10 +52,10 @@ TEST_P(Pixels, TextureStandsUpright) {
 }
 
 TEST_P(Pixels, ColourTexturesAreSrgbAndBoundTexturesTransform) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
-    TextureInfo& info = material.texture("baseColorTexture");
+    materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
+    materials::TextureInfo& info = material.texture("baseColorTexture");
     info.texture = addTexture(scene, 2, 1, {128, 128, 128, 255, 0, 0, 0, 255});
     // The offset is half of the image, so the black texel comes first.
     info.transform.offset = {0.5F, 0.0F};
@@ -71,7 +71,7 @@ TEST_P(Pixels, ColourTexturesAreSrgbAndBoundTexturesTransform) {
 
 // A mirror in front of the camera shows the colour of what is behind the camera.
 TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int red = addMaterial(scene, unlitMaterial(kRed));
@@ -82,7 +82,7 @@ TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
     addInstance(scene, addMesh(scene, makeQuad(blue, {9, -9, 3}, {-18, 0, 0}, {0, 9, 0})));
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     FrameCounters counters;
-    const LinearImage image = render(scene, squareSetup(scene), AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, squareSetup(scene), package::AlphaPolicy::Opaque, &counters);
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 4), kRed, 1e-4F, "above");
@@ -98,7 +98,7 @@ TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
 }
 
 TEST_P(Pixels, AMirrorThatSeesNothingShowsTheSky) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
                                                {0, 2, 0})));
@@ -116,36 +116,36 @@ class Facing : public ::testing::TestWithParam<std::tuple<package::Strategy, boo
 TEST_P(Facing, FollowsTheWindingInObjectSpace) {
     const auto [strategy, doubleSided, mirrored] = GetParam();
     for (const bool facesCamera : {false, true}) {
-        Scene scene = emptyScene();
+        gltf::Scene scene = emptyScene();
         addCamera(scene);
-        Material red = unlitMaterial(kRed);
+        materials::Material red = unlitMaterial(kRed);
         red.doubleSided = doubleSided;
         const int wallMaterial = addMaterial(scene, red);
         const int mirror = addMaterial(scene, mirrorMaterial());
         // The left half of the view shows the wall itself. The right half shows a mirror that sees the wall
         // behind the camera.
-        const Float3 right = facesCamera ? Float3{8, 0, 0} : Float3{-8, 0, 0};
+        const gltf::Float3 right = facesCamera ? gltf::Float3{8, 0, 0} : gltf::Float3{-8, 0, 0};
         const float x = facesCamera ? -8.0F : 0.0F;
         const float mirroredX = mirrored ? -x - right[0] : x;
         // The corners are mirrored in x beforehand, so under a mirroring transform they return with the
         // winding reversed. By definition the front is the same as in object space.
-        const Float3 objectRight = right;
+        const gltf::Float3 objectRight = right;
         addInstance(scene,
                     addMesh(scene, makeQuad(wallMaterial, {mirroredX, -4, -2}, objectRight, {0, 8, 0})),
                     scaling(mirrored ? -1.0 : 1.0, 1.0, 1.0));
         addInstance(scene, addMesh(scene, makeQuad(mirror, {0, -1, -1}, {1, 0, 0}, {0, 2, 0})));
-        const Float3 behindRight = facesCamera ? Float3{-18, 0, 0} : Float3{18, 0, 0};
+        const gltf::Float3 behindRight = facesCamera ? gltf::Float3{-18, 0, 0} : gltf::Float3{18, 0, 0};
         const float behindX = facesCamera ? 9.0F : -9.0F;
         addInstance(scene, addMesh(scene, makeQuad(wallMaterial, {behindX, -9, 3}, behindRight, {0, 18, 0})),
                     scaling(mirrored ? -1.0 : 1.0, 1.0, 1.0));
-        PlanOptions plan;
+        compiler::PlanOptions plan;
         const LoadedScene loaded(scene, plan);
         ASSERT_TRUE(loaded.ok());
         RenderSetup setup = squareSetup(scene);
         const LinearImage image = loaded.render(strategy, setup);
         ASSERT_FALSE(image.pixels.empty());
         const bool visible = facesCamera || doubleSided;
-        const Float3 expected = visible ? kRed : Float3{1, 1, 1};
+        const gltf::Float3 expected = visible ? kRed : gltf::Float3{1, 1, 1};
         expectColor(at(image, 8, 16), expected, 1e-4F, facesCamera ? "seen, front" : "seen, back");
         expectColor(at(image, 24, 16), expected, 1e-4F, facesCamera ? "mirrored, front" : "mirrored, back");
     }
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(All, Facing,
                                             ::testing::Bool(), ::testing::Bool()));
 
 TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0},
                                                {0, 2, 0})));
@@ -165,7 +165,7 @@ TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
     setup.frame.sky = {kGreen, kGreen, kGreen};
     setup.frame.maxReflectionRoughness = 0.0F;
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");
@@ -174,13 +174,13 @@ TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
 // A mesh that is split over several acceleration structures stays the same: triangles keep their vertices and
 // materials.
 TEST_P(Pixels, SplittingAMeshChangesNothing) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material textured = unlitMaterial({1.0F, 1.0F, 1.0F});
+    materials::Material textured = unlitMaterial({1.0F, 1.0F, 1.0F});
     textured.texture("baseColorTexture").texture =
         addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 255, 255});
     const int picture = addMaterial(scene, textured);
-    Mesh mesh;
+    gltf::Mesh mesh;
     mesh.primitives = {
         makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}),
         makeQuad(picture, {9, 0, 3}, {-18, 0, 0}, {0, 9, 0}),
@@ -199,7 +199,7 @@ TEST_P(Pixels, SplittingAMeshChangesNothing) {
 }
 
 TEST_P(Pixels, SamplesAverageAndSeedsRepeat) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, unlitMaterial(kRed)), {-0.5F, -0.5F, -1},
                                                {1, 0, 0}, {0, 1, 0})));

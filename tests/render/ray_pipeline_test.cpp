@@ -49,18 +49,18 @@ RendererOptions optionsOf(const Way& way) {
     return options;
 }
 
-CompileSettings settingsFor(ShadowPlacement shadows, MergePolicy merge) {
-    CompileSettings settings;
+compiler::CompileSettings settingsFor(ShadowPlacement shadows, compiler::MergePolicy merge) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kAllStrategies;
     settings.tracers = package::kAllTracers;
     settings.shadows = shadows;
     settings.plan.merge = merge;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     return settings;
 }
 
 // Every surface sends a ray.
-RenderSetup hallSetup(const Scene& scene) {
+RenderSetup hallSetup(const gltf::Scene& scene) {
     RenderSetup setup = defaultSetup(scene, 48, 36);
     setup.samples = 2;
     setup.frame.maxReflectionRoughness = 1.0F;
@@ -68,7 +68,7 @@ RenderSetup hallSetup(const Scene& scene) {
 }
 
 // Adds a mirror in front of the camera, across its view.
-void addMirror(Scene& scene) {
+void addMirror(gltf::Scene& scene) {
     const int mirror = addMaterial(scene, mirrorMaterial());
     addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
 }
@@ -87,8 +87,8 @@ protected:
 };
 
 // Renders every way that the settings and the device allow.
-void expectAllWaysAgree(const Scene& scene, const CompileSettings& settings, const RenderSetup& setup,
-                        FrameCounters& counters) {
+void expectAllWaysAgree(const gltf::Scene& scene, const compiler::CompileSettings& settings,
+                        const RenderSetup& setup, FrameCounters& counters) {
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     std::optional<LinearImage> reference;
@@ -110,8 +110,8 @@ void expectAllWaysAgree(const Scene& scene, const CompileSettings& settings, con
     }
 }
 
-FrameCounters expectAllWaysAgreeInHall(const CompileSettings& settings) {
-    const Scene scene = hallScene();
+FrameCounters expectAllWaysAgreeInHall(const compiler::CompileSettings& settings) {
+    const gltf::Scene scene = hallScene();
     FrameCounters counters;
     expectAllWaysAgree(scene, settings, hallSetup(scene), counters);
     EXPECT_GT(counters.rays, 900U);
@@ -120,18 +120,18 @@ FrameCounters expectAllWaysAgreeInHall(const CompileSettings& settings) {
 
 TEST(RayPipelines, EveryStrategyAndTracerGivesTheSamePicture) {
     const FrameCounters counters =
-        expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Inline, MergePolicy::None));
+        expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None));
     EXPECT_EQ(counters.shadowRays, 0U);
 }
 
 TEST(RayPipelines, DeferredShadowsAndSharedCasesToo) {
     const FrameCounters counters =
-        expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Deferred, MergePolicy::All));
+        expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Deferred, compiler::MergePolicy::All));
     EXPECT_GT(counters.shadowRays, 100U);
 }
 
 TEST(RayPipelines, PackedHitsToo) {
-    CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::Family);
+    compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::Family);
     settings.hitRecord = package::HitRecordFormat::Packed;
     settings.strategies = package::kOrderedStrategies;
     expectAllWaysAgreeInHall(settings);
@@ -139,9 +139,10 @@ TEST(RayPipelines, PackedHitsToo) {
 
 // First no surface, so that lists have no elements; then one whose rays all leave the scene.
 TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    const CompileSettings settings = settingsFor(ShadowPlacement::Deferred, MergePolicy::None);
+    const compiler::CompileSettings settings =
+        settingsFor(ShadowPlacement::Deferred, compiler::MergePolicy::None);
     FrameCounters counters;
     expectAllWaysAgree(scene, settings, squareSetup(scene), counters);
     EXPECT_EQ(counters.rays, 0U);
@@ -152,11 +153,11 @@ TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
 }
 
 TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
-    const Scene scene = hallScene();
-    CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::None);
+    const gltf::Scene scene = hallScene();
+    compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None);
     settings.strategies = package::kStrategyHitShaders;
     const LoadedScene tested(scene, settings);
-    settings.plan.keys.alpha = AlphaPolicy::Opaque;
+    settings.plan.keys.alpha = package::AlphaPolicy::Opaque;
     const LoadedScene opaque(scene, settings);
     ASSERT_TRUE(tested.ok() && opaque.ok());
     const RenderSetup setup = hallSetup(scene);
@@ -168,12 +169,12 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
 
 // A mirror sees a wall whose shader ID no case has.
 TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addMirror(scene);
     const int red = addMaterial(scene, unlitMaterial(kRed));
     addInstance(scene, addMesh(scene, makeQuad(red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
-    const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::None));
+    const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None));
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = squareSetup(scene);
     expectColor(at(loaded.render(package::kStrategyHitShaders, setup), 16, 16), kRed, 1e-4F, "known");
@@ -194,9 +195,9 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
 }
 
 TEST_F(DeviceWithPipelines, RefusesImagesAboveOneDispatch) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    CompileSettings settings = settingsFor(ShadowPlacement::Inline, MergePolicy::None);
+    compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None);
     settings.strategies = package::kStrategyHitShaders;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
@@ -233,8 +234,8 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     ASSERT_TRUE(context) << toString(context.error());
     EXPECT_EQ((*context)->handles().tracers, GetParam());
 
-    const Scene scene = hallScene();
-    const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, MergePolicy::All));
+    const gltf::Scene scene = hallScene();
+    const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::All));
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = hallSetup(scene);
     const LinearImage reference = loaded.render(package::kStrategyVisibility, setup);

@@ -38,12 +38,12 @@ std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count
 }
 
 // Traces the reflections of a scene as Renderer does.
-KnownRays knownRays(const Scene& scene, const RenderSetup& setup) {
-    CompileSettings settings;
+KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.tracers = package::kAllTracers;
-    settings.plan.merge = MergePolicy::All;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings);
     KnownRays known;
     if (!loaded.ok()) {
@@ -192,13 +192,13 @@ private:
     Buffer answers_;
 };
 
-CompileSettings stepSettings() {
-    CompileSettings settings;
+compiler::CompileSettings stepSettings() {
+    compiler::CompileSettings settings;
     settings.passes = package::Passes::Steps;
     settings.strategies = package::kAllStrategies;
     settings.tracers = package::kAllTracers;
-    settings.plan.merge = MergePolicy::All;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     settings.bindings.sceneSet = 2;
     settings.bindings.pushOffset = 16;
     return settings;
@@ -228,12 +228,12 @@ std::vector<Way> ways() {
 }
 
 TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
-    const Scene scene = roomWithFence();
+    const gltf::Scene scene = roomWithFence();
     const RenderSetup setup = defaultSetup(scene, 48, 27);
     const KnownRays known = knownRays(scene, setup);
     ASSERT_GT(known.rays.size(), 100U);
     for (const auto record : {package::HitRecordFormat::Full, package::HitRecordFormat::Packed}) {
-        CompileSettings settings = stepSettings();
+        compiler::CompileSettings settings = stepSettings();
         settings.hitRecord = record;
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
@@ -273,26 +273,26 @@ TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
 }
 
 // A wall of a known material, and beside it an unlit one.
-Scene wallAndLamp() {
-    Scene scene = emptyScene();
-    Material paint;
+gltf::Scene wallAndLamp() {
+    gltf::Scene scene = emptyScene();
+    materials::Material paint;
     paint["baseColorFactor"] = {0.5F, 0.25F, 0.125F, 1.0F};
     paint["metallicFactor"] = 0.0F;
     paint["roughnessFactor"] = 0.5F;
     paint["emissiveFactor"] = {0.0F, 0.75F, 0.0F};
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, paint), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
-    const Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
+    const materials::Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp), {3, -1, -4}, {2, 0, 0}, {0, 2, 0})));
     return scene;
 }
 
 // The wall is seen at an angle, and the sky beside it.
 TEST(RaySteps, AnswerWithSurfaces) {
-    const Scene scene = wallAndLamp();
-    CompileSettings settings = stepSettings();
+    const gltf::Scene scene = wallAndLamp();
+    compiler::CompileSettings settings = stepSettings();
     settings.answer = package::HitAnswer::Surface;
-    settings.plan.merge = MergePolicy::None;
+    settings.plan.merge = compiler::MergePolicy::None;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     const float tilt = 1.0F / std::sqrt(17.0F);
@@ -338,16 +338,17 @@ TEST(RaySteps, AnswerWithSurfaces) {
 
 // A host that keeps the vertices of the frame before, which here lay 0.25 m to the left and 0.5 m below.
 TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
-    const auto own = std::ranges::find(builtinFiles(), "host/geometry.glsl", &BuiltinFile::name);
-    ASSERT_NE(own, builtinFiles().end());
+    const auto own =
+        std::ranges::find(compiler::builtinFiles(), "host/geometry.glsl", &base::BuiltinFile::name);
+    ASSERT_NE(own, compiler::builtinFiles().end());
     const test::TemporaryFolder folder;
     const std::string text(own->text);
-    ASSERT_TRUE(writeFile(folder.path() / "geometry.glsl",
-                          text + "\n#define GLINT_HOST_PREVIOUS_POSITIONS\n"
-                                 "vec3 hostPreviousPosition(HostGeometry geometry, uint vertex) {\n"
-                                 "    return hostPosition(geometry, vertex) - vec3(0.25, 0.5, 0.0);\n"
-                                 "}\n"));
-    CompileSettings settings = stepSettings();
+    ASSERT_TRUE(base::writeFile(folder.path() / "geometry.glsl",
+                                text + "\n#define GLINT_HOST_PREVIOUS_POSITIONS\n"
+                                       "vec3 hostPreviousPosition(HostGeometry geometry, uint vertex) {\n"
+                                       "    return hostPosition(geometry, vertex) - vec3(0.25, 0.5, 0.0);\n"
+                                       "}\n"));
+    compiler::CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
     settings.answer = package::HitAnswer::Surface;
     settings.host = folder.path().string();
@@ -367,7 +368,7 @@ TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
 
 // Without a descriptor, and here without any descriptor set, the answers are those that a descriptor gives.
 TEST(RaySteps, TakeAStructureByItsAddress) {
-    const Scene scene = wallAndLamp();
+    const gltf::Scene scene = wallAndLamp();
     std::vector<EngineRay> rays;
     for (std::uint32_t slot = 0; slot < 64; ++slot) {
         const std::array<float, 3> to{-2.0F + 1.1F * static_cast<float>(slot % 8),
@@ -376,7 +377,7 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
         rays.push_back({{0, 0, 0}, slot, {to[0] / length, to[1] / length, to[2] / length}});
     }
     const LoadedScene described(scene, stepSettings());
-    CompileSettings settings = stepSettings();
+    compiler::CompileSettings settings = stepSettings();
     settings.bindings.tlas = package::Bindings::kByAddress;
     const LoadedScene addressed(scene, settings);
     ASSERT_TRUE(described.ok() && addressed.ok());
@@ -425,12 +426,12 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
 }
 
 TEST(RaySteps, RefuseWhatTheyCannotDo) {
-    const Scene scene = roomWithFence();
-    CompileSettings frames;
+    const gltf::Scene scene = roomWithFence();
+    compiler::CompileSettings frames;
     frames.strategies = package::kStrategyUber;
     frames.tracers = package::kAllTracers;
     const LoadedScene framePackage(scene, frames);
-    CompileSettings settings = stepSettings();
+    compiler::CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
     const LoadedScene stepPackage(scene, settings);
     ASSERT_TRUE(framePackage.ok() && stepPackage.ok());
@@ -453,7 +454,7 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
 
 // A scene of a host's own is checked before anything is made of it.
 TEST(EngineScene, NamesWhatIsWrong) {
-    CompileSettings settings = stepSettings();
+    compiler::CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber;
     const LoadedScene loaded(roomWithFence(), settings);
     ASSERT_TRUE(loaded.ok());

@@ -9,22 +9,22 @@
 namespace glint::testing {
 namespace {
 
-Material painted(Float3 color, float roughness) {
-    Material material;
+materials::Material painted(gltf::Float3 color, float roughness) {
+    materials::Material material;
     material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
     material["metallicFactor"] = 0.0F;
     material["roughnessFactor"] = roughness;
     return material;
 }
 
-Material metal(Float3 color, float roughness) {
-    Material material = painted(color, roughness);
+materials::Material metal(gltf::Float3 color, float roughness) {
+    materials::Material material = painted(color, roughness);
     material["metallicFactor"] = 1.0F;
     return material;
 }
 
 // Returns a texture of two by two texels; 0 means a hole.
-int checkers(Scene& scene, int size, std::uint8_t otherAlpha) {
+int checkers(gltf::Scene& scene, int size, std::uint8_t otherAlpha) {
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < size * size; ++i) {
         const bool odd = (i / size + i) % 2 != 0;
@@ -34,13 +34,14 @@ int checkers(Scene& scene, int size, std::uint8_t otherAlpha) {
     return addTexture(scene, size, size, std::move(texels));
 }
 
-void addWall(Scene& scene, const Material& material, Float3 corner, Float3 right, Float3 up) {
+void addWall(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+             gltf::Float3 up) {
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
 }
 
-void addLamp(Scene& scene, Float3 position, Float3 color, float candela) {
-    Light lamp;
-    lamp.type = LightType::Point;
+void addLamp(gltf::Scene& scene, gltf::Float3 position, gltf::Float3 color, float candela) {
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
     lamp.position = position;
     lamp.color = color;
     lamp.intensity = candela;
@@ -48,44 +49,44 @@ void addLamp(Scene& scene, Float3 position, Float3 color, float candela) {
 }
 
 // Adds one of eight vertical strips in front of the camera, each with another material.
-void addStrip(Scene& scene, const Material& material, int strip) {
+void addStrip(gltf::Scene& scene, const materials::Material& material, int strip) {
     constexpr double kPi = std::numbers::pi;
     const auto corner = [](int number) {
         const double angle = kPi * (0.15 + 0.7 * number / 8.0);
-        return Float3{static_cast<float>(-4.0 * std::cos(angle)), -1.0F,
-                      static_cast<float>(-4.0 * std::sin(angle))};
+        return gltf::Float3{static_cast<float>(-4.0 * std::cos(angle)), -1.0F,
+                            static_cast<float>(-4.0 * std::sin(angle))};
     };
-    const Float3 left = corner(strip);
-    const Float3 right = corner(strip + 1);
+    const gltf::Float3 left = corner(strip);
+    const gltf::Float3 right = corner(strip + 1);
     addWall(scene, material, left, {right[0] - left[0], 0, right[2] - left[2]}, {0, 3, 0});
 }
 
 }  // namespace
 
-Scene roomOfMaterials() {
-    Scene scene = emptyScene();
+gltf::Scene roomOfMaterials() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addWall(scene, metal({0.9F, 0.9F, 0.9F}, 0.25F), {-5, -1, 0}, {10, 0, 0}, {0, 0, -5});
 
-    Material textured = painted({1, 1, 1}, 0.8F);
+    materials::Material textured = painted({1, 1, 1}, 0.8F);
     textured.texture("baseColorTexture").texture = checkers(scene, 8, 255);
     addStrip(scene, textured, 0);
-    Material coated = painted({0.7F, 0.05F, 0.05F}, 0.6F);
+    materials::Material coated = painted({0.7F, 0.05F, 0.05F}, 0.6F);
     coated["clearcoatFactor"] = 1.0F;
     coated["clearcoatRoughnessFactor"] = 0.1F;
     addStrip(scene, coated, 1);
-    Material cloth = painted({0.2F, 0.2F, 0.5F}, 0.9F);
+    materials::Material cloth = painted({0.2F, 0.2F, 0.5F}, 0.9F);
     cloth["sheenColorFactor"] = {0.8F, 0.6F, 0.4F};
     cloth["sheenRoughnessFactor"] = 0.4F;
     addStrip(scene, cloth, 2);
     addStrip(scene, unlitMaterial({0.1F, 0.8F, 0.3F}), 3);
-    Material brushed = metal({0.9F, 0.7F, 0.4F}, 0.4F);
+    materials::Material brushed = metal({0.9F, 0.7F, 0.4F}, 0.4F);
     brushed["anisotropyStrength"] = 0.8F;
     addStrip(scene, brushed, 4);
-    Material film = metal({0.5F, 0.5F, 0.5F}, 0.3F);
+    materials::Material film = metal({0.5F, 0.5F, 0.5F}, 0.3F);
     film["iridescenceFactor"] = 1.0F;
     addStrip(scene, film, 5);
-    Material lamp = painted({0, 0, 0}, 1.0F);
+    materials::Material lamp = painted({0, 0, 0}, 1.0F);
     lamp["emissiveFactor"] = {2.0F, 1.5F, 0.5F};
     addStrip(scene, lamp, 6);
     addStrip(scene, mirrorMaterial(), 7);
@@ -96,13 +97,13 @@ Scene roomOfMaterials() {
     return scene;
 }
 
-Scene roomWithFence() {
-    Scene scene = emptyScene();
+gltf::Scene roomWithFence() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addWall(scene, mirrorMaterial(), {-3, -2, -4}, {6, 0, 0}, {0, 5, 0});
     addWall(scene, painted({0.6F, 0.6F, 0.6F}, 0.2F), {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
-    Material fence = painted({0.9F, 0.8F, 0.3F}, 0.4F);
-    fence.alphaMode = AlphaMode::Mask;
+    materials::Material fence = painted({0.9F, 0.8F, 0.3F}, 0.4F);
+    fence.alphaMode = materials::AlphaMode::Mask;
     fence.doubleSided = true;
     fence.texture("baseColorTexture").texture = checkers(scene, 8, 0);
     addWall(scene, fence, {-1.5F, -1, -2}, {1.6F, 0, 0.4F}, {0, 1.8F, 0});
@@ -110,7 +111,7 @@ Scene roomWithFence() {
                                              {0.6F, -1, -2.5F}, {0.8F, 0, 0.3F}, {0, 1.5F, 0}));
     addInstance(scene, post);
     addInstance(scene, post, scaling(-1, 1, 1.2));
-    Material glass = painted({0.9F, 1.0F, 0.95F}, 0.1F);
+    materials::Material glass = painted({0.9F, 1.0F, 0.95F}, 0.1F);
     glass["transmissionFactor"] = 0.8F;
     glass.doubleSided = true;
     addWall(scene, glass, {1.2F, -1, -1.5F}, {0.8F, 0, -1.2F}, {0, 1.8F, 0});

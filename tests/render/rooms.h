@@ -7,9 +7,9 @@ namespace glint::testing {
 
 // Returns a floor of brushed metal in front of walls of eight materials, most of which have lobes of their
 // own, under a sun and two lamps.
-Scene roomOfMaterials();
+gltf::Scene roomOfMaterials();
 
 // Returns a mirror beside a fence with alpha masks, a mirrored instance and a wall of glass, under a lamp.
-Scene roomWithFence();
+gltf::Scene roomWithFence();
 
 }  // namespace glint::testing

@@ -7,44 +7,44 @@ namespace glint::testing {
 
 namespace {
 
-Float3 add(Float3 a, Float3 b) {
+gltf::Float3 add(gltf::Float3 a, gltf::Float3 b) {
     return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
 }
 
-Float3 normalizedCross(Float3 a, Float3 b) {
-    const Float3 c{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+gltf::Float3 normalizedCross(gltf::Float3 a, gltf::Float3 b) {
+    const gltf::Float3 c{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     const float length = std::sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
     return {c[0] / length, c[1] / length, c[2] / length};
 }
 
 }  // namespace
 
-Scene emptyScene() {
-    Scene scene;
+gltf::Scene emptyScene() {
+    gltf::Scene scene;
     scene.path = "made-by-hand.gltf";
     return scene;
 }
 
-int addMaterial(Scene& scene, const Material& material) {
+int addMaterial(gltf::Scene& scene, const materials::Material& material) {
     scene.materials.push_back(material);
     return static_cast<int>(scene.materials.size()) - 1;
 }
 
-Material unlitMaterial(Float3 color) {
-    Material material;
+materials::Material unlitMaterial(gltf::Float3 color) {
+    materials::Material material;
     material.give("KHR_materials_unlit");
     material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
     return material;
 }
 
-Material mirrorMaterial() {
-    Material material;
+materials::Material mirrorMaterial() {
+    materials::Material material;
     material["roughnessFactor"] = 0.0F;
     return material;
 }
 
-Primitive makeQuad(int material, Float3 corner, Float3 right, Float3 up) {
-    Primitive quad;
+gltf::Primitive makeQuad(int material, gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
+    gltf::Primitive quad;
     quad.pointer = "/meshes/0/primitives/0";
     quad.material = material;
     quad.positions = {corner, add(corner, right), add(add(corner, right), up), add(corner, up)};
@@ -54,26 +54,26 @@ Primitive makeQuad(int material, Float3 corner, Float3 right, Float3 up) {
     return quad;
 }
 
-int addMesh(Scene& scene, Primitive primitive) {
-    Mesh mesh;
+int addMesh(gltf::Scene& scene, gltf::Primitive primitive) {
+    gltf::Mesh mesh;
     mesh.primitives.push_back(std::move(primitive));
     scene.meshes.push_back(std::move(mesh));
     return static_cast<int>(scene.meshes.size()) - 1;
 }
 
-void addInstance(Scene& scene, int mesh, const Matrix4& world) {
-    Node node;
+void addInstance(gltf::Scene& scene, int mesh, const gltf::Matrix4& world) {
+    gltf::Node node;
     node.mesh = mesh;
     node.world = world;
     scene.nodes.push_back(std::move(node));
 }
 
-void addInstance(Scene& scene, int mesh) {
+void addInstance(gltf::Scene& scene, int mesh) {
     addInstance(scene, mesh, scaling(1.0, 1.0, 1.0));
 }
 
-Matrix4 scaling(double x, double y, double z) {
-    Matrix4 matrix{};
+gltf::Matrix4 scaling(double x, double y, double z) {
+    gltf::Matrix4 matrix{};
     matrix[0] = x;
     matrix[5] = y;
     matrix[10] = z;
@@ -81,13 +81,13 @@ Matrix4 scaling(double x, double y, double z) {
     return matrix;
 }
 
-int addTexture(Scene& scene, int width, int height, std::vector<std::uint8_t> rgba8) {
-    Sampler sampler;
-    sampler.magnification = Filter::Nearest;
-    sampler.minification = Filter::Nearest;
+int addTexture(gltf::Scene& scene, int width, int height, std::vector<std::uint8_t> rgba8) {
+    gltf::Sampler sampler;
+    sampler.magnification = gltf::Filter::Nearest;
+    sampler.minification = gltf::Filter::Nearest;
     sampler.mipmapped = false;
     scene.samplers.push_back(sampler);
-    Image image;
+    gltf::Image image;
     image.name = "made by hand";
     image.width = width;
     image.height = height;
@@ -98,15 +98,15 @@ int addTexture(Scene& scene, int width, int height, std::vector<std::uint8_t> rg
     return static_cast<int>(scene.textures.size()) - 1;
 }
 
-void addCamera(Scene& scene) {
-    Camera camera;
+void addCamera(gltf::Scene& scene) {
+    gltf::Camera camera;
     camera.yfov = std::numbers::pi / 2.0;
     camera.world = scaling(1.0, 1.0, 1.0);
     scene.cameras.push_back(camera);
 }
 
-void addDirectionalLight(Scene& scene, Float3 direction, float lux) {
-    Light light;
+void addDirectionalLight(gltf::Scene& scene, gltf::Float3 direction, float lux) {
+    gltf::Light light;
     light.direction = direction;
     light.intensity = lux;
     scene.lights.push_back(light);

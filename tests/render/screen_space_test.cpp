@@ -14,9 +14,9 @@ using namespace glint::testing;
 
 constexpr std::uint32_t kSize = 64;
 
-void addBox(Scene& scene, int material, Float3 low, Float3 size) {
+void addBox(gltf::Scene& scene, int material, gltf::Float3 low, gltf::Float3 size) {
     const auto [x, y, z] = size;
-    Mesh mesh;
+    gltf::Mesh mesh;
     mesh.primitives = {makeQuad(material, {low[0], low[1], low[2] + z}, {x, 0, 0}, {0, y, 0}),       // front
                        makeQuad(material, {low[0] + x, low[1], low[2]}, {-x, 0, 0}, {0, y, 0}),      // back
                        makeQuad(material, {low[0], low[1] + y, low[2] + z}, {x, 0, 0}, {0, 0, -z}),  // top
@@ -28,8 +28,8 @@ void addBox(Scene& scene, int material, Float3 low, Float3 size) {
 }
 
 // Returns a mirror floor one metre below the camera that ends at a wall: blue below 2 m, green above.
-Scene room() {
-    Scene scene = emptyScene();
+gltf::Scene room() {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int blue = addMaterial(scene, unlitMaterial(kBlue));
@@ -41,13 +41,13 @@ Scene room() {
     return scene;
 }
 
-Scene roomWithBox() {
-    Scene scene = room();
+gltf::Scene roomWithBox() {
+    gltf::Scene scene = room();
     addBox(scene, addMaterial(scene, unlitMaterial(kRed)), {-1.0F, -1.0F, -6.0F}, {2.0F, 1.5F, 1.0F});
     return scene;
 }
 
-RenderSetup withSteps(const Scene& scene, std::uint32_t steps) {
+RenderSetup withSteps(const gltf::Scene& scene, std::uint32_t steps) {
     RenderSetup setup = squareSetup(scene);
     setup.width = setup.height = kSize;
     setup.frame.screenSteps = steps;
@@ -97,15 +97,15 @@ INSTANTIATE_TEST_SUITE_P(Steps, ScreenSpace, ::testing::Values(8U, 24U, kEveryPi
 // The floor's pixels show what a camera two metres below, looking up through it, would see. The line of sight
 // of row y meets the plane z = -d at the height -2 + d s, s = 2 (y + 1/2) / 64 - 1.
 TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
-    const Scene scene = roomWithBox();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = roomWithBox();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     const TracedFrame frame = traceFrame(loaded, package::kStrategyUber, withSteps(scene, GetParam()));
     ASSERT_FALSE(frame.image.pixels.empty());
     const struct {
         std::uint32_t x;
         std::uint32_t y;
-        Float3 color;
+        gltf::Float3 color;
         const char* what;
     } expected[] = {
         {32, 40, kRed, "the box's front, at -0.67 m"},
@@ -119,8 +119,8 @@ TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
 }
 
 TEST_P(ScreenSpace, AgreesWithRays) {
-    const Scene scene = roomWithBox();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = roomWithBox();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     RenderSetup setups[] = {withSteps(scene, GetParam()), withSteps(scene, GetParam())};
     // The view is from above with parallel rays; the floor fills the lower half.
@@ -154,12 +154,12 @@ TEST_P(ScreenSpace, AgreesWithRays) {
 // A slab hangs in front of a red panel that the camera can't see. The floor reflects the panel from below the
 // slab.
 TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
-    Scene scene = room();
+    gltf::Scene scene = room();
     const int slab = addMaterial(scene, unlitMaterial({0.9F, 0.9F, 0.1F}));
     const int panel = addMaterial(scene, unlitMaterial(kRed));
     addBox(scene, slab, {-0.8F, 0.45F, -3.2F}, {1.6F, 0.75F, 0.2F});
     addInstance(scene, addMesh(scene, makeQuad(panel, {-1, 1, -6}, {2, 0, 0}, {0, 1.2F, 0})));
-    const LoadedScene loaded(scene, PlanOptions{});
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     for (const float thickness : {0.02F, 10.0F}) {
         RenderSetup setup = withSteps(scene, GetParam());
@@ -178,11 +178,11 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
 // A convex mirror does not see itself, whatever its facets and normals are.
 TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
     for (const int rows : {6, 40}) {
-        Scene scene = emptyScene();
+        gltf::Scene scene = emptyScene();
         addCamera(scene);
         addInstance(scene, addMesh(scene, makeSphere(addMaterial(scene, mirrorMaterial()),
                                                      {0.1F, -0.2F, -2.0F}, 1.3F, rows)));
-        const LoadedScene loaded(scene, PlanOptions{});
+        const LoadedScene loaded(scene, compiler::PlanOptions{});
         ASSERT_TRUE(loaded.ok());
         RenderSetup setup = withSteps(scene, GetParam());
         setup.frame.screenThickness = 1.0F;
@@ -197,12 +197,12 @@ TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
 // Rays that the march has followed pixel by pixel start where it ends, on the same line. Other rays start
 // where they would without it.
 TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-20, -1, 4}, {40, 0, 0},
                                                {0, 0, -14})));
     addBox(scene, addMaterial(scene, unlitMaterial(kRed)), {-1.0F, 0.5F, -6.0F}, {2.0F, 1.5F, 1.0F});
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.hitRecord = package::HitRecordFormat::Packed;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
@@ -239,8 +239,8 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
 
 // Samples of a pixel are off its centre, so depth and march must agree on where they are.
 TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
-    const Scene scene = roomWithBox();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = roomWithBox();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, kEveryPixel);
     setup.samples = 16;
@@ -258,8 +258,8 @@ TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
 }
 
 TEST(ScreenSpaceSamples, NoThicknessMeansRays) {
-    const Scene scene = roomWithBox();
-    const LoadedScene loaded(scene, PlanOptions{});
+    const gltf::Scene scene = roomWithBox();
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, kEveryPixel);
     setup.frame.screenThickness = 0.0F;

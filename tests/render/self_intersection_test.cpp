@@ -94,12 +94,12 @@ Double3 along(const Double3& from, const Double3& direction, double length) {
             from[2] + length * direction[2]};
 }
 
-Float3 toFloat(const Double3& v) {
+gltf::Float3 toFloat(const Double3& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-Primitive strewnTriangles(const MeshKind& kind, std::mt19937_64& random) {
-    Primitive primitive;
+gltf::Primitive strewnTriangles(const MeshKind& kind, std::mt19937_64& random) {
+    gltf::Primitive primitive;
     primitive.pointer = "/meshes/0/primitives/0";
     for (std::uint32_t i = 0; i < kTrianglesPerMesh; ++i) {
         Double3 corner = kind.centre;
@@ -120,8 +120,8 @@ Primitive strewnTriangles(const MeshKind& kind, std::mt19937_64& random) {
 }
 
 // Returns a column-major matrix that moves the mesh's centre to where the placement wants it.
-Matrix4 matrixOf(const MeshKind& kind, const Placement& placement) {
-    Matrix4 matrix{};
+gltf::Matrix4 matrixOf(const MeshKind& kind, const Placement& placement) {
+    gltf::Matrix4 matrix{};
     for (std::size_t row = 0; row < 3; ++row) {
         double moved = placement.identity ? 0.0 : placement.centre[row];
         for (std::size_t column = 0; column < 3; ++column) {
@@ -134,7 +134,7 @@ Matrix4 matrixOf(const MeshKind& kind, const Placement& placement) {
     return matrix;
 }
 
-Double3 transform(const Matrix4& m, const Double3& p) {
+Double3 transform(const gltf::Matrix4& m, const Double3& p) {
     Double3 result{};
     for (std::size_t row = 0; row < 3; ++row) {
         result[row] = m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row];
@@ -143,11 +143,11 @@ Double3 transform(const Matrix4& m, const Double3& p) {
 }
 
 // Returns a ray towards a random point of a random triangle.
-gpu::RayRecord aim(const Primitive& primitive, const Matrix4& matrix, std::mt19937_64& random) {
+gpu::RayRecord aim(const gltf::Primitive& primitive, const gltf::Matrix4& matrix, std::mt19937_64& random) {
     const std::size_t triangle = random() % kTrianglesPerMesh;
     std::array<Double3, 3> corners{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Float3& p = primitive.positions[3 * triangle + k];
+        const gltf::Float3& p = primitive.positions[3 * triangle + k];
         corners[k] = transform(matrix, {p[0], p[1], p[2]});
     }
     double u = unit(random);
@@ -164,8 +164,8 @@ gpu::RayRecord aim(const Primitive& primitive, const Matrix4& matrix, std::mt199
             {size, std::abs(corners[1][k] - corners[0][k]), std::abs(corners[2][k] - corners[0][k])});
     }
     const Double3 direction = randomDirection(random);
-    const Float3 from = toFloat(along(target, direction, -3.0 * size));
-    const Float3 towards = toFloat(direction);
+    const gltf::Float3 from = toFloat(along(target, direction, -3.0 * size));
+    const gltf::Float3 towards = toFloat(direction);
     gpu::RayRecord ray{};
     ray.origin = {from[0], from[1], from[2]};
     ray.direction = {towards[0], towards[1], towards[2]};
@@ -173,9 +173,9 @@ gpu::RayRecord aim(const Primitive& primitive, const Matrix4& matrix, std::mt199
 }
 
 // Returns the largest of the terms that make up a coordinate of the world, to which rounding is relative.
-double magnitude(const Primitive& primitive, const Matrix4& m) {
+double magnitude(const gltf::Primitive& primitive, const gltf::Matrix4& m) {
     double largest = 0.0;
-    for (const Float3& p : primitive.positions) {
+    for (const gltf::Float3& p : primitive.positions) {
         for (std::size_t row = 0; row < 3; ++row) {
             largest = std::max(largest, std::abs(m[row] * p[0]) + std::abs(m[4 + row] * p[1]) +
                                             std::abs(m[8 + row] * p[2]) + std::abs(m[12 + row]));
@@ -205,22 +205,22 @@ std::uint64_t wantedRays() {
 void shoot(const MeshKind& kind, std::uint64_t rays, std::string& table,
            std::array<std::uint64_t, 4>& totals) {
     std::mt19937_64 random(kSeed);
-    Scene scene = emptyScene();
-    Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
+    gltf::Scene scene = emptyScene();
+    materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
     material.doubleSided = true;
     addMaterial(scene, material);
     const int mesh = addMesh(scene, strewnTriangles(kind, random));
     for (const Placement& placement : kPlacements) {
         addInstance(scene, mesh, matrixOf(kind, placement));
     }
-    const LoadedScene loaded(scene, PlanOptions{});
+    const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
     const Result<std::unique_ptr<HitKernel>> kernel =
         HitKernel::create(scene, loaded, "self_intersection.comp");
     ASSERT_TRUE(kernel) << toString(kernel.error());
 
     // Two rays leave each hit. Some rays of the first generation pass between the small triangles.
-    const Primitive& primitive = scene.meshes[0].primitives[0];
+    const gltf::Primitive& primitive = scene.meshes[0].primitives[0];
     std::vector<gpu::RayRecord> records;
     for (std::uint64_t i = 0; i < rays * 5 / 8; ++i) {
         records.push_back(aim(primitive, scene.nodes[i % kPlacementCount].world, random));
@@ -267,7 +267,8 @@ TEST(SelfIntersection, NoRayMeetsTheTriangleThatItLeaves) {
     RecordProperty("meetFromHit", std::to_string(totals[1]));
     RecordProperty("meetFromUnits", std::to_string(totals[2]));
     RecordProperty("meetFromRayOrigin", std::to_string(totals[3]));
-    EXPECT_TRUE(writeFile(std::filesystem::path(GLINT_BINARY_DIR) / "tests" / "self_intersection.md", table));
+    EXPECT_TRUE(
+        base::writeFile(std::filesystem::path(GLINT_BINARY_DIR) / "tests" / "self_intersection.md", table));
     // The test must be able to detect a fault: most rays must have left a triangle, and some must have hit it
     // without an offset.
     EXPECT_GT(totals[0], rays / 2);

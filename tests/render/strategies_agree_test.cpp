@@ -26,15 +26,15 @@ const char* name(package::Strategy strategy) {
 class StrategiesAgree : public ::testing::TestWithParam<std::string> {
 protected:
     // Skips or fails the test if there is no scene; the caller must then return.
-    std::optional<Scene> load() {
+    std::optional<gltf::Scene> load() {
         const fs::path path = GetParam();
         if (!fs::exists(path)) {
             skip(test::noModels(path));
             return std::nullopt;
         }
-        ImportOptions options;
+        gltf::ImportOptions options;
         options.decodeImages = true;
-        Result<Scene> scene = importScene(path, options);
+        Result<gltf::Scene> scene = importScene(path, options);
         if (!scene && scene.error().id == "texture-basisu") {
             skip("this build does not decode the KTX2 textures of " + path.filename().string());
             return std::nullopt;
@@ -47,13 +47,14 @@ protected:
     }
 
     // Renders with both strategies under each of `merges`; all images must be the same.
-    void expectAgreement(const Scene& scene, const std::vector<MergePolicy>& merges, AlphaPolicy alpha) {
+    void expectAgreement(const gltf::Scene& scene, const std::vector<compiler::MergePolicy>& merges,
+                         package::AlphaPolicy alpha) {
         RenderSetup setup = defaultSetup(scene, 64, 36);
         // Everything that is not fully rough sends a ray, so that as many hits as possible are shaded.
         setup.frame.maxReflectionRoughness = 1.0F;
         LinearImage reference;
-        for (const MergePolicy merge : merges) {
-            PlanOptions plan;
+        for (const compiler::MergePolicy merge : merges) {
+            compiler::PlanOptions plan;
             plan.keys.alpha = alpha;
             plan.merge = merge;
             const LoadedScene loaded(scene, plan);
@@ -79,13 +80,14 @@ private:
 };
 
 TEST_P(StrategiesAgree, UnderEveryMergePolicy) {
-    if (const std::optional<Scene> scene = load()) {
+    if (const std::optional<gltf::Scene> scene = load()) {
         // The gallery has the features of the other scenes, which therefore get all policies only at night.
         const bool all = test::nightly() || GetParam() == GLINT_GALLERY_SCENE;
         expectAgreement(*scene,
-                        all ? std::vector{MergePolicy::None, MergePolicy::Family, MergePolicy::All}
-                            : std::vector{MergePolicy::None, MergePolicy::All},
-                        AlphaPolicy::Opaque);
+                        all ? std::vector{compiler::MergePolicy::None, compiler::MergePolicy::Family,
+                                          compiler::MergePolicy::All}
+                            : std::vector{compiler::MergePolicy::None, compiler::MergePolicy::All},
+                        package::AlphaPolicy::Opaque);
     }
 }
 
@@ -93,15 +95,16 @@ TEST_P(StrategiesAgree, UnderEveryMergePolicy) {
 class StrategiesAgreeTested : public StrategiesAgree {};
 
 TEST_P(StrategiesAgreeTested, WithAlphaMasks) {
-    if (const std::optional<Scene> scene = load()) {
-        const bool masked = std::ranges::any_of(
-            scene->materials, [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
+    if (const std::optional<gltf::Scene> scene = load()) {
+        const bool masked = std::ranges::any_of(scene->materials, [](const materials::Material& material) {
+            return material.alphaMode == materials::AlphaMode::Mask;
+        });
         EXPECT_TRUE(masked) << "the scene has no mask to test";
         // Uber shaders and visibility differ most where each key has its own case.
         expectAgreement(*scene,
-                        test::nightly() ? std::vector{MergePolicy::None, MergePolicy::All}
-                                        : std::vector{MergePolicy::None},
-                        AlphaPolicy::Tested);
+                        test::nightly() ? std::vector{compiler::MergePolicy::None, compiler::MergePolicy::All}
+                                        : std::vector{compiler::MergePolicy::None},
+                        package::AlphaPolicy::Tested);
     }
 }
 

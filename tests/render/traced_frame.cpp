@@ -109,8 +109,8 @@ TracedFrame traceFrame(const LoadedScene& scene, package::Strategy strategy, con
     return frame;
 }
 
-Primitive makeSphere(int material, Float3 centre, float radius, int rows) {
-    Primitive sphere;
+gltf::Primitive makeSphere(int material, gltf::Float3 centre, float radius, int rows) {
+    gltf::Primitive sphere;
     sphere.pointer = "/meshes/0/primitives/0";
     sphere.material = material;
     const int columns = 2 * rows;
@@ -119,8 +119,8 @@ Primitive makeSphere(int material, Float3 centre, float radius, int rows) {
         for (int column = 0; column <= columns; ++column) {
             const float around =
                 2.0F * std::numbers::pi_v<float> * static_cast<float>(column) / static_cast<float>(columns);
-            const Float3 normal{std::sin(polar) * std::cos(around), std::cos(polar),
-                                std::sin(polar) * std::sin(around)};
+            const gltf::Float3 normal{std::sin(polar) * std::cos(around), std::cos(polar),
+                                      std::sin(polar) * std::sin(around)};
             sphere.normals.push_back(normal);
             sphere.positions.push_back({centre[0] + radius * normal[0], centre[1] + radius * normal[1],
                                         centre[2] + radius * normal[2]});

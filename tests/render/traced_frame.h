@@ -21,6 +21,6 @@ TracedFrame traceFrame(const LoadedScene& scene, package::Strategy strategy, con
 
 // Returns a sphere with `rows` rows and twice as many columns of quads, with smooth normals, seen from
 // outside.
-Primitive makeSphere(int material, Float3 centre, float radius, int rows);
+gltf::Primitive makeSphere(int material, gltf::Float3 centre, float radius, int rows);
 
 }  // namespace glint::testing

@@ -18,8 +18,8 @@ namespace {
 constexpr std::uint32_t kWidth = 16;  // quads of the hills in each direction
 
 // Returns the even or odd columns of quads of a square of hills under the camera, 4 m wide, with `material`.
-Primitive hills(int material, std::uint32_t parity) {
-    Primitive primitive = makeQuad(material, {-2, -1, -4}, {4, 0, 0}, {0, 0, -4});
+gltf::Primitive hills(int material, std::uint32_t parity) {
+    gltf::Primitive primitive = makeQuad(material, {-2, -1, -4}, {4, 0, 0}, {0, 0, -4});
     primitive.positions.clear();
     primitive.normals.clear();
     primitive.texCoords0.clear();
@@ -45,7 +45,7 @@ Primitive hills(int material, std::uint32_t parity) {
     return primitive;
 }
 
-void shuffleTriangles(Primitive& primitive) {
+void shuffleTriangles(gltf::Primitive& primitive) {
     std::vector<std::array<std::uint32_t, 3>> triangles(primitive.indices.size() / 3);
     for (std::size_t i = 0; i < primitive.indices.size(); ++i) {
         triangles[i / 3][i % 3] = primitive.indices[i];
@@ -57,19 +57,19 @@ void shuffleTriangles(Primitive& primitive) {
 }
 
 // Returns mirrors and masked stripes in one mesh, nine times, under a wall that they reflect.
-Scene stripes(bool shuffled) {
-    Scene scene = emptyScene();
+gltf::Scene stripes(bool shuffled) {
+    gltf::Scene scene = emptyScene();
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int texture =
         addTexture(scene, 2, 2, {255, 90, 90, 255, 90, 255, 90, 0, 90, 90, 255, 0, 255, 255, 90, 255});
-    Material masked = mirrorMaterial();
-    masked.alphaMode = AlphaMode::Mask;
+    materials::Material masked = mirrorMaterial();
+    masked.alphaMode = materials::AlphaMode::Mask;
     masked.texture("baseColorTexture").texture = texture;
     const int mask = addMaterial(scene, masked);
-    Mesh& mesh = scene.meshes.emplace_back();
+    gltf::Mesh& mesh = scene.meshes.emplace_back();
     mesh.primitives = {hills(mirror, 0), hills(mask, 1)};
     if (shuffled) {
-        for (Primitive& primitive : mesh.primitives) {
+        for (gltf::Primitive& primitive : mesh.primitives) {
             shuffleTriangles(primitive);
         }
     }
@@ -81,7 +81,7 @@ Scene stripes(bool shuffled) {
         std::ranges::shuffle(places, std::mt19937(8));
     }
     for (const auto& [x, z] : places) {
-        Matrix4 world = scaling(1, 1, 1);
+        gltf::Matrix4 world = scaling(1, 1, 1);
         world[12] = x;
         world[14] = z;
         addInstance(scene, 0, world);
@@ -92,10 +92,10 @@ Scene stripes(bool shuffled) {
     return scene;
 }
 
-LinearImage render(const Scene& scene, TraversalOrder order) {
-    CompileSettings settings;
+LinearImage render(const gltf::Scene& scene, TraversalOrder order) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings,
                              [&](scene_view::SceneViewData& data) { data.traversalOrder = order; });
     if (!loaded.ok()) {
@@ -115,13 +115,13 @@ TEST(Traversal, PicturesDoNotShowTheOrder) {
 
 // Rays go straight down to the centre of each triangle. They return the number that the driver gives it.
 TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
-    Scene scene = emptyScene();
-    Primitive primitive = hills(addMaterial(scene, unlitMaterial({1, 1, 1})), 0);
+    gltf::Scene scene = emptyScene();
+    gltf::Primitive primitive = hills(addMaterial(scene, unlitMaterial({1, 1, 1})), 0);
     shuffleTriangles(primitive);
-    const Primitive own = primitive;
+    const gltf::Primitive own = primitive;
     addInstance(scene, addMesh(scene, std::move(primitive)));
     addCamera(scene);
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) {
         data.traversalOrder = TraversalOrder::Halving;
@@ -133,7 +133,7 @@ TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
     std::vector<LeafBox> leaves(count);
     std::vector<gpu::RayRecord> rays(count);
     for (std::size_t i = 0; i < own.indices.size(); ++i) {
-        const Float3& corner = own.positions[own.indices[i]];
+        const gltf::Float3& corner = own.positions[own.indices[i]];
         leaves[i / 3].extend(corner);
         rays[i / 3].origin.x += corner[0] / 3.0F;
         rays[i / 3].origin.y = 5.0F;

@@ -10,8 +10,8 @@
 namespace glint {
 
 // Ends the test program if the built-in model has no such feature, so that a misspelt name can't pass.
-inline FeatureMask bit(std::string_view feature) {
-    const FeatureMask mask = builtinMaterialModel().mask(feature);
+inline materials::FeatureMask bit(std::string_view feature) {
+    const materials::FeatureMask mask = materials::builtinMaterialModel().mask(feature);
     if (mask == 0) {
         std::abort();
     }

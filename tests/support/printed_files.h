@@ -23,14 +23,14 @@ inline std::string printedFile(std::string_view page, const std::string& name) {
 // Writes files below `folder` as the page in docs/ prints them. Fails the test if it lacks one.
 inline void writePrintedFiles(const std::string& page, const std::filesystem::path& folder,
                               std::initializer_list<const char*> names) {
-    const Result<Bytes> bytes = readFile(std::filesystem::path(GLINT_SOURCE_DIR "/docs") / page);
+    const Result<base::Bytes> bytes = base::readFile(std::filesystem::path(GLINT_SOURCE_DIR "/docs") / page);
     ASSERT_TRUE(bytes);
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     for (const char* const name : names) {
         const std::string file = printedFile(text, name);
         ASSERT_FALSE(file.empty()) << page << " does not print " << name;
         std::filesystem::create_directories((folder / name).parent_path());
-        ASSERT_TRUE(writeFile(folder / name, file));
+        ASSERT_TRUE(base::writeFile(folder / name, file));
     }
 }
 

@@ -8,19 +8,20 @@
 
 namespace glint::testing {
 
-ModuleCache& sharedModules() {
+compiler::ModuleCache& sharedModules() {
     constexpr std::uint64_t kMaxBytes = 512ULL << 20;
-    static CacheStore store({GLINT_BINARY_DIR "/tests/cache", kMaxBytes, {}});
-    static ModuleCache cache(store, moduleCompiler());
+    static compiler::CacheStore store({GLINT_BINARY_DIR "/tests/cache", kMaxBytes, {}});
+    static compiler::ModuleCache cache(store, compiler::moduleCompiler());
     return cache;
 }
 
 Result<std::vector<std::uint32_t>> compileComputeOnce(const std::string& name, const std::string& glsl) {
     const std::string text = "compute shader of a test\n" + glsl;
-    if (std::optional<CachedModule> found = sharedModules().find(text)) {
+    if (std::optional<compiler::CachedModule> found = sharedModules().find(text)) {
         return std::move(found->spirv);
     }
-    Result<CachedModule> compiled = compileMeasured({name, ShaderStage::Compute, glsl, {}}, {});
+    Result<compiler::CachedModule> compiled =
+        compiler::compileMeasured({name, compiler::ShaderStage::Compute, glsl, {}}, {});
     if (!compiled) {
         return compiled.error();
     }

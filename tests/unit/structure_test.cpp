@@ -116,6 +116,36 @@ TEST(Structure, EveryFolderOfTheToolIsAPart) {
     });
 }
 
+// What the runtime declares is in `glint` itself. The parts of the compiler share a namespace, because they
+// are one library.
+TEST(Structure, EveryPartOfTheToolHasANamespaceOfItsOwn) {
+    const std::map<std::string, std::string, std::less<>> shared{
+        {"plan", "compiler"},  {"scene", "compiler"},    {"spirv", "compiler"},
+        {"cache", "compiler"}, {"settings", "compiler"}, {"emit", "compiler"}};
+    static const std::regex kNamespace(R"(^namespace (glint[\w:]*) \{)");
+    for (const std::string_view part : kParts) {
+        const auto found = shared.find(part);
+        const std::string own = "glint::" + (found == shared.end() ? std::string(part) : found->second);
+        visitSources("tool/" + std::string(part), [&](const fs::path& path) {
+            std::ifstream file(path);
+            bool forwards = true;  // whether a namespace only declares what another part defines
+            for (std::string line, opened; std::getline(file, line);) {
+                std::smatch match;
+                if (std::regex_search(line, match, kNamespace)) {
+                    opened = match[1];
+                    forwards = true;
+                } else if (line == "}  // namespace " + opened) {
+                    EXPECT_TRUE(forwards || opened.starts_with(own)) << path << " opens " << opened;
+                    opened.clear();
+                } else if (!opened.empty() && !line.empty() && !line.starts_with("class ") &&
+                           !line.starts_with("struct ")) {
+                    forwards = false;
+                }
+            }
+        });
+    }
+}
+
 TEST(Structure, TheCompilerKnowsNoVulkan) {
     for (const std::string_view part : kParts) {
         if (part == kFirstWithRuntime) {

@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace glint {
+namespace glint::base {
 
 struct BuiltinFile {
     std::string_view
@@ -11,4 +11,4 @@ struct BuiltinFile {
     std::string_view text;
 };
 
-}  // namespace glint
+}  // namespace glint::base

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace glint {
+namespace glint::base {
 
 using Clock = std::chrono::steady_clock;
 
@@ -15,4 +15,4 @@ inline double millisecondsSince(Clock::time_point start) {
     return millisecondsBetween(start, Clock::now());
 }
 
-}  // namespace glint
+}  // namespace glint::base

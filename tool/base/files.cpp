@@ -10,7 +10,7 @@
 #include <memory>
 #include <system_error>
 
-namespace glint {
+namespace glint::base {
 
 namespace fs = std::filesystem;
 
@@ -96,4 +96,4 @@ Status writeFile(const fs::path& path, std::string_view text) {
     return writeFile(path, asBytes(text));
 }
 
-}  // namespace glint
+}  // namespace glint::base

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::base {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -47,4 +47,4 @@ Result<FileDigest> digestFile(const std::filesystem::path& path);
 Status writeFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 Status writeFile(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace glint
+}  // namespace glint::base

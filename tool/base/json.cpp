@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace glint {
+namespace glint::base {
 
 std::string toText(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -97,4 +97,4 @@ std::vector<std::string> JsonReader::texts(const Json& object, const std::string
     return list;
 }
 
-}  // namespace glint
+}  // namespace glint::base

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::base {
 
 // Keys keep the order in which they are added.
 using Json = nlohmann::ordered_json;
@@ -75,4 +75,4 @@ private:
     Diagnostic error_;
 };
 
-}  // namespace glint
+}  // namespace glint::base

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace glint {
+namespace glint::base {
 
 bool nestsTooDeep(std::span<const std::uint8_t> json) {
     int depth = 0;
@@ -24,4 +24,4 @@ bool nestsTooDeep(std::span<const std::uint8_t> json) {
     return false;
 }
 
-}  // namespace glint
+}  // namespace glint::base

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace glint {
+namespace glint::base {
 
 // The files that Glint reads and writes need fewer than a dozen levels, and `extras` of glTF seldom need
 // more.
@@ -14,4 +14,4 @@ inline constexpr int kMaxJsonDepth = 128;
 // JSON.
 bool nestsTooDeep(std::span<const std::uint8_t> json);
 
-}  // namespace glint
+}  // namespace glint::base

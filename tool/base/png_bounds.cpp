@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace glint {
+namespace glint::base {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::string findPngExcess(std::span<const std::uint8_t> bytes, std::int64_t widt
     return {};
 }
 
-}  // namespace glint
+}  // namespace glint::base

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::base {
 
 namespace fs = std::filesystem;
 
@@ -122,4 +122,4 @@ void removeAbandoned(const fs::path& path) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::base

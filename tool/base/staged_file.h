@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace glint {
+namespace glint::base {
 
 // The new contents of a file, complete on disk but not yet in place, so that a full disk can no longer make
 // it fail. The destructor removes them unless they were committed.
@@ -38,4 +38,4 @@ Status writeStaged(const std::filesystem::path& path, std::span<const std::uint8
 // Removes temporary files beside `path` that killed runs left; writeFile() does so by itself.
 void removeAbandoned(const std::filesystem::path& path);
 
-}  // namespace glint
+}  // namespace glint::base

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace glint {
+namespace glint::base {
 
 int editDistance(std::string_view a, std::string_view b) {
     // Row i holds the distances of the first i characters of `a` to every beginning of `b`.
@@ -90,4 +90,4 @@ std::string enumeration(std::span<const std::string> candidates) {
     return " (it has " + text + (count > kShown ? " and " + std::to_string(count - kShown) + " more)" : ")");
 }
 
-}  // namespace glint
+}  // namespace glint::base

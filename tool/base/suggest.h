@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::base {
 
 // Returns how many insertions, deletions, substitutions and swaps of neighbours turn `a` into `b` (optimal
 // string alignment).
@@ -23,4 +23,4 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
 // Empty names are left out, and names with commas are quoted.
 std::string enumeration(std::span<const std::string> candidates);
 
-}  // namespace glint
+}  // namespace glint::base

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace glint {
+namespace glint::base {
 
 std::string join(const std::vector<std::string>& words) {
     return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
@@ -32,4 +32,4 @@ std::string shellWords(const std::vector<std::string>& words) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::base

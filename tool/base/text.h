@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::base {
 
 // Returns "a, b, c", or "-" for an empty list.
 std::string join(const std::vector<std::string>& words);
@@ -15,4 +15,4 @@ std::string shellQuoted(std::string_view text);
 // Returns the words as a shell accepts them. Words with characters that have a meaning in a shell are quoted.
 std::string shellWords(const std::vector<std::string>& words);
 
-}  // namespace glint
+}  // namespace glint::base

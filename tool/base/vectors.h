@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace glint {
+namespace glint::base {
 
 using Double3 = std::array<double, 3>;
 
@@ -66,4 +66,4 @@ bool isFinite(const std::array<Number, N>& value) {
     return std::ranges::all_of(value, [](Number number) { return std::isfinite(number); });
 }
 
-}  // namespace glint
+}  // namespace glint::base

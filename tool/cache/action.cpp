@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <system_error>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -55,7 +55,7 @@ std::vector<FileState> unpackFiles(Unpacker& unpacker) {
 }  // namespace
 
 std::optional<FileState> stateOf(const fs::path& path) {
-    const Result<FileDigest> digest = digestFile(path);
+    const Result<base::FileDigest> digest = base::digestFile(path);
     if (!digest) {
         return std::nullopt;
     }
@@ -106,4 +106,4 @@ std::optional<ActionRecord> unpackAction(std::string_view bytes) {
     return unpacker.atEnd() ? std::optional(std::move(record)) : std::nullopt;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The state of a file at the time of the run.
 struct FileState {
@@ -39,4 +39,4 @@ std::string pack(const ActionRecord& record);
 // Returns nothing if `bytes` is not a record.
 std::optional<ActionRecord> unpackAction(std::string_view bytes);
 
-}  // namespace glint
+}  // namespace glint::compiler

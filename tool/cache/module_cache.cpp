@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -64,4 +64,4 @@ void ModuleCache::put(std::string_view source, const CachedModule& module) const
     store_.put(kKind, keyOf(source), packModule(module));
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

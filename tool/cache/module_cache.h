@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct CachedModule {
     std::vector<std::uint32_t> spirv;
@@ -39,4 +39,4 @@ private:
     std::string compiler_;
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace glint {
+namespace glint::compiler {
 
 Packer& Packer::add(std::uint64_t number) {
     char bytes[sizeof number];
@@ -44,4 +44,4 @@ std::optional<std::string_view> Unpacker::text() {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 class Packer {
 public:
@@ -41,4 +41,4 @@ private:
     std::string_view rest_;
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -71,4 +71,4 @@ std::string programIdentity() {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -37,7 +37,8 @@ constexpr std::string_view kFolderTag =
     "# Compiled shaders of glint. May be deleted at any time.\n";
 
 std::uint64_t checksum(std::string_view key, std::string_view value) {
-    return hashBytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()}, hashBytes(key));
+    return base::hashBytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()},
+                           base::hashBytes(key));
 }
 
 // Writes all of `bytes` to a file that must not exist yet. Returns 0, or errno.
@@ -98,22 +99,22 @@ std::vector<Entry> listEntries(const fs::path& folder) {
 
 CacheStore::CacheStore(StoreOptions options) : options_(std::move(options)) {
     if (!options_.hash) {
-        options_.hash = [](std::string_view key) { return hashBytes(key); };
+        options_.hash = [](std::string_view key) { return base::hashBytes(key); };
     }
 }
 
 fs::path CacheStore::fileOf(std::string_view kind, std::string_view key) const {
-    const std::string hash = hexHash(options_.hash(key));
+    const std::string hash = base::hexHash(options_.hash(key));
     return options_.folder / kLayout / hash.substr(0, 2) / fmt::format("{}.{}", hash.substr(2), kind);
 }
 
 std::optional<std::string> CacheStore::find(std::string_view kind, std::string_view key) {
     const fs::path path = fileOf(kind, key);
-    const Result<Bytes> bytes = readFile(path, kMaxEntryBytes);
-    if (!bytes || !asText(*bytes).starts_with(kEntryMagic)) {
+    const Result<base::Bytes> bytes = base::readFile(path, kMaxEntryBytes);
+    if (!bytes || !base::asText(*bytes).starts_with(kEntryMagic)) {
         return std::nullopt;
     }
-    Unpacker entry(asText(*bytes).substr(kEntryMagic.size()));
+    Unpacker entry(base::asText(*bytes).substr(kEntryMagic.size()));
     const std::optional<std::uint64_t> sum = entry.number();
     const std::optional<std::string_view> held = entry.text();
     const std::optional<std::string_view> value = entry.text();
@@ -158,7 +159,7 @@ void CacheStore::trim() {
     std::error_code error;
     if (!fs::exists(options_.folder / kTagFile, error)) {
         // An error is ignored, because nothing depends on this file.
-        (void)writeFile(options_.folder / kTagFile, kFolderTag);
+        (void)base::writeFile(options_.folder / kTagFile, kFolderTag);
     }
     std::vector<Entry> entries = listEntries(options_.folder / kLayout);
     std::uint64_t bytes = 0;
@@ -194,4 +195,4 @@ void CacheStore::report(const fs::path& path, const std::string& why) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

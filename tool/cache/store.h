@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 struct StoreOptions {
     std::filesystem::path folder;
@@ -53,4 +53,4 @@ private:
     std::optional<Diagnostic> trouble_;
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -20,13 +20,13 @@
 #include <memory>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
-Status bench(const Console& console, const BenchArguments& arguments, const Scene& scene,
-             const PlanOptions& plan, measure::BenchReport& report) {
-    const Clock::time_point start = Clock::now();
+Status bench(const Console& console, const BenchArguments& arguments, const gltf::Scene& scene,
+             const compiler::PlanOptions& plan, measure::BenchReport& report) {
+    const base::Clock::time_point start = base::Clock::now();
     CompileCache cache(arguments.cache, "");
     const Result<std::unique_ptr<measure::BenchBed>> bed =
         measure::BenchBed::create(console, arguments.render, scene, cache.modules());
@@ -38,7 +38,7 @@ Status bench(const Console& console, const BenchArguments& arguments, const Scen
     Status done = measure::runBench(console, arguments, plan, **bed, cache.store(), report);
     pipelineCache.save();
     cache.close(console);
-    report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    report.seconds = std::chrono::duration<double>(base::Clock::now() - start).count();
     return done;
 }
 
@@ -51,16 +51,17 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(writable.error());
     }
     console.progress("reading " + arguments.render.scene);
-    const Result<ImportOptions> import = importOptions(arguments.render, true);
+    const Result<gltf::ImportOptions> import = importOptions(arguments.render, true);
     if (!import) {
         return fail(import.error());
     }
-    const Result<Scene> scene = importScene(arguments.render.scene, *import);
+    const Result<gltf::Scene> scene = importScene(arguments.render.scene, *import);
     if (!scene) {
         return fail(scene.error());
     }
     console.report(scene->warnings);
-    const Result<measure::PlanChoice> plan = measure::choosePlan(arguments.render, SceneList({&*scene, 1}));
+    const Result<measure::PlanChoice> plan =
+        measure::choosePlan(arguments.render, gltf::SceneList({&*scene, 1}));
     if (!plan) {
         return fail(plan.error());
     }
@@ -119,4 +120,4 @@ void addBench(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -15,7 +15,7 @@
 #include <memory>
 #include <system_error>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -31,17 +31,17 @@ struct CheckArguments {
 
 constexpr const char* kPictureSuffix = ".png";
 
-std::string cellOf(const CheckOutcome& outcome) {
+std::string cellOf(const measure::CheckOutcome& outcome) {
     switch (outcome.state) {
-        case CheckState::Passed:
+        case measure::CheckState::Passed:
             return fmt::format("{:.2g}", outcome.worst);
-        case CheckState::Failed:
+        case measure::CheckState::Failed:
             return fmt::format("FAILED {:.2g}", outcome.worst);
-        case CheckState::Unasked:
+        case measure::CheckState::Unasked:
             return "not claimed";
-        case CheckState::Unsure:
+        case measure::CheckState::Unsure:
             return "unsure";
-        case CheckState::Absent:
+        case measure::CheckState::Absent:
             break;
     }
     return "-";
@@ -55,13 +55,13 @@ std::string toText(const measure::MaterialChecksReport& report, Detail detail) {
     }
     for (const measure::FeatureChecks& feature : report.features) {
         std::vector<std::string> row{feature.feature, fmt::format("{}", feature.combinations)};
-        for (const CheckOutcome& outcome : feature.outcomes) {
+        for (const measure::CheckOutcome& outcome : feature.outcomes) {
             row.push_back(cellOf(outcome));
         }
         rows.push_back(std::move(row));
     }
     if (!report.features.empty()) {
-        for (const CheckOutcome& outcome : report.features.front().outcomes) {
+        for (const measure::CheckOutcome& outcome : report.features.front().outcomes) {
             limits.push_back(fmt::format("{:.2g}", outcome.limit));
         }
         rows.push_back(std::move(limits));
@@ -71,45 +71,45 @@ std::string toText(const measure::MaterialChecksReport& report, Detail detail) {
 }
 
 // JSON has no infinity, which is what NaN is as far as a range is concerned.
-Json finiteOrNull(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
+base::Json finiteOrNull(double value) {
+    return std::isfinite(value) ? base::Json(value) : base::Json(nullptr);
 }
 
-Json toJson(const measure::CheckPlace& place) {
-    Json parameters = Json::object();
+base::Json toJson(const measure::CheckPlace& place) {
+    base::Json parameters = base::Json::object();
     for (const auto& [name, values] : place.parameters) {
         parameters[name] = values;
     }
     return {{"base", place.base},
             {"parameters", parameters},
             {"view", place.view},
-            {"light", place.light ? Json(*place.light) : Json(nullptr)}};
+            {"light", place.light ? base::Json(*place.light) : base::Json(nullptr)}};
 }
 
-Json toJson(const CheckOutcome& outcome) {
+base::Json toJson(const measure::CheckOutcome& outcome) {
     return {{"check", nameOf(outcome.check)},
             {"state", nameOf(outcome.state)},
             {"quantity", quantityOf(outcome.check)},
             {"worst", finiteOrNull(outcome.worst)},
             {"limit", outcome.limit},
             {"evaluations", outcome.evaluations},
-            {"message", textOrNull(outcome.message)},
-            {"place", outcome.place ? toJson(*outcome.place) : Json(nullptr)}};
+            {"message", base::textOrNull(outcome.message)},
+            {"place", outcome.place ? toJson(*outcome.place) : base::Json(nullptr)}};
 }
 
-Json toJson(const measure::MaterialChecksReport& report, const std::vector<std::string>& pictures) {
-    Json features = Json::array();
+base::Json toJson(const measure::MaterialChecksReport& report, const std::vector<std::string>& pictures) {
+    base::Json features = base::Json::array();
     for (const measure::FeatureChecks& feature : report.features) {
-        Json checks = Json::array();
-        for (const CheckOutcome& outcome : feature.outcomes) {
+        base::Json checks = base::Json::array();
+        for (const measure::CheckOutcome& outcome : feature.outcomes) {
             checks.push_back(toJson(outcome));
         }
-        features.push_back(Json{{"feature", feature.feature},
-                                {"declaration", feature.declaration},
-                                {"layer", feature.isLayer},
-                                {"combinations", feature.combinations},
-                                {"failed", feature.failed()},
-                                {"checks", checks}});
+        features.push_back(base::Json{{"feature", feature.feature},
+                                      {"declaration", feature.declaration},
+                                      {"layer", feature.isLayer},
+                                      {"combinations", feature.combinations},
+                                      {"failed", feature.failed()},
+                                      {"checks", checks}});
     }
     return {{"device", report.device},
             {"samples", report.samples},
@@ -132,7 +132,7 @@ Result<std::vector<std::string>> writePictures(const std::string& folder,
     }
     for (const measure::FeaturePicture& picture : pictures) {
         const std::filesystem::path file = std::filesystem::path(folder) / (picture.name + kPictureSuffix);
-        if (Status written = writeImage(file, picture.image, 0.0); !written) {
+        if (Status written = image::writeImage(file, picture.image, 0.0); !written) {
             return written.error();
         }
         files.push_back(file.generic_string());
@@ -196,4 +196,4 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

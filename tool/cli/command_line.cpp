@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -119,4 +119,4 @@ int runCommandLine(int argc, const char* const* argv) {
     return act(chosen, report);
 }
 
-}  // namespace glint
+}  // namespace glint::cli

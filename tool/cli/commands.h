@@ -5,7 +5,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace glint {
+namespace glint::cli {
 
 void addCompile(CLI::App& app, Action& chosen);
 void addCompileModule(CLI::App& app, Action& chosen);
@@ -20,4 +20,4 @@ void addCheckMaterials(CLI::App& app, Action& chosen);
 // Call this after all other commands are added, because the script is made from their options.
 void addCompletion(CLI::App& app, Action& chosen);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -15,7 +15,7 @@
 #include <memory>
 #include <optional>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -28,29 +28,29 @@ struct CompareArguments {
 
 constexpr const char* kChannels[] = {"red", "green", "blue"};
 
-Json toJson(const LargestError& error) {
+base::Json toJson(const image::LargestError& error) {
     return {{"value", error.value}, {"x", error.x}, {"y", error.y}, {"channel", kChannels[error.channel]}};
 }
 
 // Returns the pixels as a display shows them. A PNG already has them in that form.
 LinearImage shown(const std::string& path, const LinearImage& image, double exposure) {
-    const Result<ImageFormat> format = imageFormat(path);
-    return format && *format == ImageFormat::Png ? image : displayedImage(image, exposure);
+    const Result<image::ImageFormat> format = image::imageFormat(path);
+    return format && *format == image::ImageFormat::Png ? image : image::displayedImage(image, exposure);
 }
 
 // Measures FLIP with the exposure that `glint render` would choose for the reference, or for the image if the
 // reference is a PNG.
 double measureFlip(const CompareArguments& arguments, const LinearImage& image,
                    const LinearImage& reference) {
-    const Result<ImageFormat> format = imageFormat(arguments.reference);
-    const bool hasRadiance = format && *format == ImageFormat::Exr;
-    const double exposure = automaticExposure(hasRadiance ? reference : image);
-    return flipMean(
-        flipMap(shown(arguments.image, image, exposure), shown(arguments.reference, reference, exposure)));
+    const Result<image::ImageFormat> format = image::imageFormat(arguments.reference);
+    const bool hasRadiance = format && *format == image::ImageFormat::Exr;
+    const double exposure = image::automaticExposure(hasRadiance ? reference : image);
+    return image::flipMean(image::flipMap(shown(arguments.image, image, exposure),
+                                          shown(arguments.reference, reference, exposure)));
 }
 
 // The PSNR of equal images is infinite. JSON has no infinity, so it is null.
-Json toJson(const ImageDifference& difference, double flip, const LinearImage& image) {
+base::Json toJson(const image::ImageDifference& difference, double flip, const LinearImage& image) {
     return {{"width", image.width},
             {"height", image.height},
             {"maxAbsolute", toJson(difference.absolute)},
@@ -58,7 +58,7 @@ Json toJson(const ImageDifference& difference, double flip, const LinearImage& i
             {"mean", difference.mean},
             {"rmse", difference.rmse},
             {"relMse", difference.relMse},
-            {"psnr", std::isfinite(difference.psnr) ? Json(difference.psnr) : Json(nullptr)},
+            {"psnr", std::isfinite(difference.psnr) ? base::Json(difference.psnr) : base::Json(nullptr)},
             {"flip", flip},
             {"pixels", difference.pixels},
             {"differing", difference.differing},
@@ -66,14 +66,14 @@ Json toJson(const ImageDifference& difference, double flip, const LinearImage& i
             {"referenceNonFinite", difference.referenceNonFinite}};
 }
 
-std::string toText(const LargestError& error) {
+std::string toText(const image::LargestError& error) {
     if (error.value == 0.0) {
         return "0";
     }
     return fmt::format("{:.6g} at ({}, {}) {}", error.value, error.x, error.y, kChannels[error.channel]);
 }
 
-std::string toText(const ImageDifference& difference, double flip, const LinearImage& image) {
+std::string toText(const image::ImageDifference& difference, double flip, const LinearImage& image) {
     return formatFields(
         {{"size", fmt::format("{} x {}", image.width, image.height)},
          {"largest error", toText(difference.absolute)},
@@ -89,7 +89,7 @@ std::string toText(const ImageDifference& difference, double flip, const LinearI
 }
 
 // Returns nothing if the images are near enough.
-std::optional<Diagnostic> judge(const CompareArguments& arguments, const ImageDifference& difference) {
+std::optional<Diagnostic> judge(const CompareArguments& arguments, const image::ImageDifference& difference) {
     if (!arguments.maxError) {
         return std::nullopt;
     }
@@ -106,21 +106,22 @@ std::optional<Diagnostic> judge(const CompareArguments& arguments, const ImageDi
 }
 
 int compare(const Console& console, const CompareArguments& arguments) {
-    const Result<LinearImage> image = readImage(arguments.image);
+    const Result<LinearImage> image = image::readImage(arguments.image);
     if (!image) {
         return fail(console, image.error());
     }
-    const Result<LinearImage> reference = readImage(arguments.reference);
+    const Result<LinearImage> reference = image::readImage(arguments.reference);
     if (!reference) {
         return fail(console, reference.error());
     }
-    const Result<ImageDifference> difference =
-        compareImages(*image, *reference, arguments.image, arguments.reference);
+    const Result<image::ImageDifference> difference =
+        image::compareImages(*image, *reference, arguments.image, arguments.reference);
     if (!difference) {
         return fail(console, difference.error());
     }
     if (!arguments.diff.empty()) {
-        if (Status written = writeImage(arguments.diff, differenceMap(*image, *reference)); !written) {
+        if (Status written = image::writeImage(arguments.diff, image::differenceMap(*image, *reference));
+            !written) {
             return fail(console, written.error());
         }
     }
@@ -157,4 +158,4 @@ void addCompare(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

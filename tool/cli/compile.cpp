@@ -33,64 +33,64 @@
 #include <optional>
 #include <span>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 // The facts to report at the end. The package is absent after a dry run, and after planning.
 struct Outcome {
     const CompileArguments& arguments;
-    const SceneList& scenes;
-    const Plan& plan;
-    const CompiledPackage* package = nullptr;
+    const gltf::SceneList& scenes;
+    const compiler::Plan& plan;
+    const compiler::CompiledPackage* package = nullptr;
     std::optional<std::size_t> planned{};  // distinct modules, after --plan-only
 
     std::uint64_t packageBytes() const {
         std::uint64_t bytes = 0;
-        for (const PackageFile& file : package->files) {
+        for (const compiler::PackageFile& file : package->files) {
             bytes += file.bytes.size();
         }
         return bytes;
     }
 };
 
-Json shadersToJson(const Outcome& outcome) {
-    Json list = Json::array();
-    for (const Case& shader : outcome.plan.cases) {
+base::Json shadersToJson(const Outcome& outcome) {
+    base::Json list = base::Json::array();
+    for (const compiler::Case& shader : outcome.plan.cases) {
         if (shader.isRetired()) {
             continue;
         }
-        list.push_back(Json{{"id", shader.shaderId},
-                            {"name", shader.name},
-                            {"always", featuresToJson(*outcome.plan.model, shader.always)},
-                            {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
-                            {"keys", shader.keys.size()},
-                            {"share", shareToJson(shader.share)},
-                            {"reason", toString(shader.reason)},
-                            {"materials", materialsToJson(outcome.scenes, shader.materials)},
-                            {"stages", stagesToJson(outcome.package, shader.shaderId)}});
+        list.push_back(base::Json{{"id", shader.shaderId},
+                                  {"name", shader.name},
+                                  {"always", featuresToJson(*outcome.plan.model, shader.always)},
+                                  {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
+                                  {"keys", shader.keys.size()},
+                                  {"share", compiler::shareToJson(shader.share)},
+                                  {"reason", toString(shader.reason)},
+                                  {"materials", materialsToJson(outcome.scenes, shader.materials)},
+                                  {"stages", stagesToJson(outcome.package, shader.shaderId)}});
     }
     return list;
 }
 
-Json planToJson(const Outcome& outcome) {
-    return outcome.planned ? Json{{"folder", outcome.arguments.planOnly},
-                                  {"ninja", planFile(outcome.arguments)},
-                                  {"modules", *outcome.planned}}
-                           : Json(nullptr);
+base::Json planToJson(const Outcome& outcome) {
+    return outcome.planned ? base::Json{{"folder", outcome.arguments.planOnly},
+                                        {"ninja", planFile(outcome.arguments)},
+                                        {"modules", *outcome.planned}}
+                           : base::Json(nullptr);
 }
 
-Json choiceToJson(const std::optional<StrategyAdvice>& advice) {
-    return advice ? strategyChoiceToJson(*advice) : Json(nullptr);
+base::Json choiceToJson(const std::optional<compiler::StrategyAdvice>& advice) {
+    return advice ? strategyChoiceToJson(*advice) : base::Json(nullptr);
 }
 
-Json toJson(const Outcome& outcome) {
-    const CompiledPackage* package = outcome.package;
-    const auto orNull = [&](auto value) { return package ? Json(value()) : Json(nullptr); };
+base::Json toJson(const Outcome& outcome) {
+    const compiler::CompiledPackage* package = outcome.package;
+    const auto orNull = [&](auto value) { return package ? base::Json(value()) : base::Json(nullptr); };
     return {{"counts",
              {{"scenes", outcome.scenes.scenes().size()},
               {"materials", outcome.scenes.materials().size()},
-              {"keysPossible", countToJson(outcome.plan.keysPossible)},
+              {"keysPossible", compiler::countToJson(outcome.plan.keysPossible)},
               {"keysPresent", outcome.plan.keys.size()},
               {"cases", caseCount(outcome.plan)},
               {"uniqueSpirv", orNull([&] { return package->uniqueSpirv; })}}},
@@ -99,18 +99,18 @@ Json toJson(const Outcome& outcome) {
             {"milliseconds", nullptr},
             {"modules", nullptr},
             {"upToDate", nullptr},
-            {"variant", textOrNull(outcome.scenes.variant())},
+            {"variant", base::textOrNull(outcome.scenes.variant())},
             {"strategyChoice", choiceToJson(outcome.arguments.settings.compile.strategyChoice)},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
-            {"output", orNull([&] { return textOrNull(outcome.arguments.output); })},
-            {"embedded", orNull([&] { return textOrNull(outcome.arguments.embed); })},
+            {"output", orNull([&] { return base::textOrNull(outcome.arguments.output); })},
+            {"embedded", orNull([&] { return base::textOrNull(outcome.arguments.embed); })},
             {"plan", planToJson(outcome)}};
 }
 
-std::string chosenEffects(const EffectPlan& effects) {
+std::string chosenEffects(const compiler::EffectPlan& effects) {
     std::vector<std::string_view> names;
-    for (const EffectDecision& decision : effects.decisions) {
+    for (const compiler::EffectDecision& decision : effects.decisions) {
         if (decision.chosen) {
             names.push_back(decision.name);
         }
@@ -125,7 +125,7 @@ std::string outputsOf(const CompileArguments& arguments) {
 }
 
 std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
-    const Plan& plan = outcome.plan;
+    const compiler::Plan& plan = outcome.plan;
     std::vector<std::vector<std::string>> rows{
         {"materials", fmt::format("{}", outcome.scenes.materials().size())},
         {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
@@ -133,8 +133,8 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
         {"cases", fmt::format("{}", caseCount(plan))}};
     if (outcome.arguments.settings.compile.strategyChoice) {
         rows.push_back(
-            {"strategies",
-             fmt::format("{} (auto)", join(strategyNames(outcome.arguments.settings.compile.strategies)))});
+            {"strategies", fmt::format("{} (auto)", base::join(compiler::strategyNames(
+                                                        outcome.arguments.settings.compile.strategies)))});
     }
     if (outcome.package != nullptr) {
         rows.push_back({"effects", chosenEffects(plan.effects)});
@@ -161,15 +161,16 @@ CompileSummary summaryOf(const Outcome& outcome) {
 
 // Reads each file with `options`. A variant is used in the scenes that have it. Has the errors of
 // importScene(); "variant-unknown" only if no scene has the variant.
-Result<std::vector<Scene>> readScenes(std::span<const std::string> files, const ImportOptions& options) {
-    std::vector<Scene> scenes;
+Result<std::vector<gltf::Scene>> readScenes(std::span<const std::string> files,
+                                            const gltf::ImportOptions& options) {
+    std::vector<gltf::Scene> scenes;
     bool hasVariant = options.variant.empty();
     std::optional<Diagnostic> missing;
     for (const std::string& file : files) {
-        Result<Scene> scene = importScene(file, options);
+        Result<gltf::Scene> scene = importScene(file, options);
         if (!scene && scene.error().id == "variant-unknown") {
             missing = missing ? missing : scene.error();
-            ImportOptions defaults = options;
+            gltf::ImportOptions defaults = options;
             defaults.variant.clear();
             scene = importScene(file, defaults);
         } else {
@@ -187,9 +188,9 @@ Result<std::vector<Scene>> readScenes(std::span<const std::string> files, const 
 }
 
 // Returns the warnings of all scenes.
-std::vector<Diagnostic> warningsOf(std::span<const Scene> scenes) {
+std::vector<Diagnostic> warningsOf(std::span<const gltf::Scene> scenes) {
     std::vector<Diagnostic> warnings;
-    for (const Scene& scene : scenes) {
+    for (const gltf::Scene& scene : scenes) {
         warnings.insert(warnings.end(), scene.warnings.begin(), scene.warnings.end());
     }
     return warnings;
@@ -200,9 +201,9 @@ std::vector<Diagnostic> warningsOf(std::span<const Scene> scenes) {
 // choice is hit-shaders, which not every device runs, uber is added. Has the errors of knownCosts() and
 // adviseStrategy(). `made` is the plan with these options; if it is needed, it is
 // made here at the latest.
-Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, std::optional<Plan>& made,
-                        CompileArguments& arguments) {
-    Settings& settings = arguments.settings;
+Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
+                        std::optional<compiler::Plan>& made, CompileArguments& arguments) {
+    compiler::Settings& settings = arguments.settings;
     if (!settings.advisesStrategy) {
         return okStatus();
     }
@@ -210,13 +211,13 @@ Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, std::o
     if (!costs) {
         return costs.error();
     }
-    FrameShape shape;
+    compiler::FrameShape shape;
     shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects.all;
     shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
     if (!made) {
         made = makePlan(scenes.materials(), scenes.primitives(), plan);
     }
-    Result<StrategyAdvice> advice = measure::adviseStrategy(
+    Result<compiler::StrategyAdvice> advice = measure::adviseStrategy(
         *costs, measure::roundsOf(scenes, *made, plan, shape),
         measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
     if (!advice) {
@@ -230,10 +231,11 @@ Status settleStrategies(const SceneList& scenes, const PlanOptions& plan, std::o
 }
 
 // Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.
-int planOnly(const Console& console, const CompileArguments& arguments, std::span<const Scene> scenes,
-             const PlanOptions& options, std::optional<Plan> made, const LockChoice& lock,
-             std::span<const std::string> dependencies, Clock::time_point start) {
-    const Result<PackagePlan> planned = planPackage(scenes, settingsOf(arguments, options), std::move(made));
+int planOnly(const Console& console, const CompileArguments& arguments, std::span<const gltf::Scene> scenes,
+             const compiler::PlanOptions& options, std::optional<compiler::Plan> made, const LockChoice& lock,
+             std::span<const std::string> dependencies, base::Clock::time_point start) {
+    const Result<compiler::PackagePlan> planned =
+        planPackage(scenes, settingsOf(arguments, options), std::move(made));
     if (!planned) {
         return fail(console, planned.error());
     }
@@ -242,31 +244,32 @@ int planOnly(const Console& console, const CompileArguments& arguments, std::spa
         return fail(console, written.error());
     }
     if (lock.text) {
-        if (Status kept = writeFile(arguments.lock.file, *lock.text); !kept) {
+        if (Status kept = base::writeFile(arguments.lock.file, *lock.text); !kept) {
             return fail(console, kept.error());
         }
     }
     if (Status listed = writeDepfile(arguments.depfile, dependencies); !listed) {
         return fail(console, listed.error());
     }
-    const SceneList list(scenes);
+    const gltf::SceneList list(scenes);
     const Outcome outcome{arguments, list, planned->plan, nullptr, planned->modules.size()};
-    tell(console, summaryOf(outcome), std::nullopt, false, millisecondsSince(start));
+    tell(console, summaryOf(outcome), std::nullopt, false, base::millisecondsSince(start));
     return kExitDone;
 }
 
-int dryRun(const Console& console, Outcome outcome, const PlanOptions& options, Clock::time_point start) {
+int dryRun(const Console& console, Outcome outcome, const compiler::PlanOptions& options,
+           base::Clock::time_point start) {
     if (const std::optional<std::string> excess = describeExcess(outcome.plan, options)) {
         return fail(console, makeError("max-shaders", outcome.scenes.path(), *excess));
     }
-    tell(console, summaryOf(outcome), std::nullopt, false, millisecondsSince(start));
+    tell(console, summaryOf(outcome), std::nullopt, false, base::millisecondsSince(start));
     return kExitDone;
 }
 
 // If nothing has to be done, repeats the output of an earlier run that did the same.
 std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
-                                 CompileCache& cache, Clock::time_point start) {
-    const std::optional<ActionRecord> earlier = cache.findUpToDate();
+                                 CompileCache& cache, base::Clock::time_point start) {
+    const std::optional<compiler::ActionRecord> earlier = cache.findUpToDate();
     const std::optional<CompileSummary> summary =
         earlier ? unpackSummary(earlier->summary, console.isJson()) : std::nullopt;
     if (!summary) {
@@ -279,24 +282,25 @@ std::optional<int> repeatEarlier(const Console& console, const CompileArguments&
     if (Status listed = writeDepfile(arguments.depfile, pathsOf(earlier->inputs)); !listed) {
         return fail(console, listed.error());
     }
-    tell(console, *summary, ModuleCounts{0, summary->modules}, true, millisecondsSince(start));
+    tell(console, *summary, ModuleCounts{0, summary->modules}, true, base::millisecondsSince(start));
     return kExitDone;
 }
 
 // Adds the files that a run has written.
-bool addOutputs(const CompiledPackage& package, const CompileArguments& arguments, ActionRecord& run) {
+bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments& arguments,
+                compiler::ActionRecord& run) {
     if (!arguments.output.empty()) {
         run.outputs = filesOf(package, arguments.output);
     }
     if (arguments.embed.empty()) {
         return true;
     }
-    const std::filesystem::path embedded[] = {arguments.embed, embeddedHeader(arguments.embed)};
+    const std::filesystem::path embedded[] = {arguments.embed, compiler::embeddedHeader(arguments.embed)};
     return addFiles(run.outputs, embedded);
 }
 
 int compile(const Console& console, const CompileArguments& given) {
-    const Clock::time_point start = Clock::now();
+    const base::Clock::time_point start = base::Clock::now();
     CompileArguments arguments = given;
     // The names of further inputs belong to the key: a new file in a pack is a new run.
     const std::vector<std::filesystem::path> further = furtherInputs(arguments);
@@ -307,22 +311,22 @@ int compile(const Console& console, const CompileArguments& given) {
     if (done) {
         return *done;
     }
-    ActionRecord run;
+    compiler::ActionRecord run;
     const bool known = addFiles(run.inputs, further);
     const auto report = [&](const std::vector<Diagnostic>& diagnostics) {
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
     };
-    console.progress("reading " + join(arguments.scenes));
-    const Result<ImportOptions> import = importOptions(arguments.settings, false);
+    console.progress("reading " + base::join(arguments.scenes));
+    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, false);
     if (!import) {
         return fail(console, import.error());
     }
-    const Result<std::vector<Scene>> scenes = readScenes(arguments.scenes, *import);
+    const Result<std::vector<gltf::Scene>> scenes = readScenes(arguments.scenes, *import);
     if (!scenes) {
         return fail(console, scenes.error());
     }
-    const SceneList list(*scenes);
+    const gltf::SceneList list(*scenes);
     Result<measure::PlanChoice> plan = measure::choosePlan(arguments.settings, list);
     if (!plan) {
         return fail(console, plan.error());
@@ -337,11 +341,11 @@ int compile(const Console& console, const CompileArguments& given) {
     report(lock->warnings);
     report(lock->notes);
     // From here on there is one plan, made where it is first needed.
-    std::optional<Plan> made = std::move(lock->plan);
+    std::optional<compiler::Plan> made = std::move(lock->plan);
     if (Status settled = settleStrategies(list, plan->options, made, arguments); !settled) {
         return fail(console, settled.error());
     }
-    if (const std::optional<StrategyAdvice>& advice = arguments.settings.compile.strategyChoice) {
+    if (const std::optional<compiler::StrategyAdvice>& advice = arguments.settings.compile.strategyChoice) {
         console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
     }
     report(effectWarnings(list, settingsOf(arguments, plan->options)));
@@ -349,12 +353,12 @@ int compile(const Console& console, const CompileArguments& given) {
         return kExitFailed;
     }
     if (arguments.dryRun) {
-        const Plan planned =
+        const compiler::Plan planned =
             made ? std::move(*made) : makePlan(list.materials(), list.primitives(), plan->options);
         return dryRun(console, Outcome{arguments, list, planned}, plan->options, start);
     }
     // The files of scenes come first, each in the state in which it was read.
-    const std::vector<FileState> sceneFiles = filesOf(*scenes);
+    const std::vector<compiler::FileState> sceneFiles = filesOf(*scenes);
     run.inputs.insert(run.inputs.begin(), sceneFiles.begin(), sceneFiles.end());
     std::vector<std::string> dependencies = pathsOf(sceneFiles);
     for (const std::filesystem::path& file : further) {
@@ -368,8 +372,8 @@ int compile(const Console& console, const CompileArguments& given) {
         return planOnly(console, arguments, *scenes, plan->options, std::move(made), *lock, dependencies,
                         start);
     }
-    console.progress("compiling " + join(arguments.scenes));
-    const Result<CompiledPackage> package = compilePackage(
+    console.progress("compiling " + base::join(arguments.scenes));
+    const Result<compiler::CompiledPackage> package = compilePackage(
         *scenes, settingsOf(arguments, std::move(plan->options)), cache.modules(), std::move(made));
     if (!package) {
         return fail(console, package.error());
@@ -387,7 +391,7 @@ int compile(const Console& console, const CompileArguments& given) {
         cache.keep(run);
     }
     cache.close(console);
-    tell(console, std::move(summary), countModules(*package), false, millisecondsSince(start));
+    tell(console, std::move(summary), countModules(*package), false, base::millisecondsSince(start));
     return kExitDone;
 }
 
@@ -404,4 +408,4 @@ void addCompile(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

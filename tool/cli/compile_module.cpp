@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -17,12 +17,12 @@ struct ModuleArguments {
 
 int compileModule(const Console& console, const ModuleArguments& arguments) {
     console.progress("compiling " + arguments.input);
-    if (Status done = compileModuleFile(arguments.input, arguments.output); !done) {
+    if (Status done = compiler::compileModuleFile(arguments.input, arguments.output); !done) {
         console.report(done.error());
         return kExitFailed;
     }
     if (console.isJson()) {
-        console.result(Json{{"input", arguments.input}, {"output", arguments.output}});
+        console.result(base::Json{{"input", arguments.input}, {"output", arguments.output}});
     }
     return kExitDone;
 }
@@ -44,4 +44,4 @@ void addCompileModule(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -134,7 +134,7 @@ std::vector<std::string> namesOf(const std::vector<CommandModel>& commands) {
 std::string bashAction(const ArgumentModel& argument) {
     if (!argument.choices.empty()) {
         return fmt::format("{} {}", argument.isList ? "_glint_list" : "_glint_words",
-                           shellQuoted(fmt::format("{}", fmt::join(argument.choices, " "))));
+                           base::shellQuoted(fmt::format("{}", fmt::join(argument.choices, " "))));
     }
     return argument.files ? "_glint_files" : argument.folders ? "_glint_folders" : "";
 }
@@ -157,7 +157,7 @@ std::string bashCommand(const CommandModel& command) {
                       "                {}\n"
                       "            fi\n"
                       "            ;;\n",
-                      shellQuoted(fmt::format("{}", fmt::join(namesOf(command), " "))),
+                      base::shellQuoted(fmt::format("{}", fmt::join(namesOf(command), " "))),
                       positional.empty() ? ":" : positional);
 }
 
@@ -229,12 +229,12 @@ std::string zshCommand(const CommandModel& command) {
                 option.takesValue ? fmt::format(":value:{}", zshAction(option.value)) : std::string();
             text += fmt::format(
                 "                        {} \\\n",
-                shellQuoted(fmt::format("{}{}[{}]{}", name, option.takesValue && isLong ? "=" : "",
-                                        escaped(option.help, "[]:\\"), value)));
+                base::shellQuoted(fmt::format("{}{}[{}]{}", name, option.takesValue && isLong ? "=" : "",
+                                              escaped(option.help, "[]:\\"), value)));
         }
     }
     return text + fmt::format("                        {}\n                    ;;\n",
-                              shellQuoted("*:argument:" + zshAction(command.positional)));
+                              base::shellQuoted("*:argument:" + zshAction(command.positional)));
 }
 
 // --- fish ---------------------------------------------------------------------------------------
@@ -261,8 +261,9 @@ std::string fishOption(const CommandModel& command, const OptionModel& option) {
 
 std::string bashCompletion(const std::vector<CommandModel>& commands) {
     std::string text = head("bash") + std::string(kBashHelpers);
-    text += fmt::format("        _glint_words {}\n        return\n    fi\n    case ${{COMP_WORDS[1]}} in\n",
-                        shellQuoted(fmt::format("{} --help --version", fmt::join(namesOf(commands), " "))));
+    text +=
+        fmt::format("        _glint_words {}\n        return\n    fi\n    case ${{COMP_WORDS[1]}} in\n",
+                    base::shellQuoted(fmt::format("{} --help --version", fmt::join(namesOf(commands), " "))));
     for (const CommandModel& command : commands) {
         text += bashCommand(command);
     }
@@ -274,7 +275,8 @@ std::string zshCompletion(const std::vector<CommandModel>& commands) {
                        "\n_glint() {\n"
                        "    local -a commands=(\n";
     for (const CommandModel& command : commands) {
-        text += fmt::format("        {}\n", shellQuoted(command.name + ":" + escaped(command.help, ":\\")));
+        text +=
+            fmt::format("        {}\n", base::shellQuoted(command.name + ":" + escaped(command.help, ":\\")));
     }
     text +=
         "    )\n"
@@ -341,4 +343,4 @@ void addCompletion(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

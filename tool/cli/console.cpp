@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -64,12 +64,12 @@ std::optional<Severity> DiagnosticPolicy::judge(Severity severity, std::string_v
 
 struct Console::State {
     ConsoleOptions options;
-    Clock::time_point start = Clock::now();
+    base::Clock::time_point start = base::Clock::now();
     bool terminal = false;
     bool color = false;
     bool refused = false;
     std::vector<Diagnostic> reported;
-    std::optional<Json> result;
+    std::optional<base::Json> result;
 };
 
 Console::Console(ConsoleOptions options) : state_(std::make_unique<State>()) {
@@ -99,7 +99,7 @@ void Console::print(std::string_view text) const {
     }
 }
 
-void Console::result(const Json& object) const {
+void Console::result(const base::Json& object) const {
     state_->result = object;
 }
 
@@ -134,7 +134,7 @@ void Console::progress(std::string_view text) const {
 
 void Console::detail(std::string_view text) const {
     if (state_->options.verbose && !text.empty()) {
-        const std::chrono::duration<double> elapsed = Clock::now() - state_->start;
+        const std::chrono::duration<double> elapsed = base::Clock::now() - state_->start;
         write(stderr, fmt::format("{:8.3f} s  {}\n", elapsed.count(), text));
     }
 }
@@ -142,9 +142,9 @@ void Console::detail(std::string_view text) const {
 Status Console::finish() const {
     progress("");
     if (isJson()) {
-        Json object = state_->result.value_or(Json::object());
+        base::Json object = state_->result.value_or(base::Json::object());
         object["diagnostics"] = toJson(state_->reported);
-        write(stdout, toText(object));
+        write(stdout, base::toText(object));
     }
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
         return makeError("output", "stdout", "can't be written", "check the free space and the reader");
@@ -157,4 +157,4 @@ int fail(const Console& console, const Diagnostic& error) {
     return kExitFailed;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 enum class ColorChoice { Auto, Always, Never };
 
@@ -51,7 +51,7 @@ public:
     void print(std::string_view text) const;
     // Stores a result as an object. finish() writes it together with the diagnostics.
     void result(const nlohmann::ordered_json& object) const;
-    using Observer::report;
+    using measure::Observer::report;
     void report(const Diagnostic& diagnostic) const override;
     // Returns whether a warning was reported that counts as an error.
     bool refused() const;
@@ -72,4 +72,4 @@ private:
 // Reports an error; returns the exit code of a command that failed.
 int fail(const Console& console, const Diagnostic& error);
 
-}  // namespace glint
+}  // namespace glint::cli

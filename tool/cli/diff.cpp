@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <memory>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -119,9 +119,10 @@ std::string shaderTable(const inspect::PackageDiff& diff, const DiffSides& sides
 std::string moduleTable(const inspect::PackageDiff& diff) {
     Rows rows{{"code", "module", "bytes", "instructions", "fetches"}};
     for (const inspect::ModuleChange& change : diff.modules) {
-        const SpirvStatistics before =
-            change.before != nullptr ? change.before->statistics : SpirvStatistics{};
-        const SpirvStatistics after = change.after != nullptr ? change.after->statistics : SpirvStatistics{};
+        const compiler::SpirvStatistics before =
+            change.before != nullptr ? change.before->statistics : compiler::SpirvStatistics{};
+        const compiler::SpirvStatistics after =
+            change.after != nullptr ? change.after->statistics : compiler::SpirvStatistics{};
         rows.push_back({std::string(changeOf(change.before != nullptr, change.after != nullptr)),
                         moduleName(change), step(before.bytes, after.bytes),
                         step(before.instructions, after.instructions),
@@ -167,20 +168,20 @@ std::string totalTable(const inspect::PackageDiff& diff) {
     return rows.size() > 1 ? formatTable(rows) + "\n" : std::string();
 }
 
-Json idsToJson(const std::vector<int>& ids, const inspect::DiffPackage& package) {
-    Json list = Json::array();
+base::Json idsToJson(const std::vector<int>& ids, const inspect::DiffPackage& package) {
+    base::Json list = base::Json::array();
     for (const int id : ids) {
         const inspect::DiffCase& shader = package.cases.at(id);
-        list.push_back(Json{{"id", id}, {"name", shader.name}, {"keys", shader.keys.size()}});
+        list.push_back(base::Json{{"id", id}, {"name", shader.name}, {"keys", shader.keys.size()}});
     }
     return list;
 }
 
-Json moduleToJson(const inspect::DiffModule* module, std::optional<int> shaderId) {
+base::Json moduleToJson(const inspect::DiffModule* module, std::optional<int> shaderId) {
     if (module == nullptr) {
         return nullptr;
     }
-    return {{"shaderId", shaderId ? Json(*shaderId) : Json(nullptr)},
+    return {{"shaderId", shaderId ? base::Json(*shaderId) : base::Json(nullptr)},
             {"file", module->file},
             {"bytes", module->statistics.bytes},
             {"instructions", module->statistics.instructions},
@@ -189,28 +190,28 @@ Json moduleToJson(const inspect::DiffModule* module, std::optional<int> shaderId
             {"branches", module->statistics.branches}};
 }
 
-Json modulesToJson(const inspect::PackageDiff& diff) {
-    Json list = Json::array();
+base::Json modulesToJson(const inspect::PackageDiff& diff) {
+    base::Json list = base::Json::array();
     for (const inspect::ModuleChange& change : diff.modules) {
-        list.push_back(Json{{"change", changeOf(change.before != nullptr, change.after != nullptr)},
-                            {"role", std::string(package::roleName(change.key.role))},
-                            {"ordering", textOrNull(orderingLabel(change.key))},
-                            {"tracer", textOrNull(tracerLabel(change.key))},
-                            {"before", moduleToJson(change.before, change.idBefore)},
-                            {"after", moduleToJson(change.after, change.idAfter)}});
+        list.push_back(base::Json{{"change", changeOf(change.before != nullptr, change.after != nullptr)},
+                                  {"role", std::string(package::roleName(change.key.role))},
+                                  {"ordering", base::textOrNull(orderingLabel(change.key))},
+                                  {"tracer", base::textOrNull(tracerLabel(change.key))},
+                                  {"before", moduleToJson(change.before, change.idBefore)},
+                                  {"after", moduleToJson(change.after, change.idAfter)}});
     }
     return list;
 }
 
-Json materialsToJson(const inspect::PackageDiff& diff) {
-    Json list = Json::array();
+base::Json changedMaterialsToJson(const inspect::PackageDiff& diff) {
+    base::Json list = base::Json::array();
     for (const inspect::MaterialChange& change : diff.materials) {
-        list.push_back(Json{{"change", changeOf(!change.before.empty(), !change.after.empty())},
-                            {"scene", textOrNull(change.material.scene)},
-                            {"name", change.material.name},
-                            {"sameNamed", change.material.sameNamed},
-                            {"before", change.before},
-                            {"after", change.after}});
+        list.push_back(base::Json{{"change", changeOf(!change.before.empty(), !change.after.empty())},
+                                  {"scene", base::textOrNull(change.material.scene)},
+                                  {"name", change.material.name},
+                                  {"sameNamed", change.material.sameNamed},
+                                  {"before", change.before},
+                                  {"after", change.after}});
     }
     return list;
 }
@@ -225,22 +226,24 @@ std::string diffText(const inspect::PackageDiff& diff, const DiffSides& sides, D
                               diff.sameModules, diff.sameMaterials);
 }
 
-Json diffJson(const inspect::PackageDiff& diff, const DiffSides& sides) {
-    Json settings = Json::array();
+base::Json diffJson(const inspect::PackageDiff& diff, const DiffSides& sides) {
+    base::Json settings = base::Json::array();
     for (const inspect::SettingChange& change : diff.settings) {
-        settings.push_back(Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
+        settings.push_back(
+            base::Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
     }
-    Json shaders = Json::array();
+    base::Json shaders = base::Json::array();
     for (const inspect::ShaderChange& change : diff.shaders) {
-        shaders.push_back(Json{{"change", nameOf(change.kind)},
-                               {"before", idsToJson(change.before, sides.before)},
-                               {"after", idsToJson(change.after, sides.after)},
-                               {"keysAdded", change.keysAdded},
-                               {"keysRemoved", change.keysRemoved}});
+        shaders.push_back(base::Json{{"change", nameOf(change.kind)},
+                                     {"before", idsToJson(change.before, sides.before)},
+                                     {"after", idsToJson(change.after, sides.after)},
+                                     {"keysAdded", change.keysAdded},
+                                     {"keysRemoved", change.keysRemoved}});
     }
-    Json totals = Json::array();
+    base::Json totals = base::Json::array();
     for (const inspect::TotalChange& change : diff.totals) {
-        totals.push_back(Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
+        totals.push_back(
+            base::Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
     }
     return {
         {"a", sides.nameBefore},
@@ -249,7 +252,7 @@ Json diffJson(const inspect::PackageDiff& diff, const DiffSides& sides) {
         {"settings", settings},
         {"shaders", shaders},
         {"modules", modulesToJson(diff)},
-        {"materials", materialsToJson(diff)},
+        {"materials", changedMaterialsToJson(diff)},
         {"totals", totals},
         {"tablesDiffer", diff.tablesDiffer},
         {"same",
@@ -297,4 +300,4 @@ void addDiff(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -24,7 +24,7 @@
 #include <set>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -32,15 +32,15 @@ struct ExplainArguments {
     std::string scene;
     std::string material;
     bool wholePlan = false;
-    Settings settings;
+    compiler::Settings settings;
     LockArguments lock;
 };
 
 // The scene, and its plan.
 struct Planned {
-    const SceneList& scenes;
-    PlanOptions options;
-    Plan plan;
+    const gltf::SceneList& scenes;
+    compiler::PlanOptions options;
+    compiler::Plan plan;
 };
 
 using Drop = std::pair<std::string, std::string>;  // feature, reason
@@ -48,20 +48,20 @@ using Drop = std::pair<std::string, std::string>;  // feature, reason
 // Returns the features that a material asks for and does not get, over all of its primitives.
 std::set<Drop> dropsOf(const Planned& planned, int material) {
     std::set<Drop> drops;
-    for (const PrimitiveInputs& inputs : planned.scenes.primitives()) {
+    for (const materials::PrimitiveInputs& inputs : planned.scenes.primitives()) {
         if (inputs.material == material) {
             std::vector<Drop> found;
-            makeKey(planned.scenes.materials()[static_cast<std::size_t>(material)], inputs,
-                    planned.options.keys, &found);
+            compiler::makeKey(planned.scenes.materials()[static_cast<std::size_t>(material)], inputs,
+                              planned.options.keys, &found);
             drops.insert(found.begin(), found.end());
         }
     }
     return drops;
 }
 
-std::vector<const Key*> keysOf(const Planned& planned, int material) {
-    std::vector<const Key*> keys;
-    for (const Key& key : planned.plan.keys) {
+std::vector<const compiler::Key*> keysOf(const Planned& planned, int material) {
+    std::vector<const compiler::Key*> keys;
+    for (const compiler::Key& key : planned.plan.keys) {
         if (std::binary_search(key.materials.begin(), key.materials.end(), material)) {
             keys.push_back(&key);
         }
@@ -70,10 +70,11 @@ std::vector<const Key*> keysOf(const Planned& planned, int material) {
 }
 
 // Returns JSON pointers of the primitives of one material that have this key.
-std::vector<std::string> primitivesOf(const Planned& planned, const Key& key, int material) {
+std::vector<std::string> primitivesOf(const Planned& planned, const compiler::Key& key, int material) {
     std::vector<std::string> pointers;
     for (const int index : key.primitives) {
-        const PrimitiveInputs& inputs = planned.scenes.primitives()[static_cast<std::size_t>(index)];
+        const materials::PrimitiveInputs& inputs =
+            planned.scenes.primitives()[static_cast<std::size_t>(index)];
         if (inputs.material == material) {
             pointers.push_back(fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive));
         }
@@ -81,14 +82,15 @@ std::vector<std::string> primitivesOf(const Planned& planned, const Key& key, in
     return pointers;
 }
 
-const Case& caseOf(const Planned& planned, const Key& key) {
+const compiler::Case& caseOf(const Planned& planned, const compiler::Key& key) {
     return planned.plan.cases[static_cast<std::size_t>(key.shaderId)];
 }
 
 // Returns the masks of primary surfaces of one material whose hits have this key. If hits keep all lobes, it
 // is only the key itself.
-std::set<FeatureMask> primaryMasksOf(const Planned& planned, const Key& key, int material) {
-    std::set<FeatureMask> masks;
+std::set<materials::FeatureMask> primaryMasksOf(const Planned& planned, const compiler::Key& key,
+                                                int material) {
+    std::set<materials::FeatureMask> masks;
     for (const int index : key.primitives) {
         const auto primitive = static_cast<std::size_t>(index);
         if (planned.scenes.primitives()[primitive].material == material) {
@@ -98,43 +100,43 @@ std::set<FeatureMask> primaryMasksOf(const Planned& planned, const Key& key, int
     return masks;
 }
 
-Json primaryToJson(const Planned& planned, const Key& key, int material) {
-    Json list = Json::array();
-    for (const FeatureMask mask : primaryMasksOf(planned, key, material)) {
+base::Json primaryToJson(const Planned& planned, const compiler::Key& key, int material) {
+    base::Json list = base::Json::array();
+    for (const materials::FeatureMask mask : primaryMasksOf(planned, key, material)) {
         list.push_back(featuresToJson(*planned.plan.model, mask));
     }
     return list;
 }
 
 // What animations change of the material: planning drops no feature for a value that passes.
-std::vector<std::string> changesOf(const SceneList& scenes, int material) {
-    const SceneList::Place place = scenes.place(material);
-    const std::vector<AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;
-    const auto found = std::ranges::find(all, place.index, &AnimatedMaterial::material);
+std::vector<std::string> changesOf(const gltf::SceneList& scenes, int material) {
+    const gltf::SceneList::Place place = scenes.place(material);
+    const std::vector<gltf::AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;
+    const auto found = std::ranges::find(all, place.index, &gltf::AnimatedMaterial::material);
     return found == all.end() ? std::vector<std::string>() : found->changes;
 }
 
-Json toJson(const Planned& planned, int material) {
-    Json keys = Json::array();
-    for (const Key* key : keysOf(planned, material)) {
-        const Case& shader = caseOf(planned, *key);
-        keys.push_back(Json{{"mask", fmt::format("0x{:016x}", key->mask)},
-                            {"features", featuresToJson(*planned.plan.model, key->mask)},
-                            {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
-                            {"share", shareToJson(key->share)},
-                            {"case",
-                             {{"id", shader.shaderId},
-                              {"name", shader.name},
-                              {"keys", shader.keys.size()},
-                              {"share", shareToJson(shader.share)},
-                              {"reason", toString(shader.reason)},
-                              {"always", featuresToJson(*planned.plan.model, shader.always)},
-                              {"sometimes", featuresToJson(*planned.plan.model, shader.sometimes)}}},
-                            {"primitives", primitivesOf(planned, *key, material)}});
+base::Json toJson(const Planned& planned, int material) {
+    base::Json keys = base::Json::array();
+    for (const compiler::Key* key : keysOf(planned, material)) {
+        const compiler::Case& shader = caseOf(planned, *key);
+        keys.push_back(base::Json{{"mask", fmt::format("0x{:016x}", key->mask)},
+                                  {"features", featuresToJson(*planned.plan.model, key->mask)},
+                                  {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
+                                  {"share", compiler::shareToJson(key->share)},
+                                  {"case",
+                                   {{"id", shader.shaderId},
+                                    {"name", shader.name},
+                                    {"keys", shader.keys.size()},
+                                    {"share", compiler::shareToJson(shader.share)},
+                                    {"reason", toString(shader.reason)},
+                                    {"always", featuresToJson(*planned.plan.model, shader.always)},
+                                    {"sometimes", featuresToJson(*planned.plan.model, shader.sometimes)}}},
+                                  {"primitives", primitivesOf(planned, *key, material)}});
     }
-    Json dropped = Json::array();
+    base::Json dropped = base::Json::array();
     for (const auto& [feature, reason] : dropsOf(planned, material)) {
-        dropped.push_back(Json{{"feature", feature}, {"reason", reason}});
+        dropped.push_back(base::Json{{"feature", feature}, {"reason", reason}});
     }
     return {{"index", material},
             {"name", planned.scenes.materialName(material)},
@@ -143,13 +145,13 @@ Json toJson(const Planned& planned, int material) {
             {"animated", changesOf(planned.scenes, material)}};
 }
 
-std::string whyText(const Case& shader) {
+std::string whyText(const compiler::Case& shader) {
     const std::size_t keys = shader.keys.size();
     return fmt::format("{}: {}{}", toString(shader.reason), explain(shader.reason),
                        keys > 1 ? fmt::format(" ({} keys)", keys) : std::string());
 }
 
-std::string sharesText(const Planned& planned, const Key& key, const Case& shader) {
+std::string sharesText(const Planned& planned, const compiler::Key& key, const compiler::Case& shader) {
     const bool counted = countsHits(planned.options);
     const std::string ofCase =
         shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
@@ -159,19 +161,19 @@ std::string sharesText(const Planned& planned, const Key& key, const Case& shade
 
 std::string toText(const Planned& planned, int material, Detail detail) {
     std::string text = fmt::format("material {}: {}\n", material, planned.scenes.materialName(material));
-    const std::vector<const Key*> keys = keysOf(planned, material);
+    const std::vector<const compiler::Key*> keys = keysOf(planned, material);
     if (keys.empty()) {
         return text + "  no primitive uses it: no key, no shader\n";
     }
     std::vector<std::vector<std::string>> rows;
-    for (const Key* key : keys) {
-        const Case& shader = caseOf(planned, *key);
+    for (const compiler::Key* key : keys) {
+        const compiler::Case& shader = caseOf(planned, *key);
         const std::vector<std::string> primitives = primitivesOf(planned, *key, material);
         const std::string more =
             primitives.size() > 1 ? fmt::format(" and {} more", primitives.size() - 1) : std::string();
         rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
         rows.push_back({"    features", featureList(*planned.plan.model, key->mask)});
-        for (const FeatureMask mask : primaryMasksOf(planned, *key, material)) {
+        for (const materials::FeatureMask mask : primaryMasksOf(planned, *key, material)) {
             if (mask != key->mask) {
                 rows.push_back({"    primary only", featureList(*planned.plan.model, mask & ~key->mask)});
             }
@@ -193,16 +195,16 @@ std::string toText(const Planned& planned, int material, Detail detail) {
 }
 
 // Returns an empty text if the scene has no variants.
-std::string variantsText(const Scene& scene) {
+std::string variantsText(const gltf::Scene& scene) {
     if (scene.variants.empty()) {
         return {};
     }
-    return formatFields({{"variants", join(scene.variants)},
+    return formatFields({{"variants", base::join(scene.variants)},
                          {"materials of", scene.variant.empty() ? "no variant (--variant)" : scene.variant}});
 }
 
 // Returns every material with that number, else those with that name; all if none is asked for.
-Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::string& wanted) {
+Result<std::vector<int>> chooseMaterials(const gltf::SceneList& scenes, const std::string& wanted) {
     const int count = static_cast<int>(scenes.materials().size());
     int number = -1;
     const char* end = wanted.data() + wanted.size();
@@ -219,18 +221,18 @@ Result<std::vector<int>> chooseMaterials(const SceneList& scenes, const std::str
         }
     }
     if (chosen.empty() && !wanted.empty()) {
-        return makeError(
-            "material-unknown", scenes.path(),
-            fmt::format("has no material \"{}\"{}{}", wanted, enumeration(names), suggestion(wanted, names)),
-            "use a name, or a number from 0");
+        return makeError("material-unknown", scenes.path(),
+                         fmt::format("has no material \"{}\"{}{}", wanted, base::enumeration(names),
+                                     base::suggestion(wanted, names)),
+                         "use a name, or a number from 0");
     }
     return chosen;
 }
 
 // Advises for a frame of the usual size, with the effects that the scene calls for.
-Result<StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& planned,
-                              const EffectPlan& effects) {
-    FrameShape shape;
+Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& planned,
+                                        const compiler::EffectPlan& effects) {
+    compiler::FrameShape shape;
     shape.effects = effects.effects.all;
     return measure::adviseStrategy(
         costs, measure::roundsOf(planned.scenes, planned.plan, planned.options, shape),
@@ -238,12 +240,12 @@ Result<StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& p
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    const Result<ImportOptions> import = importOptions(arguments.settings, false);
+    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, false);
     if (!import) {
         console.report(import.error());
         return kExitFailed;
     }
-    const Result<Scene> scene = importScene(arguments.scene, *import);
+    const Result<gltf::Scene> scene = importScene(arguments.scene, *import);
     if (!scene) {
         console.report(scene.error());
         return kExitFailed;
@@ -254,7 +256,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.report(costs.error());
         return kExitFailed;
     }
-    const SceneList scenes({&*scene, 1});
+    const gltf::SceneList scenes({&*scene, 1});
     const Result<std::vector<int>> materials = chooseMaterials(scenes, arguments.material);
     if (!materials) {
         console.report(materials.error());
@@ -287,26 +289,26 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.print(planText(whole, detail));
         return kExitDone;
     }
-    const EffectPlan effects = automaticEffects(scenes);
-    const Result<StrategyAdvice> advice = advise(*costs, planned, effects);
+    const compiler::EffectPlan effects = automaticEffects(scenes);
+    const Result<compiler::StrategyAdvice> advice = advise(*costs, planned, effects);
     if (!advice) {
         console.report(advice.error());
         return kExitFailed;
     }
     if (console.isJson()) {
-        Json result{{"scene", arguments.scene},
-                    {"merge", nameOf(planned.options.merge)},
-                    {"alpha", nameOf(planned.options.keys.alpha)},
-                    {"hitLobes", featuresToJson(*planned.plan.model, planned.options.keys.keptLobes)},
-                    {"variant", textOrNull(scene->variant)},
-                    {"variants", scene->variants}};
+        base::Json result{{"scene", arguments.scene},
+                          {"merge", nameOf(planned.options.merge)},
+                          {"alpha", nameOf(planned.options.keys.alpha)},
+                          {"hitLobes", featuresToJson(*planned.plan.model, planned.options.keys.keptLobes)},
+                          {"variant", base::textOrNull(scene->variant)},
+                          {"variants", scene->variants}};
         if (arguments.wholePlan) {
             result["plan"] = planToJson(whole);
         } else {
             result["effects"] = effectsToJson(effects);
             result["strategies"] = strategyChoiceToJson(*advice);
             result["motion"] = motionToJson(*scene);
-            result["materials"] = Json::array();
+            result["materials"] = base::Json::array();
             for (const int material : *materials) {
                 result["materials"].push_back(toJson(planned, material));
             }
@@ -347,7 +349,7 @@ void addExplain(CLI::App& app, Action& chosen) {
         .excludes(&material);
     addReadingOptions(command, arguments->settings);
     addCalibration(command, arguments->settings);
-    addSettings(command, kOfExplain, arguments->settings);
+    addSettings(command, compiler::kOfExplain, arguments->settings);
     addProfileInput(command, arguments->settings);
     addLockInput(command, arguments->lock);
     command.callback([arguments, &command, &chosen] {
@@ -357,4 +359,4 @@ void addExplain(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

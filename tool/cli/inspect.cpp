@@ -13,83 +13,84 @@
 #include <bit>
 #include <memory>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
-Json describe(const inspect::InspectedPackage& inspected, const inspect::InspectedModule& module) {
+base::Json describe(const inspect::InspectedPackage& inspected, const inspect::InspectedModule& module) {
     const package::RoleInfo& info = *package::findRole(module.entry->role);
     const bool isCase = info.repeated == package::Repeated::ByCase;
     return {{"role", std::string(info.name)},
-            {"shaderId", isCase ? Json(module.entry->index) : Json(nullptr)},
-            {"tracer", textOrNull(tracerName(module.key()))},
-            {"ordering", textOrNull(orderingName(module.key()))},
+            {"shaderId", isCase ? base::Json(module.entry->index) : base::Json(nullptr)},
+            {"tracer", base::textOrNull(tracerName(module.key()))},
+            {"ordering", base::textOrNull(orderingName(module.key()))},
             {"file", inspected.file(module)}};
 }
 
-Json modulesToJson(const inspect::InspectedPackage& inspected) {
-    Json list = Json::array();
+base::Json modulesToJson(const inspect::InspectedPackage& inspected) {
+    base::Json list = base::Json::array();
     for (const inspect::InspectedModule& module : inspected.modules) {
-        Json entry = describe(inspected, module);
+        base::Json entry = describe(inspected, module);
         entry.update(statisticsToJson(module.statistics));
         list.push_back(std::move(entry));
     }
     return list;
 }
 
-Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
-    Json stages = Json::object();
+base::Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
+    base::Json stages = base::Json::object();
     for (const inspect::InspectedModule* module : inspected.modulesOf(shaderId)) {
-        Json entry{{"file", inspected.file(*module)}};
+        base::Json entry{{"file", inspected.file(*module)}};
         entry.update(statisticsToJson(module->statistics));
-        stages[std::string(stageName(module->key()))] = std::move(entry);
+        stages[std::string(compiler::stageName(module->key()))] = std::move(entry);
     }
     return stages;
 }
 
-Json shadersToJson(const inspect::InspectedPackage& inspected) {
-    Json list = Json::array();
+base::Json shadersToJson(const inspect::InspectedPackage& inspected) {
+    base::Json list = base::Json::array();
     std::uint32_t id = 0;
     for (const package::CaseEntry& shader : inspected.package.cases()) {
-        Json materials = Json::array();
+        base::Json materials = base::Json::array();
         const auto found = inspected.materials.find(id);
         if (found != inspected.materials.end()) {
             for (const inspect::MaterialPlace& material : found->second) {
-                materials.push_back(Json{{"scene", material.first},
-                                         {"index", material.second},
-                                         {"name", inspected.materialName(material)}});
+                materials.push_back(base::Json{{"scene", material.first},
+                                               {"index", material.second},
+                                               {"name", inspected.materialName(material)}});
             }
         }
-        list.push_back(Json{{"id", id},
-                            {"name", std::string(inspected.package.string(shader.name))},
-                            {"always", featuresToJson(inspected.manifest.features, shader.always)},
-                            {"sometimes", featuresToJson(inspected.manifest.features, shader.sometimes)},
-                            {"keys", shader.keyCount},
-                            {"materials", materials},
-                            {"stages", stagesOf(inspected, id)}});
+        list.push_back(
+            base::Json{{"id", id},
+                       {"name", std::string(inspected.package.string(shader.name))},
+                       {"always", featuresToJson(inspected.manifest.features, shader.always)},
+                       {"sometimes", featuresToJson(inspected.manifest.features, shader.sometimes)},
+                       {"keys", shader.keyCount},
+                       {"materials", materials},
+                       {"stages", stagesOf(inspected, id)}});
         ++id;
     }
     return list;
 }
 
-Json scenesToJson(const inspect::InspectedPackage& inspected) {
-    Json list = Json::array();
+base::Json scenesToJson(const inspect::InspectedPackage& inspected) {
+    base::Json list = base::Json::array();
     for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
         const PackageScene scene = inspected.package.scene(i);
-        list.push_back(Json{{"name", std::string(scene.name)},
-                            {"variant", textOrNull(inspected.variantOf(i))},
-                            {"materials", scene.materials.size()},
-                            {"primitives", scene.primitives.size()},
-                            {"textures", scene.textures.size()},
-                            {"samplers", scene.samplers.size()}});
+        list.push_back(base::Json{{"name", std::string(scene.name)},
+                                  {"variant", base::textOrNull(inspected.variantOf(i))},
+                                  {"materials", scene.materials.size()},
+                                  {"primitives", scene.primitives.size()},
+                                  {"textures", scene.textures.size()},
+                                  {"samplers", scene.samplers.size()}});
     }
     return list;
 }
 
 std::string bindingsOf(const Package& package) {
-    Settings settings;
+    compiler::Settings settings;
     settings.compile.bindings = package.bindings();
-    return values::kBindings.text(settings);
+    return compiler::values::kBindings.text(settings);
 }
 
 std::string skyOf(const Package& package) {
@@ -123,11 +124,11 @@ std::string materialsText(const inspect::InspectedPackage& inspected, std::uint3
         }
     }
     const std::size_t more = found->second.size() - names.size();
-    return join(names) + (more > 0 ? fmt::format(" and {} more", more) : std::string());
+    return base::join(names) + (more > 0 ? fmt::format(" and {} more", more) : std::string());
 }
 
 // Features that a shader has; their names where there is room for them.
-std::string featuresText(const MaterialModel& model, FeatureMask mask, Detail detail) {
+std::string featuresText(const materials::MaterialModel& model, materials::FeatureMask mask, Detail detail) {
     return detail == Detail::Whole ? featureList(model, mask) : fmt::format("{}", std::popcount(mask));
 }
 
@@ -161,7 +162,7 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
         {"module", "tracer", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
     for (const inspect::InspectedModule& module : inspected.modules) {
         const std::string tracer = tracerName(module.key());
-        const SpirvStatistics& it = module.statistics;
+        const compiler::SpirvStatistics& it = module.statistics;
         rows.push_back({titleOf(module), tracer.empty() ? "-" : tracer, inspected.file(module),
                         fmt::format("{}", it.bytes), fmt::format("{}", it.instructions),
                         fmt::format("{}", it.textureFetches), fmt::format("{}", it.rayQueries),
@@ -173,19 +174,19 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 std::string hitLobesText(const inspect::Manifest& manifest) {
     return manifest.hitLobes.size() == manifest.features.names(manifest.features.lobes).size()
                ? "all"
-               : join(manifest.hitLobes);
+               : base::join(manifest.hitLobes);
 }
 
-Json toJson(const inspect::InspectedPackage& inspected) {
+base::Json toJson(const inspect::InspectedPackage& inspected) {
     const Package& package = inspected.package;
     const inspect::Manifest& manifest = inspected.manifest;
     return {{"package", inspected.folder},
             {"version", package::kVersion},
             {"tool", manifest.toolVersion},
-            {"strategies", strategyNames(package.shape().strategies)},
-            {"tracers", tracerNames(package.shape().tracers)},
+            {"strategies", compiler::strategyNames(package.shape().strategies)},
+            {"tracers", compiler::tracerNames(package.shape().tracers)},
             {"merge", manifest.merge},
-            {"alpha", nameOf(package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque)},
+            {"alpha", nameOf(package.alpha())},
             {"host", manifest.host},
             {"packs", manifest.packs},
             {"scenes", scenesToJson(inspected)},
@@ -197,7 +198,6 @@ Json toJson(const inspect::InspectedPackage& inspected) {
               {"shadows", std::string(package::nameOf(package.shape().shadows))},
               {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
               {"bounces", package.shape().maxBounces},
-              {"bounces", std::to_string(package.shape().maxBounces)},
               {"passes", std::string(package::nameOf(package.passes()))},
               {"answer", std::string(package::nameOf(package.answer()))},
               {"bindings", bindingsOf(package)},
@@ -220,19 +220,20 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
     const std::string summary = formatFields(
         {{"package", inspected.folder},
          {"made by", fmt::format("glint {}, format {}", manifest.toolVersion, package::kVersion)},
-         {"strategies", join(strategyNames(package.shape().strategies))},
-         {"tracers", join(tracerNames(package.shape().tracers))},
+         {"strategies", base::join(compiler::strategyNames(package.shape().strategies))},
+         {"tracers", base::join(compiler::tracerNames(package.shape().tracers))},
          {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
          {"hit record", std::string(package::nameOf(package.hitRecord()))},
+         {"bounces", std::to_string(package.shape().maxBounces)},
          {"passes", std::string(package::nameOf(package.passes()))},
          {"answer", std::string(package::nameOf(package.answer()))},
          {"bindings", bindingsOf(package)},
          {"position fetch", package.positionFetch() ? "yes" : "no"},
          {"sky", skyOf(package)},
          {"merge", manifest.merge},
-         {"alpha", std::string(nameOf(package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque))},
-         {"host", manifest.host.empty() ? "Glint's own" : join(manifest.host)},
-         {"packs", manifest.packs.empty() ? "none" : join(manifest.packs)},
+         {"alpha", std::string(nameOf(package.alpha()))},
+         {"host", manifest.host.empty() ? "Glint's own" : base::join(manifest.host)},
+         {"packs", manifest.packs.empty() ? "none" : base::join(manifest.packs)},
          {"hit lobes", hitLobesText(manifest)},
          {"energy compensation", manifest.energyCompensation ? "on" : "off"},
          {"texture LOD", manifest.textureLod},
@@ -245,10 +246,10 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
            moduleTable(inspected, detail);
 }
 
-Json toJson(const inspect::InspectedPackage& inspected, const std::vector<inspect::Disassembly>& list) {
-    Json modules = Json::array();
+base::Json toJson(const inspect::InspectedPackage& inspected, const std::vector<inspect::Disassembly>& list) {
+    base::Json modules = base::Json::array();
     for (const inspect::Disassembly& entry : list) {
-        Json module = describe(inspected, *entry.module);
+        base::Json module = describe(inspected, *entry.module);
         module["text"] = entry.text;
         modules.push_back(std::move(module));
     }
@@ -328,4 +329,4 @@ void addInspect(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

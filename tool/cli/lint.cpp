@@ -13,41 +13,41 @@
 #include <memory>
 #include <optional>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
-std::size_t countIn(const std::vector<LintFinding>& findings, Severity severity) {
-    return static_cast<std::size_t>(std::ranges::count(findings, severity, &LintFinding::severity));
+std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity) {
+    return static_cast<std::size_t>(std::ranges::count(findings, severity, &compiler::LintFinding::severity));
 }
 
-Json findingsToJson(const std::vector<LintFinding>& findings, const std::string& where) {
-    Json list = Json::array();
-    for (const LintFinding& finding : findings) {
+base::Json findingsToJson(const std::vector<compiler::LintFinding>& findings, const std::string& where) {
+    base::Json list = base::Json::array();
+    for (const compiler::LintFinding& finding : findings) {
         Diagnostic diagnostic = inspect::toDiagnostic(finding, where);
         diagnostic.message = finding.message;
-        Json json = toJson(diagnostic);
-        json["function"] = textOrNull(finding.place.function);
-        json["source"] = textOrNull(finding.place.source);
-        json["resultId"] = finding.place.id == 0 ? Json(nullptr) : Json(finding.place.id);
-        json["word"] = finding.place.offset == 0 ? Json(nullptr) : Json(finding.place.offset);
+        base::Json json = toJson(diagnostic);
+        json["function"] = base::textOrNull(finding.place.function);
+        json["source"] = base::textOrNull(finding.place.source);
+        json["resultId"] = finding.place.id == 0 ? base::Json(nullptr) : base::Json(finding.place.id);
+        json["word"] = finding.place.offset == 0 ? base::Json(nullptr) : base::Json(finding.place.offset);
         list.push_back(std::move(json));
     }
     return list;
 }
 
-Json toJson(const inspect::MaliocReport& report) {
-    return {{"core", textOrNull(report.core)},
-            {"longestCycles", orNull(report.longestCycles)},
+base::Json toJson(const inspect::MaliocReport& report) {
+    return {{"core", base::textOrNull(report.core)},
+            {"longestCycles", base::orNull(report.longestCycles)},
             {"boundPipelines", report.boundPipelines},
             {"cycles", report.cycles},
-            {"workRegisters", orNull(report.workRegisters)},
-            {"occupancy", orNull(report.occupancy)},
-            {"spills", orNull(report.spills)},
-            {"spillBytes", orNull(report.spillBytes)}};
+            {"workRegisters", base::orNull(report.workRegisters)},
+            {"occupancy", base::orNull(report.occupancy)},
+            {"spills", base::orNull(report.spills)},
+            {"spillBytes", base::orNull(report.spillBytes)}};
 }
 
-Json toJson(const SpirvStatistics& statistics) {
+base::Json toJson(const compiler::SpirvStatistics& statistics) {
     return {{"bytes", statistics.bytes},
             {"instructions", statistics.instructions},
             {"textureFetches", statistics.textureFetches},
@@ -57,12 +57,12 @@ Json toJson(const SpirvStatistics& statistics) {
             {"branches", statistics.branches}};
 }
 
-Json toJson(const inspect::LintedModule& module) {
+base::Json toJson(const inspect::LintedModule& module) {
     return {{"file", module.file.path.string()},
-            {"name", textOrNull(module.file.name)},
-            {"stages", module.lint ? Json(module.lint->stages) : Json::array()},
-            {"statistics", module.lint ? toJson(module.lint->statistics) : Json(nullptr)},
-            {"malioc", module.malioc ? toJson(*module.malioc) : Json(nullptr)},
+            {"name", base::textOrNull(module.file.name)},
+            {"stages", module.lint ? base::Json(module.lint->stages) : base::Json::array()},
+            {"statistics", module.lint ? toJson(module.lint->statistics) : base::Json(nullptr)},
+            {"malioc", module.malioc ? toJson(*module.malioc) : base::Json(nullptr)},
             {"findings", findingsToJson(module.findings, module.file.path.string())}};
 }
 
@@ -70,13 +70,10 @@ std::vector<std::string> countsOf(const inspect::LintedModule& module) {
     if (!module.lint) {
         return {"-", "-", "-", "-", "-", "-"};
     }
-    const SpirvStatistics& it = module.lint->statistics;
-    return {join(module.lint->stages),
-            fmt::format("{}", it.instructions),
-            fmt::format("{}", it.textureFetches),
-            fmt::format("{}", it.rayQueries),
-            fmt::format("{}", it.traces),
-            fmt::format("{}", it.functions)};
+    const compiler::SpirvStatistics& it = module.lint->statistics;
+    return {base::join(module.lint->stages),      fmt::format("{}", it.instructions),
+            fmt::format("{}", it.textureFetches), fmt::format("{}", it.rayQueries),
+            fmt::format("{}", it.traces),         fmt::format("{}", it.functions)};
 }
 
 std::vector<std::string> cyclesOf(const inspect::LintedModule& module) {
@@ -87,7 +84,7 @@ std::vector<std::string> cyclesOf(const inspect::LintedModule& module) {
     const std::string spills = it.spillBytes ? fmt::format("{}", *it.spillBytes)
                                : it.spills   ? (*it.spills ? "yes" : "no")
                                              : "-";
-    return {it.longestCycles ? fmt::format("{:.2f}", *it.longestCycles) : "-", join(it.boundPipelines),
+    return {it.longestCycles ? fmt::format("{:.2f}", *it.longestCycles) : "-", base::join(it.boundPipelines),
             it.workRegisters ? fmt::format("{}", *it.workRegisters) : "-", spills};
 }
 
@@ -152,14 +149,14 @@ std::string toText(const inspect::LintReport& report, Detail detail) {
 }
 
 // Returns the JSON that docs/lint.md describes.
-Json toJson(const inspect::LintReport& report) {
-    Json modules = Json::array();
+base::Json toJson(const inspect::LintReport& report) {
+    base::Json modules = base::Json::array();
     for (const inspect::LintedModule& module : report.modules) {
         modules.push_back(toJson(module));
     }
-    Json findings = Json::array();
+    base::Json findings = base::Json::array();
     for (const inspect::LintedFolder& folder : report.folders) {
-        for (Json& finding : findingsToJson(folder.findings, folder.path)) {
+        for (base::Json& finding : findingsToJson(folder.findings, folder.path)) {
             findings.push_back(std::move(finding));
         }
     }
@@ -168,7 +165,7 @@ Json toJson(const inspect::LintReport& report) {
             {"errors", report.count(Severity::Error)},
             {"warnings", report.count(Severity::Warning)},
             {"notes", report.count(Severity::Note)},
-            {"malioc", report.malioc ? Json(report.malioc->string()) : Json(nullptr)}};
+            {"malioc", report.malioc ? base::Json(report.malioc->string()) : base::Json(nullptr)}};
 }
 
 struct Budget {
@@ -193,17 +190,17 @@ struct LintArguments {
 };
 
 // Removes the findings that -W drops, and turns those into errors that it and --werror name.
-void judge(const DiagnosticPolicy& policy, std::vector<LintFinding>& findings) {
-    std::erase_if(findings, [&](LintFinding& finding) {
+void judge(const DiagnosticPolicy& policy, std::vector<compiler::LintFinding>& findings) {
+    std::erase_if(findings, [&](compiler::LintFinding& finding) {
         const std::optional<Severity> severity = policy.judge(finding.severity, finding.rule);
         finding.severity = severity.value_or(finding.severity);
         return !severity;
     });
 }
 
-void reportFindings(const Console& console, const std::vector<LintFinding>& findings,
+void reportFindings(const Console& console, const std::vector<compiler::LintFinding>& findings,
                     const std::string& where) {
-    for (const LintFinding& finding : findings) {
+    for (const compiler::LintFinding& finding : findings) {
         console.report(inspect::toDiagnostic(finding, where));
     }
 }
@@ -293,4 +290,4 @@ void addLint(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

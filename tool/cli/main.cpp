@@ -6,15 +6,15 @@
 
 int main(int argc, char** argv) {
     try {
-        return glint::runCommandLine(argc, argv);
+        return glint::cli::runCommandLine(argc, argv);
     } catch (const std::bad_alloc&) {
         std::fputs(
             "error: the work does not fit into memory; use smaller inputs, or a machine with more"
             " [out-of-memory]\n",
             stderr);
-        return glint::kExitFailed;
+        return glint::cli::kExitFailed;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "glint: error: %s\n", error.what());
-        return glint::kExitFailed;
+        return glint::cli::kExitFailed;
     }
 }

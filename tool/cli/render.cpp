@@ -31,15 +31,16 @@
 #include <optional>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 // Returns the package `given` by --package, after checking it, or compiles one now. Fills in the report's
 // members about it.
 Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
-                              const PlanOptions& plan, std::uint32_t tracers, const Scene& scene,
-                              std::optional<Result<Package>> given, RenderReport& report) {
+                              const compiler::PlanOptions& plan, std::uint32_t tracers,
+                              const gltf::Scene& scene, std::optional<Result<Package>> given,
+                              RenderReport& report) {
     if (given) {
         Result<Package>& package = *given;
         if (!package) {
@@ -48,10 +49,10 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         const scene_view::PackageDemand demand{*arguments.strategy, arguments.renderer.tracer,
                                                !arguments.environment.empty()};
         Status checked = scene_view::checkPackage(*package, arguments.package, demand, scene);
-        const bool isLit =
-            measure::addsSun(arguments, scene) || std::ranges::any_of(scene.lights, [](const Light& light) {
-                return light.shines() || light.canShine;
-            });
+        const bool isLit = measure::addsSun(arguments, scene) ||
+                           std::ranges::any_of(scene.lights, [](const gltf::Light& light) {
+                               return light.shines() || light.canShine;
+                           });
         if (checked && isLit && package->shape().effects.lights == 0) {
             console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
                                       "has no effect shadow, so the lights of the picture cast no shadows",
@@ -59,11 +60,11 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         }
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
-    const Clock::time_point start = Clock::now();
-    const CompileSettings settings = measure::compileSettings(arguments, plan, tracers, scene);
-    console.report(effectWarnings(SceneList({&scene, 1}), settings));
+    const base::Clock::time_point start = base::Clock::now();
+    const compiler::CompileSettings settings = measure::compileSettings(arguments, plan, tracers, scene);
+    console.report(effectWarnings(gltf::SceneList({&scene, 1}), settings));
     Result<Package> package = scene_view::compileAndLoad(scene, settings);
-    report.compileMs = millisecondsSince(start);
+    report.compileMs = base::millisecondsSince(start);
     report.merge = nameOf(plan.merge);
     return package;
 }
@@ -109,8 +110,8 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 }
 
 // Replaces --strategy auto by the strategy that is expected to be fastest.
-Status settleStrategy(const Console& console, const PlanOptions& plan, const Context& context,
-                      const Scene& scene, const std::optional<Result<Package>>& given,
+Status settleStrategy(const Console& console, const compiler::PlanOptions& plan, const Context& context,
+                      const gltf::Scene& scene, const std::optional<Result<Package>>& given,
                       RenderArguments& arguments, RenderReport& report) {
     if (arguments.strategy) {
         return okStatus();
@@ -119,7 +120,7 @@ Status settleStrategy(const Console& console, const PlanOptions& plan, const Con
         return given->error();
     }
     std::vector<Diagnostic> warnings;
-    Result<StrategyAdvice> advice =
+    Result<compiler::StrategyAdvice> advice =
         measure::adviseRender(arguments, plan, context, scene, given ? &**given : nullptr, warnings);
     console.report(warnings);
     if (!advice) {
@@ -152,8 +153,9 @@ std::array<std::uint8_t, 3> colorOf(PixelPath path) {
 // The colours are those of Okabe and Ito, "Color Universal Design" (2008). Colour-blind people can tell them
 // apart, and they differ in lightness. Orange: found in screen space. Blue: a ray that hit. Light blue: a ray
 // that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
-DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width, std::uint32_t height) {
-    DisplayImage image{width, height, {}};
+image::DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width,
+                                std::uint32_t height) {
+    image::DisplayImage image{width, height, {}};
     image.pixels.reserve(paths.size());
     for (const PixelPath path : paths) {
         image.pixels.push_back(colorOf(path));
@@ -164,18 +166,19 @@ DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t widt
 // Writes everything that comes after the pictures.
 Status writeResults(const RenderArguments& arguments, const RenderReport& report) {
     if (!arguments.coverage.empty()) {
-        const DisplayImage map = coverageMap(report.paths, report.width, report.height);
+        const image::DisplayImage map = coverageMap(report.paths, report.width, report.height);
         if (Status written = writeImage(arguments.coverage, map); !written) {
             return written;
         }
     }
-    return arguments.stats.empty() ? okStatus() : writeFile(arguments.stats, toText(toJson(report)));
+    return arguments.stats.empty() ? okStatus()
+                                   : base::writeFile(arguments.stats, base::toText(toJson(report)));
 }
 
 // Chooses the camera for an animated scene. A camera that frames everything frames all that is visible at any
 // moment, and does not move.
 Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movement,
-                                            const RenderArguments& arguments, Scene& scene,
+                                            const RenderArguments& arguments, gltf::Scene& scene,
                                             scene_view::SceneViewData& data, double aspect) {
     if (!movement) {
         return scene_view::chooseCamera(scene, data, arguments.camera, aspect);
@@ -202,8 +205,8 @@ Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movem
 }
 
 // Does all the work between reading the scene and writing the files.
-Status render(const Console& console, const RenderArguments& asked, Scene& scene, const SceneList& scenes,
-              const PlanOptions& plan, RenderReport& report) {
+Status render(const Console& console, const RenderArguments& asked, gltf::Scene& scene,
+              const gltf::SceneList& scenes, const compiler::PlanOptions& plan, RenderReport& report) {
     RenderArguments arguments = asked;
     const Result<std::optional<Movement>> movement =
         chooseMovement(arguments.motion, scene, !arguments.materials.empty());
@@ -222,13 +225,13 @@ Status render(const Console& console, const RenderArguments& asked, Scene& scene
         given = Package::load(arguments.package);
     }
     // This comes before the compilation, which takes longer than finding out that there is no device.
-    const Clock::time_point begin = Clock::now();
+    const base::Clock::time_point begin = base::Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
     if (!context) {
         return context.error();
     }
     PipelineCacheFile pipelineCache(console, **context, pipelineCacheFolder(arguments.pipelines, {}));
-    report.start.deviceMs = millisecondsSince(begin);
+    report.start.deviceMs = base::millisecondsSince(begin);
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
     if (Status settled = settleStrategy(console, plan, **context, scene, given, arguments, report);
@@ -248,7 +251,7 @@ Status render(const Console& console, const RenderArguments& asked, Scene& scene
     }
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);
-    report.alpha = nameOf(package->alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque);
+    report.alpha = nameOf(package->alpha());
     report.cases = package->caseCount();
     for (const package::CaseEntry& entry : package->cases()) {
         report.caseNames.emplace_back(package->string(entry.name));
@@ -301,7 +304,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     RenderReport report;
     report.scene = arguments.scene;
     report.image = arguments.output;
-    report.strategy = sweptSetting("strategy")->values.text(arguments);
+    report.strategy = compiler::sweptSetting("strategy")->values.text(arguments);
     report.samples = arguments.samples;
     report.seed = arguments.frame.seed;
     report.width = arguments.renderer.width;
@@ -320,21 +323,21 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.progress("reading " + arguments.scene);
-    const Result<ImportOptions> import = importOptions(arguments, true);
+    const Result<gltf::ImportOptions> import = importOptions(arguments, true);
     if (!import) {
         console.report(import.error());
         return kExitFailed;
     }
-    Result<Scene> scene = importScene(arguments.scene, *import);
+    Result<gltf::Scene> scene = importScene(arguments.scene, *import);
     if (!scene) {
         console.report(scene.error());
         return kExitFailed;
     }
     console.report(scene->warnings);
-    const SceneList scenes({&*scene, 1});
-    Settings planned = static_cast<const Settings&>(arguments);
+    const gltf::SceneList scenes({&*scene, 1});
+    compiler::Settings planned = static_cast<const compiler::Settings&>(arguments);
     if (!arguments.package.empty()) {
-        planned.alpha = AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
+        planned.alpha = package::AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
     }
     const Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
     if (!plan) {
@@ -374,4 +377,4 @@ void addRender(CLI::App& app, Action& chosen) {
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -7,7 +7,7 @@
 
 #include <system_error>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -19,63 +19,63 @@ std::string pointerOf(const std::string& where) {
 
 }  // namespace
 
-Json toJson(const Diagnostic& diagnostic) {
+base::Json toJson(const Diagnostic& diagnostic) {
     static constexpr const char* kNames[] = {"note", "warning", "error"};
     return {{"severity", kNames[static_cast<int>(diagnostic.severity)]},
             {"id", diagnostic.id},
             {"where", diagnostic.where},
-            {"pointer", textOrNull(pointerOf(diagnostic.where))},
+            {"pointer", base::textOrNull(pointerOf(diagnostic.where))},
             {"message", diagnostic.message},
             {"hint", diagnostic.hint}};
 }
 
-Json toJson(std::span<const Diagnostic> diagnostics) {
-    Json list = Json::array();
+base::Json toJson(std::span<const Diagnostic> diagnostics) {
+    base::Json list = base::Json::array();
     for (const Diagnostic& diagnostic : diagnostics) {
         list.push_back(toJson(diagnostic));
     }
     return list;
 }
 
-Json featuresToJson(const MaterialModel& model, FeatureMask mask) {
-    Json list = Json::array();
+base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask) {
+    base::Json list = base::Json::array();
     for (const std::string_view name : model.names(mask)) {
         list.push_back(std::string(name));
     }
     return list;
 }
 
-Json materialsToJson(const SceneList& scenes, std::span<const int> materials) {
-    Json list = Json::array();
+base::Json materialsToJson(const gltf::SceneList& scenes, std::span<const int> materials) {
+    base::Json list = base::Json::array();
     for (const int material : materials) {
-        const SceneList::Place place = scenes.place(material);
-        list.push_back(
-            Json{{"scene", place.scene}, {"index", place.index}, {"name", scenes.materialName(material)}});
+        const gltf::SceneList::Place place = scenes.place(material);
+        list.push_back(base::Json{
+            {"scene", place.scene}, {"index", place.index}, {"name", scenes.materialName(material)}});
     }
     return list;
 }
 
-Json droppedToJson(const SceneList& scenes, const Plan& plan) {
-    Json list = Json::array();
-    for (const DroppedFeature& dropped : plan.dropped) {
-        list.push_back(Json{{"feature", dropped.feature},
-                            {"reason", dropped.reason},
-                            {"materials", materialsToJson(scenes, dropped.materials)}});
+base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& plan) {
+    base::Json list = base::Json::array();
+    for (const compiler::DroppedFeature& dropped : plan.dropped) {
+        list.push_back(base::Json{{"feature", dropped.feature},
+                                  {"reason", dropped.reason},
+                                  {"materials", materialsToJson(scenes, dropped.materials)}});
     }
     return list;
 }
 
-std::string featureList(const MaterialModel& model, FeatureMask mask) {
+std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask) {
     std::vector<std::string> names;
     for (const std::string_view name : model.names(mask)) {
         names.emplace_back(name);
     }
-    return join(names);
+    return base::join(names);
 }
 
-std::string droppedText(const Plan& plan) {
+std::string droppedText(const compiler::Plan& plan) {
     std::vector<std::vector<std::string>> rows;
-    for (const DroppedFeature& dropped : plan.dropped) {
+    for (const compiler::DroppedFeature& dropped : plan.dropped) {
         const std::size_t count = dropped.materials.size();
         rows.push_back({"  " + dropped.feature, fmt::format("{} material{}", count, count == 1 ? "" : "s"),
                         dropped.reason});
@@ -97,7 +97,7 @@ Status checkOutputFile(const std::filesystem::path& file) {
     return okStatus();
 }
 
-Json statisticsToJson(const SpirvStatistics& statistics) {
+base::Json statisticsToJson(const compiler::SpirvStatistics& statistics) {
     return {{"bytes", statistics.bytes},
             {"instructions", statistics.instructions},
             {"textureFetches", statistics.textureFetches},
@@ -105,17 +105,17 @@ Json statisticsToJson(const SpirvStatistics& statistics) {
             {"branches", statistics.branches}};
 }
 
-Json stagesToJson(const CompiledPackage* package, int shaderId) {
-    Json stages = Json::object();
+base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId) {
+    base::Json stages = base::Json::object();
     if (package == nullptr) {
         return stages;
     }
-    for (const CompiledModule& module : package->modules) {
+    for (const compiler::CompiledModule& module : package->modules) {
         const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
         if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
-            Json entry{{"file", module.file}};
+            base::Json entry{{"file", module.file}};
             entry.update(statisticsToJson(module.statistics));
-            stages[std::string(stageName(module.key))] = std::move(entry);
+            stages[std::string(compiler::stageName(module.key))] = std::move(entry);
         }
     }
     return stages;
@@ -131,4 +131,4 @@ std::string orderingName(const package::ModuleKey& key) {
     return ordered ? std::string(package::nameOf(static_cast<package::Ordering>(key.index))) : std::string();
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -15,34 +15,34 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
-Json toJson(const Diagnostic& diagnostic);
-Json toJson(std::span<const Diagnostic> diagnostics);
-Json featuresToJson(const MaterialModel& model, FeatureMask mask);
+base::Json toJson(const Diagnostic& diagnostic);
+base::Json toJson(std::span<const Diagnostic> diagnostics);
+base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
-Json materialsToJson(const SceneList& scenes, std::span<const int> materials);
+base::Json materialsToJson(const gltf::SceneList& scenes, std::span<const int> materials);
 // Returns [{"feature", "reason", "materials"}].
-Json droppedToJson(const SceneList& scenes, const Plan& plan);
+base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& plan);
 
 // Returns the names of the features of a mask, "a, b", or "-".
-std::string featureList(const MaterialModel& model, FeatureMask mask);
+std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
-std::string droppedText(const Plan& plan);
+std::string droppedText(const compiler::Plan& plan);
 
 // Returns the error "output-folder" unless `file` could be created: its folder must exist, and it must not be
 // a folder itself.
 Status checkOutputFile(const std::filesystem::path& file);
 
 // bytes, instructions, textureFetches, rayQueries, branches
-Json statisticsToJson(const SpirvStatistics& statistics);
+base::Json statisticsToJson(const compiler::SpirvStatistics& statistics);
 
 // Returns the case's own modules by stage, as in the manifest. Empty without a package, and for strategies
 // that have none.
-Json stagesToJson(const CompiledPackage* package, int shaderId);
+base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId);
 
 // These name which of the modules of its role it is; empty if there is only one.
 std::string tracerName(const package::ModuleKey& key);    // "ray-query"
 std::string orderingName(const package::ModuleKey& key);  // "wave-ballot"
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -226,4 +226,4 @@ std::string formatBytes(std::uint64_t bytes) {
     return fmt::format("{:.2f} MiB", value / (kKibi * kKibi));
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 // How much of long cells is shown.
 enum class Detail : std::uint8_t {
@@ -47,4 +47,4 @@ std::string formatBytes(std::uint64_t bytes);
 // Returns "1.234 ms".
 std::string formatMilliseconds(double milliseconds);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -5,9 +5,9 @@
 
 #include <span>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the files of shaders/, then those of templates/, each sorted by name. They have static storage.
-std::span<const BuiltinFile> builtinFiles();
+std::span<const base::BuiltinFile> builtinFiles();
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -23,15 +23,15 @@
 #include <set>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
-Bytes toBytes(std::string_view text) {
+base::Bytes toBytes(std::string_view text) {
     return {text.begin(), text.end()};
 }
 
-Bytes toBytes(const std::vector<std::uint32_t>& words) {
+base::Bytes toBytes(const std::vector<std::uint32_t>& words) {
     const auto* const first = reinterpret_cast<const std::uint8_t*>(words.data());
     return {first, first + words.size() * sizeof(std::uint32_t)};
 }
@@ -118,7 +118,8 @@ struct Prepared {
     std::vector<ModuleSource> modules;
 };
 
-Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& settings, std::optional<Plan> made) {
+Result<Prepared> prepare(const gltf::SceneList& scenes, const CompileSettings& settings,
+                         std::optional<Plan> made) {
     if (Status valid = checkSettings(settings, scenes.path()); !valid) {
         return valid.error();
     }
@@ -138,8 +139,8 @@ Result<Prepared> prepare(const SceneList& scenes, const CompileSettings& setting
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
 }
 
-Result<CompiledPackage> compile(const SceneList& scenes, const CompileSettings& settings, ModuleCache* cache,
-                                std::optional<Plan> made) {
+Result<CompiledPackage> compile(const gltf::SceneList& scenes, const CompileSettings& settings,
+                                ModuleCache* cache, std::optional<Plan> made) {
     Result<Prepared> prepared = prepare(scenes, settings, std::move(made));
     if (!prepared) {
         return prepared.error();
@@ -189,13 +190,13 @@ CompileSettings withOwnTracers(CompileSettings settings) {
 
 // Checks the scenes, then returns the result of `work`. An exception becomes an error.
 template <typename Value, typename Work>
-Result<Value> guarded(std::span<const Scene> scenes, const Work& work) {
+Result<Value> guarded(std::span<const gltf::Scene> scenes, const Work& work) {
     if (scenes.empty()) {
         return makeError("scene-missing", "", "there is no scene to compile", "name at least one");
     }
     const std::string where = scenes.front().path;
     try {
-        for (const Scene& scene : scenes) {
+        for (const gltf::Scene& scene : scenes) {
             if (Status valid = checkScene(scene); !valid) {
                 return valid.error();
             }
@@ -232,10 +233,11 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
     return names;
 }
 
-Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings,
+Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                 std::optional<Plan> made) {
     return guarded<PackagePlan>(scenes, [&]() -> Result<PackagePlan> {
-        Result<Prepared> prepared = prepare(SceneList(scenes), withOwnTracers(settings), std::move(made));
+        Result<Prepared> prepared =
+            prepare(gltf::SceneList(scenes), withOwnTracers(settings), std::move(made));
         if (!prepared) {
             return prepared.error();
         }
@@ -244,10 +246,11 @@ Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSett
     });
 }
 
-Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
+Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                        ModuleCache* cache, std::optional<Plan> made) {
-    return guarded<CompiledPackage>(
-        scenes, [&] { return compile(SceneList(scenes), withOwnTracers(settings), cache, std::move(made)); });
+    return guarded<CompiledPackage>(scenes, [&] {
+        return compile(gltf::SceneList(scenes), withOwnTracers(settings), cache, std::move(made));
+    });
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 class ModuleCache;
 
@@ -41,7 +41,7 @@ struct CompiledModule {
 
 struct PackageFile {
     std::string name;  // relative, '/' between folders
-    Bytes bytes;
+    base::Bytes bytes;
 };
 
 struct CompiledPackage {
@@ -66,7 +66,7 @@ struct PackagePlan {
 };
 // Plans a package. Has the errors of compilePackage(), except those of compiling. `made` is what makePlan()
 // has made of the scenes with settings.plan, if that was needed before.
-Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSettings& settings,
+Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                 std::optional<Plan> made = {});
 
 // Compiles one package for `scenes` (at least one): they share the cases, and each has its own tables.
@@ -74,9 +74,9 @@ Result<PackagePlan> planPackage(std::span<const Scene> scenes, const CompileSett
 // Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
 // line (a defect of Glint itself); with settings.modules, also those of takeModules(). `made` is that of
 // planPackage().
-Result<CompiledPackage> compilePackage(std::span<const Scene> scenes, const CompileSettings& settings,
+Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                        ModuleCache* cache = nullptr, std::optional<Plan> made = {});
-inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileSettings& settings,
+inline Result<CompiledPackage> compilePackage(const gltf::Scene& scene, const CompileSettings& settings,
                                               ModuleCache* cache = nullptr) {
     return compilePackage(std::span(&scene, 1), settings, cache);
 }
@@ -87,4 +87,4 @@ inline Result<CompiledPackage> compilePackage(const Scene& scene, const CompileS
 // error if the folder holds something other than a package.
 Status writePackage(const CompiledPackage& package, const std::filesystem::path& folder);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -69,8 +69,8 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     module.glsl = std::move(source.glsl);
     module.spirv = text.module.spirv;
     module.statistics = text.module.statistics;
-    module.hash = hashBytes({reinterpret_cast<const std::uint8_t*>(module.spirv.data()),
-                             module.spirv.size() * sizeof(std::uint32_t)});
+    module.hash = base::hashBytes({reinterpret_cast<const std::uint8_t*>(module.spirv.data()),
+                                   module.spirv.size() * sizeof(std::uint32_t)});
     module.compiled = text.compiled && isFirst;
     return module;
 }
@@ -199,4 +199,4 @@ Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> source
     });
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Calls compileShader() and measureSpirv().
 Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options);
@@ -30,4 +30,4 @@ Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sou
 Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
                                                 const std::filesystem::path& folder);
 
-}  // namespace glint
+}  // namespace glint::compiler

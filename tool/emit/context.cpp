@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace mustache = kainjow::mustache;
 
@@ -14,12 +14,12 @@ namespace {
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::size_t kMaxNamesListed = 8;
 
-std::string featureList(const MaterialModel& model, FeatureMask mask) {
+std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask) {
     const std::vector<std::string_view> names = model.names(mask);
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string materialNames(const SceneList& scenes, const std::vector<int>& materials) {
+std::string materialNames(const gltf::SceneList& scenes, const std::vector<int>& materials) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < materials.size() && i < kMaxNamesListed; ++i) {
         const std::string& name = scenes.materials()[materials[i]].name;
@@ -33,7 +33,7 @@ std::string materialNames(const SceneList& scenes, const std::vector<int>& mater
     return list;
 }
 
-std::string literal(FeatureMask word) {
+std::string literal(materials::FeatureMask word) {
     return fmt::format("{:#x}u", word);
 }
 
@@ -54,20 +54,20 @@ std::string commentText(std::string_view text) {
     return text.size() > kMaxNameLength ? line + "..." : line;
 }
 
-void addCase(mustache::data& context, const SceneList& scenes, const MaterialModel& model,
+void addCase(mustache::data& context, const gltf::SceneList& scenes, const materials::MaterialModel& model,
              const Case& shaderCase) {
     context.set("id", fmt::format("{}", shaderCase.shaderId));
     context.set("name", shaderCase.name);
-    context.set("alwaysLobes", literal(shaderCase.always & kLobeMask));
+    context.set("alwaysLobes", literal(shaderCase.always & materials::kLobeMask));
     context.set("alwaysInputs", literal(shaderCase.always >> 32U));
-    context.set("sometimesLobes", literal(shaderCase.sometimes & kLobeMask));
+    context.set("sometimesLobes", literal(shaderCase.sometimes & materials::kLobeMask));
     context.set("sometimesInputs", literal(shaderCase.sometimes >> 32U));
     context.set("always", featureList(model, shaderCase.always));
     context.set("sometimes", featureList(model, shaderCase.sometimes));
     context.set("materials", materialNames(scenes, shaderCase.materials));
 }
 
-mustache::data makeContext(const SceneList& scenes, const Plan& plan, const PlanOptions& options) {
+mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan, const PlanOptions& options) {
     mustache::data context;
     context.set("version", std::string(toolVersion()));
     context.set("source", commentText(scenes.fileNames()));
@@ -99,4 +99,4 @@ Result<std::string> renderTemplate(const SourceSet& sources, std::string_view na
     return parsed.render(context);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

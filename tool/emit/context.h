@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the tool's version, "0.1.0".
 std::string_view toolVersion();
@@ -20,15 +20,16 @@ std::string commentText(std::string_view text);
 
 // Makes the context: version, source, merge, alpha, and `cases`, a list of the fields that addCase() adds.
 // Retired cases are left out.
-kainjow::mustache::data makeContext(const SceneList& scenes, const Plan& plan, const PlanOptions& options);
+kainjow::mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan,
+                                    const PlanOptions& options);
 
 // Adds the fields of one case to the top level: id, name, alwaysLobes, alwaysInputs, sometimesLobes,
 // sometimesInputs, always, sometimes, materials.
-void addCase(kainjow::mustache::data& context, const SceneList& scenes, const MaterialModel& model,
-             const Case& shaderCase);
+void addCase(kainjow::mustache::data& context, const gltf::SceneList& scenes,
+             const materials::MaterialModel& model, const Case& shaderCase);
 
 // Renders the template `name` without HTML escapes. Error "template" if it is missing or malformed.
 Result<std::string> renderTemplate(const SourceSet& sources, std::string_view name,
                                    const kainjow::mustache::data& context);
 
-}  // namespace glint
+}  // namespace glint::compiler

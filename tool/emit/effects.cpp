@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace mustache = kainjow::mustache;
 
@@ -17,22 +17,22 @@ constexpr std::size_t kFirstPair = 1024;
 constexpr std::size_t kPairsOfEffect = 4;
 
 // At rest, or at a time of an animation.
-bool isLit(const Scene& scene) {
+bool isLit(const gltf::Scene& scene) {
     return std::ranges::any_of(scene.lights,
-                               [](const Light& light) { return light.shines() || light.canShine; });
+                               [](const gltf::Light& light) { return light.shines() || light.canShine; });
 }
 
 }  // namespace
 
-EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings) {
+EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings) {
     const bool lit = settings.addsLight || std::ranges::any_of(scenes.scenes(), isLit);
     EffectPlan plan = decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
     if (settings.passes == package::Passes::Steps) {
         // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
         const bool lights = settings.answer == package::HitAnswer::Radiance;
-        const std::vector<EffectDeclaration>& declared = scenes.materials().empty()
-                                                             ? builtinMaterialModel().effects
-                                                             : scenes.materials().front().model().effects;
+        const std::vector<materials::EffectDeclaration>& declared =
+            scenes.materials().empty() ? materials::builtinMaterialModel().effects
+                                       : scenes.materials().front().model().effects;
         plan.effects = effectSetOf(declared, lights ? plan.effects.lights : 0U);
         for (EffectDecision& decision : plan.decisions) {
             if (decision.chosen && (plan.effects.all & decision.effect) == 0) {
@@ -44,11 +44,11 @@ EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings)
     return plan;
 }
 
-std::string effectDefines(const MaterialModel& model, const package::EffectSet& effects) {
+std::string effectDefines(const materials::MaterialModel& model, const package::EffectSet& effects) {
     std::string text;
     std::string bits;
     for (std::size_t i = 0; i < model.effects.size(); ++i) {
-        const EffectDeclaration& effect = model.effects[i];
+        const materials::EffectDeclaration& effect = model.effects[i];
         const package::Effect bit = infoOf(effect, i).effect;
         text += fmt::format("#define GLINT_EFFECT_{} {}\n", effect.macro(), (effects.all & bit) != 0 ? 1 : 0);
         if ((effects.rays & bit) != 0) {
@@ -66,9 +66,9 @@ std::string effectDefines(const MaterialModel& model, const package::EffectSet& 
     return text + bits;
 }
 
-void addEffect(mustache::data& context, const MaterialModel& model, const package::EffectSet& effects,
-               std::size_t number) {
-    const EffectDeclaration& effect = model.effects[number];
+void addEffect(mustache::data& context, const materials::MaterialModel& model,
+               const package::EffectSet& effects, std::size_t number) {
+    const materials::EffectDeclaration& effect = model.effects[number];
     const auto file = [](const std::string& name) {
         return name.empty() ? mustache::data(false) : mustache::data(name);
     };
@@ -82,7 +82,8 @@ void addEffect(mustache::data& context, const MaterialModel& model, const packag
     context.set("slot", fmt::format("{}", package::effectSlot(effects, infoOf(effect, number).effect)));
 }
 
-void addEffects(mustache::data& context, const MaterialModel& model, const package::EffectSet& effects) {
+void addEffects(mustache::data& context, const materials::MaterialModel& model,
+                const package::EffectSet& effects) {
     const auto list = [&](std::uint32_t bits) {
         mustache::data entries(mustache::data::type::list);
         package::forEachEffect(bits, [&](std::uint32_t number) {
@@ -97,4 +98,4 @@ void addEffects(mustache::data& context, const MaterialModel& model, const packa
     context.set("rayEffects", list(effects.rays));
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

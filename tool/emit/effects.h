@@ -9,19 +9,19 @@
 
 #include <string>
 
-namespace glint {
+namespace glint::compiler {
 
 // Decides by the materials that primitives use, and by the lights.
-EffectPlan planEffects(const SceneList& scenes, const CompileSettings& settings);
+EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings);
 
 // Returns the effects' macros and bits for generated/scene.glsl.
-std::string effectDefines(const MaterialModel& model, const package::EffectSet& effects);
+std::string effectDefines(const materials::MaterialModel& model, const package::EffectSet& effects);
 
 // Adds the fields for the templates that call the effects of a package.
-void addEffects(kainjow::mustache::data& context, const MaterialModel& model,
+void addEffects(kainjow::mustache::data& context, const materials::MaterialModel& model,
                 const package::EffectSet& effects);
 // Adds the fields for effect_rays.comp.mustache: the effect with that number, which sends rays.
-void addEffect(kainjow::mustache::data& context, const MaterialModel& model,
+void addEffect(kainjow::mustache::data& context, const materials::MaterialModel& model,
                const package::EffectSet& effects, std::size_t number);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -19,10 +19,10 @@ constexpr const char* kName = "check_features.comp";
 static_assert(sizeof(FeatureKernelInput) == 14 * sizeof(std::uint32_t));
 static_assert(sizeof(FeatureKernelOutput) == 28 * sizeof(float));
 
-std::vector<const FeatureCode*> layersOf(const Plan& plan) {
-    const FeatureMask used = plan.primaryAlways | plan.primarySometimes;
-    std::vector<const FeatureCode*> layers;
-    for (const FeatureCode& code : plan.model->code) {
+std::vector<const materials::FeatureCode*> layersOf(const Plan& plan) {
+    const materials::FeatureMask used = plan.primaryAlways | plan.primarySometimes;
+    std::vector<const materials::FeatureCode*> layers;
+    for (const materials::FeatureCode& code : plan.model->code) {
         if (!code.layer.empty() &&
             (plan.model->features[static_cast<std::size_t>(code.feature)].mask() & used) != 0) {
             layers.push_back(&code);
@@ -33,16 +33,16 @@ std::vector<const FeatureCode*> layersOf(const Plan& plan) {
 
 }  // namespace
 
-Result<FeatureKernel> compileFeatureKernel(const Scene& scene, const Plan& plan,
+Result<FeatureKernel> compileFeatureKernel(const gltf::Scene& scene, const Plan& plan,
                                            const CompileSettings& settings) {
-    const SceneList scenes({&scene, 1});
+    const gltf::SceneList scenes({&scene, 1});
     Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources.error();
     }
     FeatureKernel kernel;
     kainjow::mustache::data layers(kainjow::mustache::data::type::list);
-    for (const FeatureCode* const layer : layersOf(plan)) {
+    for (const materials::FeatureCode* const layer : layersOf(plan)) {
         kernel.layers.push_back(layer->name);
         kainjow::mustache::data entry;
         entry.set("name", layer->name);
@@ -71,4 +71,4 @@ Result<FeatureKernel> compileFeatureKernel(const Scene& scene, const Plan& plan,
     return kernel;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The words that a thread of the kernel reads: templates/check_features.comp.mustache has the same order.
 // Vectors of the world are unit vectors; the surface's own frame has its normal as z.
@@ -50,7 +50,7 @@ struct FeatureKernel {
 
 // Compiles the kernel for a package of this scene alone, made with these settings. Has the errors of
 // compilePackage() that concern GLSL.
-Result<FeatureKernel> compileFeatureKernel(const Scene& scene, const Plan& plan,
+Result<FeatureKernel> compileFeatureKernel(const gltf::Scene& scene, const Plan& plan,
                                            const CompileSettings& settings);
 
-}  // namespace glint
+}  // namespace glint::compiler

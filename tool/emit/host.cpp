@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -25,7 +25,7 @@ constexpr const char* kHint = "name a folder that has files of shaders/host, as 
 // The names of Glint's own files: "geometry.glsl".
 std::vector<std::string> ownFiles() {
     std::vector<std::string> names;
-    for (const BuiltinFile& file : builtinFiles()) {
+    for (const base::BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kHostFolder)) {
             names.emplace_back(file.name.substr(kHostFolder.size()));
         }
@@ -34,8 +34,8 @@ std::vector<std::string> ownFiles() {
 }
 
 bool isOwnFolder(const std::string& name) {
-    return std::ranges::any_of(builtinFiles(),
-                               [&](const BuiltinFile& file) { return file.name.starts_with(name + "/"); });
+    return std::ranges::any_of(
+        builtinFiles(), [&](const base::BuiltinFile& file) { return file.name.starts_with(name + "/"); });
 }
 
 // Notes for readers, and what version control and editors keep.
@@ -48,7 +48,7 @@ Status checkFile(const fs::path& path, const std::vector<std::string>& own) {
     const std::string name = path.filename().string();
     if (std::ranges::find(own, name) == own.end()) {
         return makeError("host-unknown", path.generic_string(),
-                         fmt::format("stands in for no file of a host{}", suggestion(name, own)),
+                         fmt::format("stands in for no file of a host{}", base::suggestion(name, own)),
                          fmt::format("these are {}; files that they include are in folders of their own",
                                      fmt::join(own, ", ")));
     }
@@ -135,7 +135,7 @@ Status addHost(SourceSet& sources, const std::string& folder) {
         return files.error();
     }
     for (const fs::path& file : *files) {
-        const Result<Bytes> bytes = readFile(file, kMaxFileBytes);
+        const Result<base::Bytes> bytes = base::readFile(file, kMaxFileBytes);
         if (!bytes) {
             return bytes.error();
         }
@@ -147,9 +147,9 @@ Status addHost(SourceSet& sources, const std::string& folder) {
         const std::string path = file.generic_string();
         const std::string shown = path != name && sources.find(path) ? "./" + path : path;
         sources.add(name, fmt::format("#include \"{}\"\n", shown));
-        sources.add(shown, std::string(asText(*bytes)));
+        sources.add(shown, std::string(base::asText(*bytes)));
     }
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 class SourceSet;
 
@@ -29,4 +29,4 @@ bool isHostPlace(const std::string& where, const std::string& folder);
 // and readFile().
 Status addHost(SourceSet& sources, const std::string& folder);
 
-}  // namespace glint
+}  // namespace glint::compiler

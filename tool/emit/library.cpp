@@ -19,7 +19,7 @@
 #include <string>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -30,7 +30,7 @@ constexpr std::string_view kHostFile = "library/host.glsl";
 constexpr std::string_view kAdapters = "library/host/";
 
 // Puts the library's forms in the place of the files that read resources.
-Result<SourceSet> librarySources(const SceneList& scenes, Plan plan, CompileSettings settings) {
+Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, CompileSettings settings) {
     plan.effects.effects = {};
     settings.host.clear();
     settings.precision = package::ShadingPrecision::Single;
@@ -39,7 +39,7 @@ Result<SourceSet> librarySources(const SceneList& scenes, Plan plan, CompileSett
     if (!sources) {
         return sources;
     }
-    for (const BuiltinFile& file : builtinFiles()) {
+    for (const base::BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kAdapters)) {
             sources->add("host/" + std::string(file.name.substr(kAdapters.size())), std::string(file.text));
         }
@@ -196,7 +196,7 @@ PackageFile fileOf(const std::string& name, std::string_view text) {
 
 }  // namespace
 
-Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan& plan,
+Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, const Plan& plan,
                                              const CompileSettings& settings, const ModuleCache* cache) {
     const Result<SourceSet> sources = librarySources(scenes, plan, settings);
     if (!sources) {
@@ -204,7 +204,7 @@ Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan
     }
     MaterialCodeOfCases codeOfCases(*sources, *plan.model);
     std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(*sources))};
-    const auto add = [&](const mustache::data& context, FeatureMask features,
+    const auto add = [&](const mustache::data& context, materials::FeatureMask features,
                          const std::string& name) -> Status {
         const Result<const SourceSet*> code = codeOfCases.find(features);
         if (!code) {
@@ -251,8 +251,10 @@ Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan
         one.set("title", fmt::format("// Glint's library: the shading of hits with the shader ID {}.",
                                      shaderCase.shaderId));
         one.set("isSwitch", mustache::data(false));
-        const auto word = [](FeatureMask mask) { return fmt::format("{:#x}u", mask & kLobeMask); };
-        const FeatureMask any = shaderCase.always | shaderCase.sometimes;
+        const auto word = [](materials::FeatureMask mask) {
+            return fmt::format("{:#x}u", mask & materials::kLobeMask);
+        };
+        const materials::FeatureMask any = shaderCase.always | shaderCase.sometimes;
         setModule(one, word(shaderCase.always), word(shaderCase.always >> 32U), word(any), word(any >> 32U));
         const std::string name =
             fmt::format("glint_case_{}_{}.glsl", shaderCase.shaderId, shaderCase.name.substr(0, 100));
@@ -263,4 +265,4 @@ Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan
     return files;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

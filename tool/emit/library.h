@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The folder of the library in a package.
 inline constexpr std::string_view kLibraryFolder = "library/";
@@ -18,8 +18,8 @@ inline constexpr std::string_view kLibraryFolder = "library/";
 // settings.emitLinkable glint_library.spv, the same as glint_library.glsl for linkers. The settings' host,
 // precision and answer do not matter. `cache`, which may be null, keeps compiled SPIR-V. Has the errors of
 // makeSourceSet(), flatten() and compileLinkable().
-Result<std::vector<PackageFile>> makeLibrary(const SceneList& scenes, const Plan& plan,
+Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, const Plan& plan,
                                              const CompileSettings& settings,
                                              const ModuleCache* cache = nullptr);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -31,15 +31,16 @@ std::string typeName(std::string name) {
 // Which keys the code runs for: those of the module's cases, or any.
 enum class Asked : std::uint8_t { OfModule, OfAnyKey };
 
-std::string hasFeature(const Feature& feature, Asked asked) {
-    const bool isLobe = feature.bit < kFirstInput;
+std::string hasFeature(const materials::Feature& feature, Asked asked) {
+    const bool isLobe = feature.bit < materials::kFirstInput;
     const char* const function =
         asked == Asked::OfModule ? (isLobe ? "hasLobe" : "hasInput") : (isLobe ? "lobeOfKey" : "inputOfKey");
     return fmt::format("{}(features, {})", function, feature.macro);
 }
 
 // The condition under which code runs; empty if it always runs.
-std::string conditionOf(const MaterialModel& model, const FeatureCode& code, Asked asked) {
+std::string conditionOf(const materials::MaterialModel& model, const materials::FeatureCode& code,
+                        Asked asked) {
     const auto feature = [&](int index) { return model.features[static_cast<std::size_t>(index)]; };
     std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature), asked);
     if (code.unless >= 0) {
@@ -48,10 +49,11 @@ std::string conditionOf(const MaterialModel& model, const FeatureCode& code, Ask
     return text;
 }
 
-mustache::data stageOf(const MaterialModel& model, const std::vector<const FeatureCode*>& code,
-                       std::string FeatureCode::*file, Asked asked = Asked::OfModule) {
+mustache::data stageOf(const materials::MaterialModel& model,
+                       const std::vector<const materials::FeatureCode*>& code,
+                       std::string materials::FeatureCode::*file, Asked asked = Asked::OfModule) {
     mustache::data list(mustache::data::type::list);
-    for (const FeatureCode* const one : code) {
+    for (const materials::FeatureCode* const one : code) {
         if ((one->*file).empty()) {
             continue;
         }
@@ -64,11 +66,12 @@ mustache::data stageOf(const MaterialModel& model, const std::vector<const Featu
     return list;
 }
 
-using CodeFile = std::string FeatureCode::*;
+using CodeFile = std::string materials::FeatureCode::*;
 
-mustache::data includesOf(const std::vector<const FeatureCode*>& code, std::span<const CodeFile> stages) {
+mustache::data includesOf(const std::vector<const materials::FeatureCode*>& code,
+                          std::span<const CodeFile> stages) {
     std::set<std::string> files;
-    for (const FeatureCode* const one : code) {
+    for (const materials::FeatureCode* const one : code) {
         for (const CodeFile stage : stages) {
             if (!(one->*stage).empty()) {
                 files.insert(one->*stage);
@@ -85,13 +88,13 @@ mustache::data includesOf(const std::vector<const FeatureCode*>& code, std::span
 }
 
 // Sets `layers`, from the lowest to the highest, and `mirrors`, those that rays may trace.
-void addLayers(mustache::data& context, const MaterialModel& model,
-               const std::vector<const FeatureCode*>& code) {
+void addLayers(mustache::data& context, const materials::MaterialModel& model,
+               const std::vector<const materials::FeatureCode*>& code) {
     mustache::data layers(mustache::data::type::list);
     mustache::data mirrors(mustache::data::type::list);
-    std::vector<const FeatureCode*> lower;
+    std::vector<const materials::FeatureCode*> lower;
     int number = 0;
-    for (const FeatureCode* const layer : code) {
+    for (const materials::FeatureCode* const layer : code) {
         if (layer->layer.empty()) {
             continue;
         }
@@ -104,7 +107,7 @@ void addLayers(mustache::data& context, const MaterialModel& model,
         entry.set("isMirror", mustache::data(layer->isTraced));
         mustache::data below(mustache::data::type::list);
         mustache::data mirrorsBelow(mustache::data::type::list);
-        for (const FeatureCode* const one : lower) {
+        for (const materials::FeatureCode* const one : lower) {
             mustache::data pair;
             pair.set("name", one->name);
             pair.set("upper", layer->name);
@@ -124,7 +127,7 @@ void addLayers(mustache::data& context, const MaterialModel& model,
         lower.push_back(layer);
     }
     mustache::data diffuse(mustache::data::type::list);
-    for (const FeatureCode* const one : code) {
+    for (const materials::FeatureCode* const one : code) {
         if (!one->diffuse.empty()) {
             mustache::data entry;
             entry.set("name", one->name);
@@ -139,9 +142,10 @@ void addLayers(mustache::data& context, const MaterialModel& model,
     context.set("mirrors", mirrors);
 }
 
-std::vector<const FeatureCode*> codeOf(const MaterialModel& model, FeatureMask used) {
-    std::vector<const FeatureCode*> code;
-    for (const FeatureCode& one : model.code) {
+std::vector<const materials::FeatureCode*> codeOf(const materials::MaterialModel& model,
+                                                  materials::FeatureMask used) {
+    std::vector<const materials::FeatureCode*> code;
+    for (const materials::FeatureCode& one : model.code) {
         if (one.feature < 0 || (model.features[static_cast<std::size_t>(one.feature)].mask() & used) != 0) {
             code.push_back(&one);
         }
@@ -150,9 +154,10 @@ std::vector<const FeatureCode*> codeOf(const MaterialModel& model, FeatureMask u
 }
 
 // Returns the attributes that code of the used features reads, in the order of their values.
-std::vector<const VertexAttribute*> attributesOf(const MaterialModel& model, FeatureMask used) {
-    std::vector<const VertexAttribute*> attributes;
-    for (const VertexAttribute& attribute : model.attributes) {
+std::vector<const materials::VertexAttribute*> attributesOf(const materials::MaterialModel& model,
+                                                            materials::FeatureMask used) {
+    std::vector<const materials::VertexAttribute*> attributes;
+    for (const materials::VertexAttribute& attribute : model.attributes) {
         if ((model.features[static_cast<std::size_t>(attribute.feature)].mask() & used) != 0) {
             attributes.push_back(&attribute);
         }
@@ -161,7 +166,7 @@ std::vector<const VertexAttribute*> attributesOf(const MaterialModel& model, Fea
 }
 
 // The channels of a value: "{a}" for each, separated by ", ".
-std::string channelsOf(const VertexAttribute& attribute) {
+std::string channelsOf(const materials::VertexAttribute& attribute) {
     std::string text;
     for (int i = 0; i < attribute.channels; ++i) {
         const float value = attribute.fallback ? (*attribute.fallback)[static_cast<std::size_t>(i)] : 0.0F;
@@ -172,8 +177,8 @@ std::string channelsOf(const VertexAttribute& attribute) {
 
 }  // namespace
 
-std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used) {
-    const std::vector<const VertexAttribute*> attributes = attributesOf(model, used);
+std::string vertexAttributeCode(const materials::MaterialModel& model, materials::FeatureMask used) {
+    const std::vector<const materials::VertexAttribute*> attributes = attributesOf(model, used);
     if (attributes.empty()) {
         return "#define GLINT_VERTEX_ATTRIBUTES 0\n";
     }
@@ -181,12 +186,12 @@ std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used) {
     std::string fallbacks;
     std::string reads;
     int stride = 0;
-    for (const VertexAttribute* const attribute : attributes) {
+    for (const materials::VertexAttribute* const attribute : attributes) {
         stride += attribute->channels;
     }
     int offset = 0;
     constexpr const char* kChannels[] = {"x", "y", "z", "w"};
-    for (const VertexAttribute* const attribute : attributes) {
+    for (const materials::VertexAttribute* const attribute : attributes) {
         members += fmt::format("    {} {};\n", attribute->type, attribute->name);
         fallbacks += fmt::format("    values.{} = {}({});\n", attribute->name, attribute->type,
                                  channelsOf(*attribute));
@@ -218,14 +223,14 @@ std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used) {
         stride, members, fallbacks, reads);
 }
 
-Status addMaskCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
-                   SourceSet& generated) {
-    const std::vector<const FeatureCode*> code = codeOf(model, used);
-    constexpr CodeFile kStages[] = {&FeatureCode::coordinates, &FeatureCode::opacity};
+Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& model,
+                   materials::FeatureMask used, SourceSet& generated) {
+    const std::vector<const materials::FeatureCode*> code = codeOf(model, used);
+    constexpr CodeFile kStages[] = {&materials::FeatureCode::coordinates, &materials::FeatureCode::opacity};
     mustache::data context;
     context.set("includes", includesOf(code, kStages));
-    context.set("coordinates", stageOf(model, code, &FeatureCode::coordinates, Asked::OfAnyKey));
-    context.set("opacity", stageOf(model, code, &FeatureCode::opacity, Asked::OfAnyKey));
+    context.set("coordinates", stageOf(model, code, &materials::FeatureCode::coordinates, Asked::OfAnyKey));
+    context.set("opacity", stageOf(model, code, &materials::FeatureCode::opacity, Asked::OfAnyKey));
     Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", kMaskTemplate), context);
     if (!text) {
         return text.error();
@@ -234,21 +239,21 @@ Status addMaskCode(const SourceSet& sources, const MaterialModel& model, Feature
     return okStatus();
 }
 
-Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
-                       SourceSet& generated) {
-    const std::vector<const FeatureCode*> code = codeOf(model, used);
-    constexpr CodeFile kStages[] = {&FeatureCode::coordinates, &FeatureCode::surface, &FeatureCode::bsdf,
-                                    &FeatureCode::emission};
+Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel& model,
+                       materials::FeatureMask used, SourceSet& generated) {
+    const std::vector<const materials::FeatureCode*> code = codeOf(model, used);
+    constexpr CodeFile kStages[] = {&materials::FeatureCode::coordinates, &materials::FeatureCode::surface,
+                                    &materials::FeatureCode::bsdf, &materials::FeatureCode::emission};
     mustache::data context;
     addLayers(context, model, code);
     context.set("includes", includesOf(code, kStages));
-    context.set("coordinates", stageOf(model, code, &FeatureCode::coordinates));
-    const bool changesCoordinates =
-        std::ranges::any_of(code, [](const FeatureCode* one) { return !one->coordinates.empty(); });
+    context.set("coordinates", stageOf(model, code, &materials::FeatureCode::coordinates));
+    const bool changesCoordinates = std::ranges::any_of(
+        code, [](const materials::FeatureCode* one) { return !one->coordinates.empty(); });
     context.set("changesCoordinates", mustache::data(changesCoordinates));
-    context.set("surface", stageOf(model, code, &FeatureCode::surface));
-    context.set("bsdf", stageOf(model, code, &FeatureCode::bsdf));
-    context.set("emission", stageOf(model, code, &FeatureCode::emission));
+    context.set("surface", stageOf(model, code, &materials::FeatureCode::surface));
+    context.set("bsdf", stageOf(model, code, &materials::FeatureCode::bsdf));
+    context.set("emission", stageOf(model, code, &materials::FeatureCode::emission));
     for (const std::string_view name : kTemplates) {
         Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", name), context);
         if (!text) {
@@ -259,7 +264,8 @@ Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, Fea
     return okStatus();
 }
 
-Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const std::string& host) {
+Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& model,
+                            const std::string& host) {
     if (error.id != "glsl" || (model.sources.empty() && host.empty())) {
         return error;
     }
@@ -272,14 +278,14 @@ Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const 
         const std::string folder = declaration.substr(0, declaration.rfind('/') + 1);
         return !folder.empty() && error.where.starts_with(folder);
     };
-    for (const EffectDeclaration& effect : model.effects) {
+    for (const materials::EffectDeclaration& effect : model.effects) {
         if (effect.isOfPack && isBeside(effect.declaration)) {
             error.message += fmt::format("; it is GLSL of the effect {}", effect.name);
             error.hint = "correct the file; docs/effects.md says which functions it must have";
             return error;
         }
     }
-    for (const FeatureCode& code : model.code) {
+    for (const materials::FeatureCode& code : model.code) {
         if (code.isOfPack && isBeside(code.declaration)) {
             error.message += fmt::format("; it is GLSL of the material feature {}", code.name);
             error.hint = "correct the file; docs/material_features.md says what each stage may use";
@@ -296,9 +302,9 @@ Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const 
     return error;
 }
 
-Result<const SourceSet*> MaterialCodeOfCases::find(FeatureMask used) {
-    FeatureMask withCode = 0;
-    for (const FeatureCode& code : model_.code) {
+Result<const SourceSet*> MaterialCodeOfCases::find(materials::FeatureMask used) {
+    materials::FeatureMask withCode = 0;
+    for (const materials::FeatureCode& code : model_.code) {
         withCode |= code.feature < 0 ? 0 : model_.features[static_cast<std::size_t>(code.feature)].mask();
     }
     const auto [place, isNew] = made_.try_emplace(used & withCode);
@@ -310,4 +316,4 @@ Result<const SourceSet*> MaterialCodeOfCases::find(FeatureMask used) {
     return &place->second;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

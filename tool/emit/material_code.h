@@ -8,43 +8,43 @@
 
 #include <map>
 
-namespace glint {
+namespace glint::compiler {
 
 // Adds "generated/layers.glsl", "layers_sky.glsl", "layers_traced.glsl" and "material_stages.glsl" for the
 // features of `used` to `generated`. `sources` has the templates. Has the errors of renderTemplate().
-Status addMaterialCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
-                       SourceSet& generated);
+Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel& model,
+                       materials::FeatureMask used, SourceSet& generated);
 
 // Adds "generated/mask_stages.glsl" in the same way: the code that decides about the opacity of candidates of
 // rays and of rasterised triangles, which may be of any case. `used` must be the features of the whole
 // package.
-Status addMaskCode(const SourceSet& sources, const MaterialModel& model, FeatureMask used,
-                   SourceSet& generated);
+Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& model,
+                   materials::FeatureMask used, SourceSet& generated);
 
 // Returns "generated/attributes.glsl": the attributes of vertices that the features of `used` read beside
 // those of glTF.
-std::string vertexAttributeCode(const MaterialModel& model, FeatureMask used);
+std::string vertexAttributeCode(const materials::MaterialModel& model, materials::FeatureMask used);
 
 // Says what to do about an error in GLSL to which packs or a host may have contributed, and which feature it
 // is of. `host` is the folder of --host.
-Diagnostic explainGlslError(Diagnostic error, const MaterialModel& model, const std::string& host);
+Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& model, const std::string& host);
 
 // The material code of modules that know their features: those of a case. Their text then has no code of
 // other features, so that a change of a feature's GLSL leaves the shaders of other cases as they are.
 class MaterialCodeOfCases {
 public:
     // Both must outlive this.
-    MaterialCodeOfCases(const SourceSet& sources, const MaterialModel& model)
+    MaterialCodeOfCases(const SourceSet& sources, const materials::MaterialModel& model)
         : sources_(sources), model_(model) {}
 
     // Returns the files for keys with features of `used` alone. They are valid as long as this. Has the
     // errors of renderTemplate().
-    Result<const SourceSet*> find(FeatureMask used);
+    Result<const SourceSet*> find(materials::FeatureMask used);
 
 private:
     const SourceSet& sources_;
-    const MaterialModel& model_;
-    std::map<FeatureMask, SourceSet> made_;  // by the features that have code
+    const materials::MaterialModel& model_;
+    std::map<materials::FeatureMask, SourceSet> made_;  // by the features that have code
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,13 +7,13 @@
 #include <cstring>
 #include <interop/scene.h>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
 constexpr std::uint32_t kFloatBytes = 4;
 
-bool isUsed(const MaterialModel& model, int feature, FeatureMask used) {
+bool isUsed(const materials::MaterialModel& model, int feature, materials::FeatureMask used) {
     return feature < 0 || (model.features[static_cast<std::size_t>(feature)].mask() & used) != 0;
 }
 
@@ -42,7 +42,7 @@ std::string textureConstant(std::string_view name) {
 // Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
 // points down; the extension's GLSL listing turns the other way, its text and test models this one
 // (KhronosGroup/glTF issue 1563).
-gpu::TextureRecord transformed(const TextureTransform& transform) {
+gpu::TextureRecord transformed(const materials::TextureTransform& transform) {
     const double sine = std::sin(static_cast<double>(transform.rotation));
     const double cosine = std::cos(static_cast<double>(transform.rotation));
     const double scaleU = transform.scale[0];
@@ -56,9 +56,10 @@ gpu::TextureRecord transformed(const TextureTransform& transform) {
 }
 
 // Evaluates expressions at the values of a material, whatever its textures and animations do.
-double derivedValue(const MaterialFacts& facts, const DerivedField& field, int channel) {
+double derivedValue(const materials::MaterialFacts& facts, const materials::DerivedField& field,
+                    int channel) {
     const std::size_t row = field.channels.size() == 1 ? 0 : static_cast<std::size_t>(channel);
-    const Channels number = field.channels[row].number(facts);
+    const materials::Channels number = field.channels[row].number(facts);
     const bool shared = number.count == 1 || field.channels.size() > 1;
     return number.of[shared ? 0 : static_cast<std::size_t>(channel)].low;
 }
@@ -87,7 +88,7 @@ int MaterialLayout::slotOf(int texture) const {
     return found == textures.end() ? -1 : static_cast<int>(found - textures.begin());
 }
 
-MaterialLayout makeMaterialLayout(const MaterialModel& model, FeatureMask used) {
+MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used) {
     MaterialLayout layout;
     layout.model = &model;
     const auto append = [&layout](RecordField field) {
@@ -96,14 +97,14 @@ MaterialLayout makeMaterialLayout(const MaterialModel& model, FeatureMask used) 
         layout.fields.push_back(std::move(field));
     };
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-        const Parameter& parameter = model.parameters[i];
+        const materials::Parameter& parameter = model.parameters[i];
         if (parameter.inRecord && isUsed(model, parameter.feature, used)) {
             append({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about),
                     parameter.channels, 0, static_cast<int>(i), -1});
         }
     }
     for (std::size_t i = 0; i < model.derived.size(); ++i) {
-        const DerivedField& field = model.derived[i];
+        const materials::DerivedField& field = model.derived[i];
         if (isUsed(model, field.feature, used)) {
             append({field.name, field.type, noteOf(field.unit, field.about), field.count, 0, -1,
                     static_cast<int>(i)});
@@ -123,14 +124,16 @@ MaterialLayout materialLayoutOf(const Plan& plan) {
     return makeMaterialLayout(*plan.model, plan.primaryAlways | plan.primarySometimes);
 }
 
-std::vector<std::uint8_t> makeMaterialRecord(const Material& material, const MaterialLayout& layout) {
+std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
+                                             const MaterialLayout& layout) {
     std::vector<std::uint8_t> record(layout.bytes);
-    Material plain = material;
+    materials::Material plain = material;
     plain.ranges.clear();
-    const PrimitiveInputs primitive;
-    const KeyOptions options;
-    const FeatureMask key = 0;
-    const MaterialFacts facts(plain, primitive, options, key, MaterialFacts::Textures::Ignored);
+    const materials::PrimitiveInputs primitive;
+    const materials::KeyOptions options;
+    const materials::FeatureMask key = 0;
+    const materials::MaterialFacts facts(plain, primitive, options, key,
+                                         materials::MaterialFacts::Textures::Ignored);
     for (const RecordField& field : layout.fields) {
         for (int i = 0; i < field.channels; ++i) {
             const float value =
@@ -144,7 +147,8 @@ std::vector<std::uint8_t> makeMaterialRecord(const Material& material, const Mat
         }
     }
     for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
-        const TextureInfo& info = material.textures[static_cast<std::size_t>(layout.textures[slot])];
+        const materials::TextureInfo& info =
+            material.textures[static_cast<std::size_t>(layout.textures[slot])];
         if (info.texture >= 0) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + slot * sizeof texture], &texture, sizeof texture);
@@ -166,7 +170,7 @@ std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
 }
 
 std::string recordDeclarations(const MaterialLayout& layout) {
-    const MaterialModel& model = *layout.model;
+    const materials::MaterialModel& model = *layout.model;
     std::string text =
         "// The values of a material that the scenes of the package need.\n" + recordStruct(layout, "");
     text +=
@@ -190,17 +194,17 @@ std::string recordDeclarations(const MaterialLayout& layout) {
             std::ranges::any_of(layout.fields, [&](const RecordField& row) { return row.name == name; });
         text += fieldMacros(name, present ? fmt::format("(record).{}", name) : literalOf(type, fallback));
     };
-    for (const Parameter& parameter : model.parameters) {
+    for (const materials::Parameter& parameter : model.parameters) {
         if (parameter.inRecord) {
             define(parameter.name, parameter.type,
                    std::span(parameter.fallback).first(static_cast<std::size_t>(parameter.channels)));
         }
     }
-    for (const DerivedField& field : model.derived) {
+    for (const materials::DerivedField& field : model.derived) {
         const std::array<float, 4> zero{};
         define(field.name, field.type, std::span(zero).first(static_cast<std::size_t>(field.count)));
     }
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct RecordField {
     std::string name;
@@ -22,7 +22,7 @@ struct RecordField {
 };
 
 struct MaterialLayout {
-    const MaterialModel* model = nullptr;
+    const materials::MaterialModel* model = nullptr;
     std::vector<RecordField> fields;
     std::vector<int> textures;  // index into MaterialModel::textures for each texture of a record
     std::uint32_t textureOffset = 0;
@@ -33,14 +33,15 @@ struct MaterialLayout {
 };
 
 // `used` is the union of all keys, with all lobes.
-MaterialLayout makeMaterialLayout(const MaterialModel& model, FeatureMask used);
+MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used);
 
 // The layout of a plan's package.
 MaterialLayout materialLayoutOf(const Plan& plan);
 
 // Returns the bytes of a record: the values of the material and the transforms of its textures. Which
 // textures these are is for makeMaterialTables() to settle.
-std::vector<std::uint8_t> makeMaterialRecord(const Material& material, const MaterialLayout& layout);
+std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
+                                             const MaterialLayout& layout);
 
 // Returns the GLSL of the record: the struct MaterialRecord, a constant for each texture, and for each
 // declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where records lack the field.
@@ -48,4 +49,4 @@ std::string recordDeclarations(const MaterialLayout& layout);
 // Returns the struct alone. `scope` stands before the names of vector types: empty in GLSL, "gpu::" in C++.
 std::string recordStruct(const MaterialLayout& layout, std::string_view scope);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -30,7 +30,7 @@ std::string packFile(std::string_view text, const CachedModule& module) {
                                  .add(text)
                                  .add(std::string_view(packModule(module)))
                                  .take();
-    return std::string(kModuleMagic) + Packer().add(hashBytes(body)).take() + body;
+    return std::string(kModuleMagic) + Packer().add(base::hashBytes(body)).take() + body;
 }
 
 }  // namespace
@@ -54,17 +54,17 @@ std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bo
 }
 
 Status compileModuleFile(const fs::path& input, const fs::path& output) {
-    const Result<Bytes> bytes = readFile(input, kMaxModuleFileBytes);
+    const Result<base::Bytes> bytes = base::readFile(input, kMaxModuleFileBytes);
     if (!bytes) {
         return bytes.error();
     }
-    const std::string_view text = asText(*bytes);
+    const std::string_view text = base::asText(*bytes);
     const Result<ModuleText> module = readModuleText(text, input.string());
     if (!module) {
         return module.error();
     }
     const Result<CachedModule> compiled = compileMeasured(module->source, module->options);
-    return compiled ? writeFile(output, packFile(text, *compiled)) : Status(compiled.error());
+    return compiled ? base::writeFile(output, packFile(text, *compiled)) : Status(compiled.error());
 }
 
 Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view text,
@@ -74,7 +74,7 @@ Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view t
         return makeError("module-missing", file.string(), fmt::format("there is no compiled {}", name),
                          kBuildAgain);
     }
-    const Result<Bytes> bytes = readFile(file, kMaxModuleFileBytes);
+    const Result<base::Bytes> bytes = base::readFile(file, kMaxModuleFileBytes);
     if (!bytes) {
         return bytes.error();
     }
@@ -83,12 +83,12 @@ Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view t
                          fmt::format("is no compiled module, or a damaged one; it should be {}", name),
                          "delete it and run Ninja again");
     };
-    if (!asText(*bytes).starts_with(kModuleMagic)) {
+    if (!base::asText(*bytes).starts_with(kModuleMagic)) {
         return damaged();
     }
-    std::string_view rest = asText(*bytes).substr(kModuleMagic.size());
+    std::string_view rest = base::asText(*bytes).substr(kModuleMagic.size());
     const std::optional<std::uint64_t> sum = Unpacker(rest).number();
-    if (!sum || hashBytes(rest.substr(sizeof *sum)) != *sum) {
+    if (!sum || base::hashBytes(rest.substr(sizeof *sum)) != *sum) {
         return damaged();
     }
     rest.remove_prefix(sizeof *sum);
@@ -112,4 +112,4 @@ Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view t
     return std::move(*module);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

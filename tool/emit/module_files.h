@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 inline constexpr std::string_view kModuleTextSuffix = ".glsl";
 inline constexpr std::string_view kCompiledModuleSuffix = ".module";
@@ -32,4 +32,4 @@ Status compileModuleFile(const std::filesystem::path& input, const std::filesyst
 Result<CachedModule> readCompiledModule(const std::filesystem::path& file, std::string_view text,
                                         const std::string& name);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -114,11 +114,11 @@ std::vector<std::string> nameModuleTexts(std::span<const std::string* const> tex
     std::vector<std::string> names;
     names.reserve(texts.size());
     for (const std::string* const text : texts) {
-        const std::uint64_t hash = hashBytes(std::string_view(*text));
+        const std::uint64_t hash = base::hashBytes(std::string_view(*text));
         const int before = counts[hash]++;
-        names.push_back(hexHash(hash) + (before == 0 ? "" : fmt::format("-{}", before)));
+        names.push_back(base::hexHash(hash) + (before == 0 ? "" : fmt::format("-{}", before)));
     }
     return names;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

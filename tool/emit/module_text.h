@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the GLSL below comments that hold the other inputs: the stage, the functions that are kept apart,
 // and the name if names are kept. Two modules have equal texts exactly if they are compiled alike. Without
@@ -31,4 +31,4 @@ Result<ModuleText> readModuleText(std::string_view text, const std::string& name
 // number if several texts have that hash.
 std::vector<std::string> nameModuleTexts(std::span<const std::string* const> texts);
 
-}  // namespace glint
+}  // namespace glint::compiler

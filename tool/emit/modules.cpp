@@ -13,7 +13,7 @@
 #include <span>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 using package::ModuleRole;
 
@@ -64,7 +64,7 @@ constexpr RoleSource kSources[] = {
 };
 
 std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKey& key,
-                          const MaterialModel& model) {
+                          const materials::MaterialModel& model) {
     if (key.role == ModuleRole::EffectWalk) {
         return model.effects[key.index].walk;
     }
@@ -103,7 +103,7 @@ constexpr std::string_view kComputeExtension = ".comp";
 // "passes/lighting.comp" gives lighting.comp, or lighting.rgen if it is a ray generation shader. If a role
 // has several modules, the name says which one it is.
 std::string moduleName(std::string_view source, const package::RoleInfo& info, const package::ModuleKey& key,
-                       std::string_view caseName, const MaterialModel& model) {
+                       std::string_view caseName, const materials::MaterialModel& model) {
     std::string name(source.substr(source.rfind('/') + 1));
     if (name.ends_with(kTemplateSuffix)) {
         name.resize(name.size() - kTemplateSuffix.size());
@@ -162,7 +162,7 @@ void insertDefines(std::string& text, const std::string& defines) {
 // Files of `own` stand in for those of `sources` that have their names.
 Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
                                 std::string_view caseName, const SourceSet& sources, const SourceSet& own,
-                                const kainjow::mustache::data& context, const MaterialModel& model,
+                                const kainjow::mustache::data& context, const materials::MaterialModel& model,
                                 package::ShadingPrecision precision) {
     const package::RoleInfo& info = *package::findRole(key.role);
     ModuleSource module{
@@ -206,12 +206,13 @@ std::vector<std::uint32_t> retiredIds(const Plan& plan) {
 
 }  // namespace
 
-package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
+package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
+                              const CompileSettings& settings) {
     return {settings.strategies,
             settings.tracers,
             settings.shadows,
             plan.effects.effects,
-            settings.plan.keys.alpha == AlphaPolicy::Tested,
+            settings.plan.keys.alpha != package::AlphaPolicy::Opaque,
             static_cast<std::uint32_t>(plan.cases.size()),
             retiredIds(plan),
             std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
@@ -219,7 +220,7 @@ package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const C
             settings.maxBounces};
 }
 
-Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
+Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
@@ -259,4 +260,4 @@ Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, con
     return modules;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // A module before it is compiled.
 struct ModuleSource {
@@ -20,12 +20,13 @@ struct ModuleSource {
     std::vector<std::string> functionsApart{};  // as in ShaderSource
 };
 
-package::PackageShape shapeOf(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
+package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
+                              const CompileSettings& settings);
 
 // Returns the modules that the settings call for, in order of their keys. Has the errors of renderTemplate()
 // and flatten().
-Result<std::vector<ModuleSource>> makeModuleSources(const SceneList& scenes, const Plan& plan,
+Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources,
                                                     const CompileSettings& settings);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -22,9 +22,10 @@ constexpr std::string_view kInteropFolder = "interop/";
 constexpr std::string_view kGenerated[] = {"cases.glsl", "effects.glsl", "compose_effects.glsl",
                                            "hit_effects.glsl"};
 
-void defineFeatures(std::string& text, std::string_view prefix, FeatureMask always, FeatureMask sometimes) {
-    const auto define = [&](std::string_view when, FeatureMask mask) {
-        text += fmt::format("#define {}_{}_LOBES {:#x}u\n", prefix, when, mask & kLobeMask);
+void defineFeatures(std::string& text, std::string_view prefix, materials::FeatureMask always,
+                    materials::FeatureMask sometimes) {
+    const auto define = [&](std::string_view when, materials::FeatureMask mask) {
+        text += fmt::format("#define {}_{}_LOBES {:#x}u\n", prefix, when, mask & materials::kLobeMask);
         text += fmt::format("#define {}_{}_INPUTS {:#x}u\n", prefix, when, mask >> 32U);
     };
     define("ALWAYS", always);
@@ -32,9 +33,9 @@ void defineFeatures(std::string& text, std::string_view prefix, FeatureMask alwa
 }
 
 // The features with code that runs where alpha is tested.
-FeatureMask maskCodeFeatures(const MaterialModel& model) {
-    FeatureMask mask = 0;
-    for (const FeatureCode& code : model.code) {
+materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model) {
+    materials::FeatureMask mask = 0;
+    for (const materials::FeatureCode& code : model.code) {
         mask |= code.coordinates.empty() && code.opacity.empty()
                     ? 0
                     : model.features[static_cast<std::size_t>(code.feature)].mask();
@@ -43,14 +44,14 @@ FeatureMask maskCodeFeatures(const MaterialModel& model) {
 }
 
 // The features that decide about the alpha of a hit.
-FeatureMask alphaFeatures(const MaterialModel& model) {
-    FeatureMask mask = 0;
+materials::FeatureMask alphaFeatures(const materials::MaterialModel& model) {
+    materials::FeatureMask mask = 0;
     for (const char* const name :
          {"baseColorTexture", "texCoord0", "texCoord1", "textureTransform", "vertexColor"}) {
         mask |= model.mask(name);
     }
     mask |= maskCodeFeatures(model);
-    for (const Feature& feature : model.features) {
+    for (const materials::Feature& feature : model.features) {
         const bool readForCode =
             feature.lobe >= 0 && (mask & model.features[static_cast<std::size_t>(feature.lobe)].mask()) != 0;
         mask |= readForCode ? feature.mask() : 0;
@@ -74,9 +75,16 @@ std::string bindingDefines(const package::Bindings& bindings) {
     return text;
 }
 
-std::string sceneDefines(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
-    const bool hasMasked = std::ranges::any_of(
-        scenes.materials(), [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
+std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
+    const auto has = [&](materials::AlphaMode mode) {
+        return std::ranges::any_of(scenes.materials(), [mode](const materials::Material& material) {
+            return material.alphaMode == mode;
+        });
+    };
+    const package::AlphaPolicy alphaPolicy = settings.plan.keys.alpha;
+    const bool hasBlended =
+        alphaPolicy == package::AlphaPolicy::Stochastic && has(materials::AlphaMode::Blend);
+    const bool hasMasked = has(materials::AlphaMode::Mask) || hasBlended;
     const auto flag = [](bool value) { return value ? 1 : 0; };
     std::string text = "// The scene as a whole: features of every primary surface, and of some.\n";
     defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
@@ -84,12 +92,12 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
     // These macros are separate, so that other features of a scene do not change modules that test alpha.
     text += "// What the alpha test of rays needs of the same.\n";
-    const FeatureMask alpha =
-        settings.plan.keys.alpha == AlphaPolicy::Tested ? alphaFeatures(*plan.model) : 0;
+    const materials::FeatureMask alpha =
+        alphaPolicy != package::AlphaPolicy::Opaque ? alphaFeatures(*plan.model) : 0;
     defineFeatures(text, "GLINT_ALPHA", plan.always & alpha, plan.sometimes & alpha);
     text += "// Settings\n";
-    text +=
-        fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(settings.plan.keys.alpha == AlphaPolicy::Tested));
+    text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(alphaPolicy != package::AlphaPolicy::Opaque));
+    text += fmt::format("#define GLINT_BLENDED {}\n", flag(hasBlended));
     text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
@@ -111,13 +119,14 @@ std::string sceneDefines(const SceneList& scenes, const Plan& plan, const Compil
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
     text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
-    const FeatureMask maskCode = maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
+    const materials::FeatureMask maskCode =
+        maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
     text += fmt::format("#define GLINT_MASK_STAGES {}\n", flag(hasMasked && maskCode != 0));
     return text;
 }
 
 std::optional<std::string_view> findEmbedded(std::string_view name) {
-    for (const BuiltinFile& file : builtinFiles()) {
+    for (const base::BuiltinFile& file : builtinFiles()) {
         if (file.name == name) {
             return file.text;
         }
@@ -140,12 +149,13 @@ SourceLookup SourceSet::lookup() const {
     return [this](std::string_view name) { return find(name); };
 }
 
-Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
+Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
+                                const CompileSettings& settings) {
     SourceSet sources;
-    for (const BuiltinFile& file : builtinFiles()) {
+    for (const base::BuiltinFile& file : builtinFiles()) {
         sources.add(std::string(file.name), std::string(file.text));
     }
-    for (const ModelSource& source : plan.model->sources) {
+    for (const materials::ModelSource& source : plan.model->sources) {
         sources.add(source.name, source.text);
     }
     if (Status status = addHost(sources, settings.host); !status) {
@@ -159,7 +169,8 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
     sources.add("generated/shade.glsl",
                 fmt::format("#include \"hit/{}.glsl\"\n", surface ? "shade_surface" : "shade"));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
-    const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    const materials::FeatureMask used =
+        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
     if (Status status = addMaterialCode(sources, *plan.model, used, sources); !status) {
         return status.error();
     }
@@ -181,7 +192,7 @@ Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const
 
 Result<std::string> interopDeclarations() {
     std::string root;
-    for (const BuiltinFile& file : builtinFiles()) {
+    for (const base::BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kInteropFolder)) {
             root += fmt::format("#include \"{}\"\n", file.name);
         }
@@ -192,14 +203,14 @@ Result<std::string> interopDeclarations() {
 
 std::uint64_t interopSourceHash() {
     std::string all;
-    for (const BuiltinFile& file : builtinFiles()) {
+    for (const base::BuiltinFile& file : builtinFiles()) {
         if (file.name.starts_with(kInteropFolder)) {
             all += file.name;
             all += '\n';
             all += file.text;
         }
     }
-    return hashBytes(all);
+    return base::hashBytes(all);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // A set of files. They are found by the name that an #include gives.
 class SourceSet {
@@ -27,7 +27,8 @@ private:
 
 // Returns the embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl".
 // Has the errors of addHost() and renderTemplate().
-Result<SourceSet> makeSourceSet(const SceneList& scenes, const Plan& plan, const CompileSettings& settings);
+Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
+                                const CompileSettings& settings);
 
 // Returns the C++ declarations of every structure that host and device share, flattened from shaders/interop.
 Result<std::string> interopDeclarations();
@@ -35,4 +36,4 @@ Result<std::string> interopDeclarations();
 // Returns a hash of the names and texts of shaders/interop.
 std::uint64_t interopSourceHash();
 
-}  // namespace glint
+}  // namespace glint::compiler

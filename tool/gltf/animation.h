@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::gltf {
 
 enum class Interpolation : std::uint8_t { Step, Linear, CubicSpline };
 // The property that a channel drives. Only KHR_animation_pointer reaches those after Weights.
@@ -74,4 +74,4 @@ struct SkinInfluences {
     std::vector<float> weights;         // `count` for each vertex, at least 0, with a sum of 1
 };
 
-}  // namespace glint
+}  // namespace glint::gltf

@@ -58,7 +58,7 @@ Result<FloatElements> readPacked(const Reader& reader, const char* attribute, in
         !status) {
         return status.error();
     }
-    const Result<Bytes> bytes = reader.draco->attribute(
+    const Result<base::Bytes> bytes = reader.draco->attribute(
         document, id, *format, fmt::format("{}/attributes/{}", dracoPointer(reader), attribute));
     if (!bytes) {
         return bytes.error();
@@ -179,7 +179,7 @@ Status readInfluences(const Reader& reader) {
 // Reads the attributes that packs declare.
 Status readDeclared(const Reader& reader) {
     const Document& document = reader.document();
-    for (const VertexAttribute& declared : document.options().materialModel->attributes) {
+    for (const materials::VertexAttribute& declared : document.options().materialModel->attributes) {
         const int accessor = attributeAccessor(reader.source, declared.gltf.c_str());
         const bool known = std::ranges::find(reader.primitive.attributes, declared.gltf,
                                              &VertexValues::name) != reader.primitive.attributes.end();

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <iterator>
 
-namespace glint {
+namespace glint::gltf {
 
 namespace {
 
-using Vector = Double3;
+using Vector = base::Double3;
 
 Vector column(const Matrix4& matrix, std::size_t index) {
     return {matrix[4 * index], matrix[4 * index + 1], matrix[4 * index + 2]};
@@ -24,7 +24,7 @@ Cofactors cofactorsOf(const Matrix4& matrix) {
     const Vector x = column(matrix, 0);
     const Vector y = column(matrix, 1);
     const Vector z = column(matrix, 2);
-    return {cross(y, z), cross(z, x), cross(x, y)};
+    return {base::cross(y, z), base::cross(z, x), base::cross(x, y)};
 }
 
 Vector edge(const Primitive& primitive, std::uint32_t from, std::uint32_t to) {
@@ -37,15 +37,15 @@ double areaOf(const Primitive& primitive, const Cofactors& cofactors) {
     double sum = 0.0;
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         const std::uint32_t corner = primitive.indices[i];
-        const Vector local = cross(edge(primitive, corner, primitive.indices[i + 1]),
-                                   edge(primitive, corner, primitive.indices[i + 2]));
+        const Vector local = base::cross(edge(primitive, corner, primitive.indices[i + 1]),
+                                         edge(primitive, corner, primitive.indices[i + 2]));
         Vector world{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             for (std::size_t part = 0; part < 3; ++part) {
                 world[axis] += cofactors[part][axis] * local[part];
             }
         }
-        sum += 0.5 * std::sqrt(dot(world, world));
+        sum += 0.5 * std::sqrt(base::dot(world, world));
     }
     return std::isfinite(sum) ? sum : 0.0;
 }
@@ -79,10 +79,10 @@ void addPlaces(const Scene& scene, const Node& node, std::vector<Place>& places)
 double uniformAreaScale(const Cofactors& cofactors) {
     // Single precision makes the columns of a rotation differ by less than this.
     constexpr double kTolerance = 1e-5;
-    const double scale = dot(cofactors[0], cofactors[0]);
+    const double scale = base::dot(cofactors[0], cofactors[0]);
     for (std::size_t i = 0; i < 3; ++i) {
-        const double off = dot(cofactors[i], cofactors[(i + 1) % 3]);
-        if (std::abs(dot(cofactors[i], cofactors[i]) - scale) > kTolerance * scale ||
+        const double off = base::dot(cofactors[i], cofactors[(i + 1) % 3]);
+        if (std::abs(base::dot(cofactors[i], cofactors[i]) - scale) > kTolerance * scale ||
             std::abs(off) > kTolerance * scale) {
             return -1.0;
         }
@@ -121,7 +121,7 @@ double medianOf(const std::vector<std::vector<double>>& areas) {
 
 }  // namespace
 
-void expectHits(const Scene& scene, std::vector<PrimitiveInputs>& inputs) {
+void expectHits(const Scene& scene, std::vector<materials::PrimitiveInputs>& inputs) {
     constexpr double kMedians = 10.0;
     std::vector<std::vector<Place>> places(scene.meshes.size());
     for (const Node& node : scene.nodes) {
@@ -131,7 +131,7 @@ void expectHits(const Scene& scene, std::vector<PrimitiveInputs>& inputs) {
     }
     std::vector<std::vector<double>> areas;
     areas.reserve(inputs.size());
-    for (const PrimitiveInputs& input : inputs) {
+    for (const materials::PrimitiveInputs& input : inputs) {
         const auto mesh = static_cast<std::size_t>(input.mesh);
         const Primitive& primitive = scene.meshes[mesh].primitives[static_cast<std::size_t>(input.primitive)];
         areas.push_back(areasOf(primitive, places[mesh]));
@@ -147,4 +147,4 @@ void expectHits(const Scene& scene, std::vector<PrimitiveInputs>& inputs) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::gltf

@@ -16,7 +16,7 @@
 #include <new>
 #include <utility>
 
-namespace glint {
+namespace glint::gltf {
 
 namespace {
 
@@ -99,7 +99,7 @@ std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
     if (primitive.attributes.empty()) {
         return 0;
     }
-    const std::vector<VertexAttribute>& known =
+    const std::vector<materials::VertexAttribute>& known =
         scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < known.size(); ++i) {
@@ -112,12 +112,12 @@ std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
 
 }  // namespace
 
-std::vector<PrimitiveInputs> planningInputs(const Scene& scene) {
-    std::vector<PrimitiveInputs> inputs;
+std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene) {
+    std::vector<materials::PrimitiveInputs> inputs;
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         for (std::size_t i = 0; i < scene.meshes[mesh].primitives.size(); ++i) {
             const Primitive& primitive = scene.meshes[mesh].primitives[i];
-            PrimitiveInputs input;
+            materials::PrimitiveInputs input;
             input.mesh = static_cast<int>(mesh);
             input.primitive = static_cast<int>(i);
             input.material = primitive.material;
@@ -134,4 +134,4 @@ std::vector<PrimitiveInputs> planningInputs(const Scene& scene) {
     return inputs;
 }
 
-}  // namespace glint
+}  // namespace glint::gltf

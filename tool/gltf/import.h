@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::gltf {
 
 struct ImportOptions {
     // Whether to decode images. The compiler needs none of them, and the renderer needs all.
@@ -28,7 +28,7 @@ struct ImportOptions {
     std::string variant{};
     // What materials are made of: loadMaterialModel() adds features of a user's own. It must outlive the
     // scene.
-    const MaterialModel* materialModel = &builtinMaterialModel();
+    const materials::MaterialModel* materialModel = &materials::builtinMaterialModel();
 };
 
 // Reads `path` (.gltf or .glb), its buffers and its images. It refuses a URI that is absolute or leads above
@@ -38,9 +38,9 @@ struct ImportOptions {
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // Returns the materials as planning sees them. A material that animations change stands for all its values.
-std::vector<Material> planningMaterials(const Scene& scene);
+std::vector<materials::Material> planningMaterials(const Scene& scene);
 
 // Returns the primitives of all meshes as planning sees them, mesh by mesh.
-std::vector<PrimitiveInputs> planningInputs(const Scene& scene);
+std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene);
 
-}  // namespace glint
+}  // namespace glint::gltf

@@ -16,24 +16,24 @@ namespace glint::gltf {
 namespace {
 
 // Returns an object of a material's JSON, or null if the material does not have it.
-const Json* objectOf(const Json& json, const MaterialObject& object) {
+const Json* objectOf(const Json& json, const materials::MaterialObject& object) {
     return object.name.empty()  ? &json
            : object.isExtension ? findExtension(json, object.name)
                                 : find(json, object.name);
 }
 
-std::string pointerOf(const std::string& pointer, const MaterialObject& object) {
+std::string pointerOf(const std::string& pointer, const materials::MaterialObject& object) {
     return object.name.empty()
                ? pointer
                : fmt::format("{}{}/{}", pointer, object.isExtension ? "/extensions" : "", object.name);
 }
 
 Status readTextures(Document& document, TextureTable& textures, const Json& json, const std::string& pointer,
-                    Material& material) {
-    const MaterialModel& model = material.model();
+                    materials::Material& material) {
+    const materials::MaterialModel& model = material.model();
     for (std::size_t slot = 0; slot < model.textures.size(); ++slot) {
-        for (const MaterialTexture::Place& place : model.textures[slot].places) {
-            const MaterialObject& owner = model.objects[static_cast<std::size_t>(place.object)];
+        for (const materials::MaterialTexture::Place& place : model.textures[slot].places) {
+            const materials::MaterialObject& owner = model.objects[static_cast<std::size_t>(place.object)];
             const Json* const object = objectOf(json, owner);
             if (object == nullptr || !material.reads(place.object)) {
                 continue;
@@ -49,7 +49,7 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
 
 // glTF decides by the slot which textures are colours. A KTX2 file declares this itself, and the two should
 // agree.
-void checkTransfer(Document& document, const Scene& scene, const Material& material,
+void checkTransfer(Document& document, const Scene& scene, const materials::Material& material,
                    const std::string& pointer) {
     for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
         if (material.textures[slot].texture < 0) {
@@ -68,19 +68,19 @@ void checkTransfer(Document& document, const Scene& scene, const Material& mater
     }
 }
 
-AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::string& pointer) {
+materials::AlphaMode readAlphaMode(Document& document, const std::string& mode, const std::string& pointer) {
     if (mode == "MASK") {
-        return AlphaMode::Mask;
+        return materials::AlphaMode::Mask;
     }
     if (mode == "BLEND") {
-        return AlphaMode::Blend;
+        return materials::AlphaMode::Blend;
     }
     if (!mode.empty() && mode != "OPAQUE") {
         document.warn("alpha-mode", pointer + "/alphaMode",
                       fmt::format("\"{}\" is no alpha mode; OPAQUE is used", mode),
                       "use OPAQUE, MASK or BLEND");
     }
-    return AlphaMode::Opaque;
+    return materials::AlphaMode::Opaque;
 }
 
 // Returns the value at a place below an object, such as "normalTexture/scale", or null.
@@ -95,14 +95,15 @@ const Json* findBelow(const Json& object, std::string_view place) {
 }
 
 // The value's range is told to the user as the declaration gives it.
-std::string rangeHint(const Parameter& parameter) {
+std::string rangeHint(const materials::Parameter& parameter) {
     const std::string also = parameter.also ? fmt::format("{}, or ", *parameter.also) : "";
     return parameter.high >= std::numeric_limits<float>::max()
                ? fmt::format("use {}{} or more", also, parameter.low)
                : fmt::format("use {}{} to {}", also, parameter.low, parameter.high);
 }
 
-void readParameter(const ObjectReader& reader, const Parameter& parameter, Material& material) {
+void readParameter(const ObjectReader& reader, const materials::Parameter& parameter,
+                   materials::Material& material) {
     const Json* const json = findBelow(reader.json(), parameter.place);
     for (int i = 0; i < parameter.channels; ++i) {
         float& target = material.values[static_cast<std::size_t>(parameter.first + i)];
@@ -124,21 +125,23 @@ void readParameter(const ObjectReader& reader, const Parameter& parameter, Mater
     }
 }
 
-void readParameters(Document& document, const Json& json, const std::string& pointer, Material& material) {
-    const MaterialModel& model = material.model();
+void readParameters(Document& document, const Json& json, const std::string& pointer,
+                    materials::Material& material) {
+    const materials::MaterialModel& model = material.model();
     for (std::size_t i = 0; i < model.objects.size(); ++i) {
         material.given[i] = objectOf(json, model.objects[i]) != nullptr ? 1 : 0;
     }
     for (std::size_t i = 0; i < model.objects.size(); ++i) {
-        for (const MaterialObject::Setting& setting : model.objects[i].settings) {
+        for (const materials::MaterialObject::Setting& setting : model.objects[i].settings) {
             if (material.reads(static_cast<int>(i))) {
-                const Parameter& parameter = model.parameters[static_cast<std::size_t>(setting.parameter)];
+                const materials::Parameter& parameter =
+                    model.parameters[static_cast<std::size_t>(setting.parameter)];
                 material.values[static_cast<std::size_t>(parameter.first)] = setting.value;
             }
         }
     }
-    for (const Parameter& parameter : model.parameters) {
-        const MaterialObject& owner = model.objects[static_cast<std::size_t>(parameter.object)];
+    for (const materials::Parameter& parameter : model.parameters) {
+        const materials::MaterialObject& owner = model.objects[static_cast<std::size_t>(parameter.object)];
         const Json* const object = objectOf(json, owner);
         if (object != nullptr && material.reads(parameter.object)) {
             readParameter({document, *object, pointerOf(pointer, owner)}, parameter, material);
@@ -161,7 +164,7 @@ Status importMaterials(Document& document, Scene& scene) {
     for (std::size_t i = 0; i < arraySize(document.json(), "/materials"); ++i) {
         const Json& json = document.json()["materials"][i];
         const std::string pointer = fmt::format("/materials/{}", i);
-        Material material(*document.options().materialModel);
+        materials::Material material(*document.options().materialModel);
         material.name = textMember(json, "name");
         material.alphaMode = readAlphaMode(document, textMember(json, "alphaMode"), pointer);
         material.doubleSided = boolMember(json, "doubleSided", false);

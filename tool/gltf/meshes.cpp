@@ -18,14 +18,14 @@ namespace {
 
 constexpr std::string_view kNoData = "buffer-external";
 
-ColorContent contentOf(const std::vector<Float4>& colors) {
+materials::ColorContent contentOf(const std::vector<Float4>& colors) {
     if (colors.empty()) {
-        return ColorContent::None;
+        return materials::ColorContent::None;
     }
     const bool white = std::all_of(colors.begin(), colors.end(), [](const Float4& color) {
         return color == Float4{1.0F, 1.0F, 1.0F, 1.0F};
     });
-    return white ? ColorContent::White : ColorContent::Varying;
+    return white ? materials::ColorContent::White : materials::ColorContent::Varying;
 }
 
 // Returns whether the mode of the primitive makes triangles. Otherwise it warns or fails.

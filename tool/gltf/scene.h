@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::gltf {
 
 using Float2 = std::array<float, 2>;
 using Float3 = std::array<float, 3>;
@@ -40,7 +40,7 @@ struct Primitive {
     std::vector<Float2> texCoords0;
     std::vector<Float2> texCoords1;
     std::vector<Float4> colors;  // linear RGBA; empty where COLOR_0 is absent
-    ColorContent colorContent = ColorContent::None;
+    materials::ColorContent colorContent = materials::ColorContent::None;
     std::vector<VertexValues>
         attributes;  // those of MaterialModel::attributes that the file gives, each name once
     std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
@@ -198,17 +198,17 @@ struct SourceFile {
 // A material whose values animations change (KHR_animation_pointer). Its features are decided once for all
 // times.
 struct AnimatedMaterial {
-    int material = 0;  // index into Scene::materials
-    Material rest;     // as the file gives it
+    int material = 0;          // index into Scene::materials
+    materials::Material rest;  // as the file gives it
     // The same, with the ranges of what varies. A feature is only left out if it is neutral over the whole
     // range.
-    Material planned;
+    materials::Material planned;
     std::vector<std::string> changes;  // the values that vary, such as "metallicFactor 0 to 1"
 };
 
 struct Scene {
     std::string path;  // the .gltf or .glb
-    std::vector<Material> materials;
+    std::vector<materials::Material> materials;
     int defaultMaterial = -1;  // index of the default material, which is appended; -1 if none needs it
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;
@@ -230,4 +230,4 @@ struct Scene {
     std::vector<Diagnostic> warnings;   // and notes
 };
 
-}  // namespace glint
+}  // namespace glint::gltf

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <set>
 
-namespace glint {
+namespace glint::gltf {
 
 namespace {
 
@@ -36,19 +36,19 @@ SceneList::SceneList(std::span<const Scene> scenes) : scenes_(scenes), names_(un
     std::size_t materials = 0;
     for (const Scene& scene : scenes) {
         materialRanges_.push_back({materials, scene.materials.size()});
-        std::vector<PrimitiveInputs> inputs = planningInputs(scene);
+        std::vector<materials::PrimitiveInputs> inputs = planningInputs(scene);
         primitiveRanges_.push_back({primitives_.size(), inputs.size()});
-        for (PrimitiveInputs& input : inputs) {
+        for (materials::PrimitiveInputs& input : inputs) {
             input.material += static_cast<int>(materials);
             primitives_.push_back(input);
         }
         if (joins) {
-            std::vector<Material> planned = planningMaterials(scene);
+            std::vector<materials::Material> planned = planningMaterials(scene);
             std::ranges::move(planned, std::back_inserter(joined_));
         }
         materials += scene.materials.size();
     }
-    materials_ = joins ? std::span<const Material>(joined_) : scenes.front().materials;
+    materials_ = joins ? std::span<const materials::Material>(joined_) : scenes.front().materials;
 }
 
 std::string SceneList::path() const {
@@ -89,4 +89,4 @@ std::string SceneList::variant() const {
     return chosen == scenes_.end() ? std::string() : chosen->variant;
 }
 
-}  // namespace glint
+}  // namespace glint::gltf

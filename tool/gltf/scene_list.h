@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::gltf {
 
 class SceneList {
 public:
@@ -42,12 +42,12 @@ public:
     std::string fileNames() const;
 
     // Lists the materials scene by scene, as planningMaterials() returns them.
-    std::span<const Material> materials() const {
+    std::span<const materials::Material> materials() const {
         return materials_;
     }
     // Lists the primitives scene by scene. PrimitiveInputs::material is an index into materials(); mesh and
     // primitive are numbers within the scene.
-    std::span<const PrimitiveInputs> primitives() const {
+    std::span<const materials::PrimitiveInputs> primitives() const {
         return primitives_;
     }
     Range materialsOf(std::size_t scene) const {
@@ -68,11 +68,11 @@ public:
 private:
     std::span<const Scene> scenes_;
     std::vector<std::string> names_;
-    std::span<const Material> materials_;
-    std::vector<Material> joined_;  // materials_ points here unless there is only one scene
-    std::vector<PrimitiveInputs> primitives_;
+    std::span<const materials::Material> materials_;
+    std::vector<materials::Material> joined_;  // materials_ points here unless there is only one scene
+    std::vector<materials::PrimitiveInputs> primitives_;
     std::vector<Range> materialRanges_;
     std::vector<Range> primitiveRanges_;
 };
 
-}  // namespace glint
+}  // namespace glint::gltf

@@ -22,9 +22,10 @@ Diagnostic unknownVariant(const Document& document, const Scene& scene) {
                               fmt::format("has no variant \"{}\": it has no {}", wanted, kName),
                               "leave the variant out");
     }
-    return document.error("variant-unknown", fmt::format("/extensions/{}/variants", kName),
-                          fmt::format("has no variant \"{}\"{}", wanted, suggestion(wanted, scene.variants)),
-                          fmt::format("use one of: {}", fmt::join(scene.variants, ", ")));
+    return document.error(
+        "variant-unknown", fmt::format("/extensions/{}/variants", kName),
+        fmt::format("has no variant \"{}\"{}", wanted, base::suggestion(wanted, scene.variants)),
+        fmt::format("use one of: {}", fmt::join(scene.variants, ", ")));
 }
 
 // Returns the material that a primitive has in a variant.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -126,4 +126,4 @@ DisplayImage differenceMap(const LinearImage& image, const LinearImage& referenc
     return map;
 }
 
-}  // namespace glint
+}  // namespace glint::image

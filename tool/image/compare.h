@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string>
 
-namespace glint {
+namespace glint::image {
 
 // The largest error of a kind, and the first place where it occurs.
 struct LargestError {
@@ -45,4 +45,4 @@ Result<ImageDifference> compareImages(const LinearImage& image, const LinearImag
 // has a NaN or an infinity. Requires equal sizes.
 DisplayImage differenceMap(const LinearImage& image, const LinearImage& reference);
 
-}  // namespace glint
+}  // namespace glint::image

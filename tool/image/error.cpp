@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -151,4 +151,4 @@ ImageErrors noiseOf(const LinearImage& mean, const LinearImage& standardError, d
                      [&](std::size_t i, std::size_t c) { return double{standardError.pixels[i][c]}; });
 }
 
-}  // namespace glint
+}  // namespace glint::image

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace glint {
+namespace glint::image {
 
 // All members except `flip` are in linear light, over red, green and blue, of pictures times 2^exposure: 1 is
 // white and 0.18 mid-grey. d is picture - reference, and r is reference.
@@ -64,4 +64,4 @@ private:
 // standard error.
 ImageErrors noiseOf(const LinearImage& mean, const LinearImage& standardError, double exposure);
 
-}  // namespace glint
+}  // namespace glint::image

@@ -17,7 +17,7 @@
 #include <exception>
 #include <stdexcept>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -46,12 +46,12 @@ public:
     void seekp(uint64_t pos) override {
         position_ = pos;
     }
-    Bytes take() {
+    base::Bytes take() {
         return std::move(bytes_);
     }
 
 private:
-    Bytes bytes_;
+    base::Bytes bytes_;
     std::size_t position_ = 0;
 };
 
@@ -135,7 +135,7 @@ Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
 
 }  // namespace
 
-Result<Bytes> encodeExr(const LinearImage& image, const std::string& where) {
+Result<base::Bytes> encodeExr(const LinearImage& image, const std::string& where) {
     try {
         Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
         header.compression() = Imf::ZIP_COMPRESSION;
@@ -171,4 +171,4 @@ Result<LinearImage> decodeExr(std::span<const std::uint8_t> bytes, const std::st
     }
 }
 
-}  // namespace glint
+}  // namespace glint::image

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -215,4 +215,4 @@ std::string findExrExcess(std::span<const std::uint8_t> bytes) {
     return {};
 }
 
-}  // namespace glint
+}  // namespace glint::image

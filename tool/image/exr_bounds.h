@@ -6,10 +6,10 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::image {
 
 // Returns what does not fit. Returns an empty text if everything fits, or if the library would not read the
 // file any further.
 std::string findExrExcess(std::span<const std::uint8_t> bytes);
 
-}  // namespace glint
+}  // namespace glint::image

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -212,4 +212,4 @@ double flipMean(std::span<const float> map) {
     return map.empty() ? 0.0 : sum / static_cast<double>(map.size());
 }
 
-}  // namespace glint
+}  // namespace glint::image

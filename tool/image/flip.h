@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::image {
 
 // A display 0.7 m wide with 3840 pixels, seen from 0.7 m; the paper's results are for it.
 inline constexpr double kFlipPixelsPerDegree = 67.0;
@@ -27,4 +27,4 @@ std::vector<float> flipMap(const LinearImage& image, const LinearImage& referenc
 // the "FLIP" of two pictures.
 double flipMean(std::span<const float> map);
 
-}  // namespace glint
+}  // namespace glint::image

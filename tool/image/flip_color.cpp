@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace glint::flip {
+namespace glint::image::flip {
 
 namespace {
 
@@ -88,4 +88,4 @@ double colorDifference(const Color& a, const Color& b) {
     return std::min(1.0, kBendTo + (difference - bend) / (kLargest - bend) * (1.0 - kBendTo));
 }
 
-}  // namespace glint::flip
+}  // namespace glint::image::flip

@@ -3,7 +3,7 @@
 
 #include <array>
 
-namespace glint::flip {
+namespace glint::image::flip {
 
 using Color = std::array<double, 3>;
 
@@ -18,4 +18,4 @@ Color toHuntLab(const Color& rgb);
 // Returns how different two colours of toHuntLab() are, from 0 to 1.
 double colorDifference(const Color& a, const Color& b);
 
-}  // namespace glint::flip
+}  // namespace glint::image::flip

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace glint::flip {
+namespace glint::image::flip {
 
 namespace {
 
@@ -99,4 +99,4 @@ FeatureFilters featureFilters(double pixelsPerDegree) {
     return filters;
 }
 
-}  // namespace glint::flip
+}  // namespace glint::image::flip

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace glint::flip {
+namespace glint::image::flip {
 
 // The weights from -radius to radius.
 using Kernel = std::vector<double>;
@@ -35,4 +35,4 @@ inline std::size_t radiusOf(const Kernel& kernel) {
     return kernel.size() / 2;
 }
 
-}  // namespace glint::flip
+}  // namespace glint::image::flip

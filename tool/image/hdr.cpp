@@ -14,7 +14,7 @@
 #define STBI_NO_STDIO
 #include <stb_image.h>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -116,4 +116,4 @@ Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::st
     return image;
 }
 
-}  // namespace glint
+}  // namespace glint::image

@@ -9,10 +9,10 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::image {
 
 // Returns linear RGB with alpha 1, first row on top. Files may be run-length encoded or flat, in the format
 // 32-bit_rle_rgbe with the orientation -Y +X. EXPOSURE is not applied. Errors "image-format", "image-size".
 Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::string& where);
 
-}  // namespace glint
+}  // namespace glint::image

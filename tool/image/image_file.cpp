@@ -8,7 +8,7 @@
 
 #include <cctype>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -35,11 +35,11 @@ DisplayImage toDisplayImage(const LinearImage& image, double exposure) {
     return display;
 }
 
-Status writeEncoded(const std::filesystem::path& path, const Result<Bytes>& bytes) {
+Status writeEncoded(const std::filesystem::path& path, const Result<base::Bytes>& bytes) {
     if (!bytes) {
         return bytes.error();
     }
-    return writeFile(path, *bytes);
+    return base::writeFile(path, *bytes);
 }
 
 }  // namespace
@@ -67,8 +67,8 @@ Result<RadianceFormat> radianceFormat(const std::filesystem::path& path) {
 }
 
 Status checkImageSize(std::int64_t width, std::int64_t height, const std::string& where) {
-    if (width >= 1 && height >= 1 && width <= kMaxImageSize && height <= kMaxImageSize &&
-        width * height <= kMaxImagePixels) {
+    if (width >= 1 && height >= 1 && width <= base::kMaxImageSize && height <= base::kMaxImageSize &&
+        width * height <= base::kMaxImagePixels) {
         return okStatus();
     }
     return makeError("image-size", where,
@@ -81,7 +81,7 @@ Result<LinearImage> readImage(const std::filesystem::path& path) {
     if (!format) {
         return format.error();
     }
-    const Result<Bytes> bytes = readFile(path);
+    const Result<base::Bytes> bytes = base::readFile(path);
     if (!bytes) {
         return bytes.error();
     }
@@ -93,7 +93,7 @@ Result<LinearImage> readRadiance(const std::filesystem::path& path) {
     if (!format) {
         return format.error();
     }
-    const Result<Bytes> bytes = readFile(path);
+    const Result<base::Bytes> bytes = base::readFile(path);
     if (!bytes) {
         return bytes.error();
     }
@@ -123,4 +123,4 @@ Status writeImage(const std::filesystem::path& path, const DisplayImage& image) 
     return writeEncoded(path, encodePng(image, path.string()));
 }
 
-}  // namespace glint
+}  // namespace glint::image

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <string>
 
-namespace glint {
+namespace glint::image {
 
 enum class ImageFormat : std::uint8_t { Png, Exr };
 
@@ -41,4 +41,4 @@ Status writeImage(const std::filesystem::path& path, const DisplayImage& image);
 // pixels in all.
 Status checkImageSize(std::int64_t width, std::int64_t height, const std::string& where);
 
-}  // namespace glint
+}  // namespace glint::image

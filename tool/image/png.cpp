@@ -24,7 +24,7 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb_image_write.h>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -40,7 +40,7 @@ template <typename T>
 using StbPixels = std::unique_ptr<T, StbDeleter>;
 
 void append(void* target, void* data, int size) {
-    auto* bytes = static_cast<Bytes*>(target);
+    auto* bytes = static_cast<base::Bytes*>(target);
     const auto* begin = static_cast<const std::uint8_t*>(data);
     bytes->insert(bytes->end(), begin, begin + size);
 }
@@ -76,8 +76,8 @@ Diagnostic unreadable(const std::string& where) {
 
 }  // namespace
 
-Result<Bytes> encodePng(const DisplayImage& image, const std::string& where) {
-    Bytes bytes;
+Result<base::Bytes> encodePng(const DisplayImage& image, const std::string& where) {
+    base::Bytes bytes;
     const auto width = static_cast<int>(image.width);
     const auto height = static_cast<int>(image.height);
     if (image.pixels.empty() ||
@@ -101,7 +101,7 @@ Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::st
     if (Status checked = checkImageSize(width, height, where); !checked) {
         return checked.error();
     }
-    if (const std::string excess = findPngExcess(bytes, width, height); !excess.empty()) {
+    if (const std::string excess = base::findPngExcess(bytes, width, height); !excess.empty()) {
         return makeError("image-format", where, "is no PNG file that can be read: " + excess, kRewrite);
     }
     LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
@@ -124,4 +124,4 @@ Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::st
     return image;
 }
 
-}  // namespace glint
+}  // namespace glint::image

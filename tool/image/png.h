@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::image {
 
 // 8-bit RGB, with the first row on top.
 struct DisplayImage {
@@ -20,10 +20,10 @@ struct DisplayImage {
 };
 
 // The result is deterministic. Error "png-encode"; `where` names the file in the message.
-Result<Bytes> encodePng(const DisplayImage& image, const std::string& where);
+Result<base::Bytes> encodePng(const DisplayImage& image, const std::string& where);
 
 // Decodes 8 or 16 bits a channel, grey or colour. Colours are taken as sRGB and made linear; alpha is as
 // stored. Errors "image-format", "image-size".
 Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::string& where);
 
-}  // namespace glint
+}  // namespace glint::image

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace glint {
+namespace glint::image {
 
 namespace {
 
@@ -90,7 +90,7 @@ double automaticExposure(const LinearImage& image, std::span<const std::uint8_t>
 }
 
 Rgb displayed(const Rgb& color, double exposure) {
-    if (!isFinite(color)) {
+    if (!base::isFinite(color)) {
         return {1.0F, 0.0F, 1.0F};
     }
     // This bound keeps a large exposure from turning a finite colour into infinity.
@@ -125,4 +125,4 @@ std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure) {
     return display;
 }
 
-}  // namespace glint
+}  // namespace glint::image

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <span>
 
-namespace glint {
+namespace glint::image {
 
 // A linear Rec. 709 colour.
 using Rgb = std::array<float, 3>;
@@ -40,4 +40,4 @@ LinearImage displayedImage(const LinearImage& image, double exposure);
 // Returns the 8-bit sRGB value of a linear colour: displayed(), encoded and rounded.
 std::array<std::uint8_t, 3> toDisplay(const Rgb& color, double exposure);
 
-}  // namespace glint
+}  // namespace glint::image

@@ -18,49 +18,49 @@ namespace glint::inspect {
 namespace {
 
 // Returns "a, b" for a list, "none" for an empty one or null, and otherwise the value as it is.
-std::string valueText(const Json& value) {
+std::string valueText(const base::Json& value) {
     if (value.is_array()) {
         std::vector<std::string> words;
-        for (const Json& element : value) {
+        for (const base::Json& element : value) {
             words.push_back(valueText(element));
         }
-        return words.empty() ? "none" : join(words);
+        return words.empty() ? "none" : base::join(words);
     }
     return value.is_null() ? "none" : value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 // Returns the settings that decided how the package was made. Throws if the manifest lacks one.
-std::vector<std::pair<std::string, std::string>> settingsOf(const Json& manifest) {
+std::vector<std::pair<std::string, std::string>> settingsOf(const base::Json& manifest) {
     std::vector<std::pair<std::string, std::string>> settings;
     for (const char* name : {"toolVersion", "strategies", "tracers", "merge", "maxShaders", "alpha"}) {
         settings.emplace_back(name, valueText(manifest.at(name)));
     }
     for (const char* name : {"host", "packs"}) {
-        settings.emplace_back(name, valueText(manifest.value(name, Json::array())));
+        settings.emplace_back(name, valueText(manifest.value(name, base::Json::array())));
     }
     for (const auto& [name, value] : manifest.at("settings").items()) {
         settings.emplace_back(name, valueText(value));
     }
-    Json variants = Json::array();
-    for (const Json& scene : manifest.at("scenes")) {
+    base::Json variants = base::Json::array();
+    for (const base::Json& scene : manifest.at("scenes")) {
         variants.push_back(scene.at("variant"));
     }
     settings.emplace_back("variant", valueText(variants));
     return settings;
 }
 
-void readCases(const Json& manifest, DiffPackage& package) {
-    for (const Json& shader : manifest.at("shaders")) {
+void readCases(const base::Json& manifest, DiffPackage& package) {
+    for (const base::Json& shader : manifest.at("shaders")) {
         package.cases[shader.at("id").get<int>()].name = shader.at("name").get<std::string>();
     }
-    for (const Json& key : manifest.at("keys")) {
+    for (const base::Json& key : manifest.at("keys")) {
         package.cases[key.at("shaderId").get<int>()].keys.insert(
             key.at("features").get<std::vector<std::string>>());
     }
 }
 
-void readMaterials(const Json& manifest, DiffPackage& package) {
-    for (const Json& scene : manifest.at("scenes")) {
+void readMaterials(const base::Json& manifest, DiffPackage& package) {
+    for (const base::Json& scene : manifest.at("scenes")) {
         package.scenes.push_back(scene.at("name").get<std::string>());
     }
     struct Use {
@@ -68,8 +68,8 @@ void readMaterials(const Json& manifest, DiffPackage& package) {
         std::set<int> shaderIds;
     };
     std::map<std::pair<std::size_t, int>, Use> uses;  // by scene and index
-    for (const Json& shader : manifest.at("shaders")) {
-        for (const Json& material : shader.at("materials")) {
+    for (const base::Json& shader : manifest.at("shaders")) {
+        for (const base::Json& material : shader.at("materials")) {
             Use& use = uses[{material.at("scene").get<std::size_t>(), material.at("index").get<int>()}];
             use.name = material.at("name").get<std::string>();
             use.shaderIds.insert(shader.at("id").get<int>());
@@ -84,15 +84,15 @@ void readMaterials(const Json& manifest, DiffPackage& package) {
     }
 }
 
-void readTotals(const Json& manifest, DiffPackage& package) {
+void readTotals(const base::Json& manifest, DiffPackage& package) {
     std::uint64_t bytes = 0;
-    for (const Json& file : manifest.at("files")) {
+    for (const base::Json& file : manifest.at("files")) {
         bytes += file.at("bytes").get<std::uint64_t>();
         if (file.at("file") == package::kTablesFile) {
             package.tables = file.at("hash").get<std::string>();
         }
     }
-    const Json& counts = manifest.at("counts");
+    const base::Json& counts = manifest.at("counts");
     const auto add = [&](const char* label, const char* name) {
         package.totals.emplace_back(label, counts.at(name).get<std::uint64_t>());
     };
@@ -107,7 +107,7 @@ void readTotals(const Json& manifest, DiffPackage& package) {
 
 Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / package::kManifestFile;
-    const Result<Bytes> bytes = readFile(path);
+    const Result<base::Bytes> bytes = base::readFile(path);
     if (!bytes) {
         return bytes.error();
     }
@@ -115,11 +115,11 @@ Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
         return makeError("manifest-format", path.string(), "is no manifest that can be read: " + why,
                          "compile the package again");
     };
-    if (nestsTooDeep(*bytes)) {
+    if (base::nestsTooDeep(*bytes)) {
         return unreadable("nests too deep");
     }
     try {
-        const Json manifest = Json::parse(bytes->begin(), bytes->end());
+        const base::Json manifest = base::Json::parse(bytes->begin(), bytes->end());
         DiffPackage package;
         package.settings = settingsOf(manifest);
         readCases(manifest, package);
@@ -369,7 +369,7 @@ Result<DiffPackage> readDiffPackage(const std::filesystem::path& folder) {
     }
     for (const package::ModuleEntry& entry : loaded->modules()) {
         package::ModuleKey key{entry.role, entry.index, entry.tracer};
-        const Result<SpirvStatistics> statistics = measureSpirv(loaded->spirv(key));
+        const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(loaded->spirv(key));
         if (!statistics) {
             return statistics.error();
         }

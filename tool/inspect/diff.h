@@ -21,7 +21,7 @@ namespace glint::inspect {
 struct DiffModule {
     std::string file;
     std::uint64_t hash = 0;
-    SpirvStatistics statistics;
+    compiler::SpirvStatistics statistics;
 };
 
 struct DiffCase {

@@ -73,11 +73,11 @@ private:
 
 Result<std::vector<LintFile>> filesOfPackage(const fs::path& folder) {
     const fs::path path = folder / package::kManifestFile;
-    const Result<Bytes> bytes = readFile(path);
+    const Result<base::Bytes> bytes = base::readFile(path);
     if (!bytes) {
         return bytes.error();
     }
-    const auto json = nestsTooDeep(*bytes)
+    const auto json = base::nestsTooDeep(*bytes)
                           ? nlohmann::ordered_json()
                           : nlohmann::ordered_json::parse(bytes->begin(), bytes->end(), nullptr, false);
     if (!json.is_object()) {
@@ -106,8 +106,8 @@ Result<std::vector<LintFile>> filesBelow(const fs::path& folder) {
     return files;
 }
 
-Result<SpirvLint> lintFile(const std::filesystem::path& path) {
-    const Result<Bytes> bytes = readFile(path);
+Result<compiler::SpirvLint> lintFile(const std::filesystem::path& path) {
+    const Result<base::Bytes> bytes = base::readFile(path);
     if (!bytes) {
         return bytes.error();
     }
@@ -120,11 +120,11 @@ Result<SpirvLint> lintFile(const std::filesystem::path& path) {
     if (!words.empty()) {
         std::memcpy(words.data(), bytes->data(), bytes->size());
     }
-    return lintSpirv(words);
+    return compiler::lintSpirv(words);
 }
 
 void checkBudget(const std::optional<std::int64_t>& budget, std::uint32_t count, const char* rule,
-                 const char* what, std::vector<LintFinding>& findings) {
+                 const char* what, std::vector<compiler::LintFinding>& findings) {
     if (budget && count > *budget) {
         findings.push_back({Severity::Error,
                             rule,
@@ -135,7 +135,7 @@ void checkBudget(const std::optional<std::int64_t>& budget, std::uint32_t count,
 }
 
 void checkBudgets(const LintBudgets& budgets, LintedModule& module) {
-    const SpirvStatistics& it = module.lint->statistics;
+    const compiler::SpirvStatistics& it = module.lint->statistics;
     checkBudget(budgets.instructions, it.instructions, "budget-instructions", "instructions",
                 module.findings);
     checkBudget(budgets.textureFetches, it.textureFetches, "budget-texture-fetches", "texture fetches",
@@ -144,7 +144,7 @@ void checkBudgets(const LintBudgets& budgets, LintedModule& module) {
 }
 
 // Makes a finding of an error, with `severity` instead of the error's own.
-LintFinding toFinding(const Diagnostic& error, Severity severity) {
+compiler::LintFinding toFinding(const Diagnostic& error, Severity severity) {
     return {severity, error.id, {}, error.message, error.hint};
 }
 
@@ -152,8 +152,8 @@ bool isStage(const LintedModule& module, const char* stage) {
     return module.lint && std::ranges::find(module.lint->stages, stage) != module.lint->stages.end();
 }
 
-std::size_t countIn(const std::vector<LintFinding>& findings, Severity severity) {
-    return static_cast<std::size_t>(std::ranges::count(findings, severity, &LintFinding::severity));
+std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity) {
+    return static_cast<std::size_t>(std::ranges::count(findings, severity, &compiler::LintFinding::severity));
 }
 
 }  // namespace
@@ -183,7 +183,7 @@ LintedModule lintModule(const LintFile& file, const LintBudgets& budgets,
                         const std::optional<fs::path>& malioc, const std::string& core) {
     LintedModule module;
     module.file = file;
-    Result<SpirvLint> lint = lintFile(file.path);
+    Result<compiler::SpirvLint> lint = lintFile(file.path);
     if (!lint) {
         module.findings.push_back(toFinding(lint.error(), Severity::Error));
         return module;
@@ -202,7 +202,7 @@ LintedModule lintModule(const LintFile& file, const LintBudgets& budgets,
     return module;
 }
 
-std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules) {
+std::vector<compiler::LintFinding> judgeTogether(std::span<const LintedModule> modules) {
     // Mobile linkers inline the hit shaders of a pipeline up to about this number.
     constexpr std::ptrdiff_t kMaxClosestHits = 10;
     const auto closestHits = std::ranges::count_if(
@@ -229,7 +229,7 @@ std::size_t LintReport::count(Severity severity) const {
     return total;
 }
 
-Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where) {
+Diagnostic toDiagnostic(const compiler::LintFinding& finding, const std::string& where) {
     const std::string place = toString(finding.place);
     return {finding.severity, finding.rule, where, (place.empty() ? "" : place + ": ") + finding.message,
             finding.hint};

@@ -32,14 +32,14 @@ Result<LintFiles> findLintFiles(const std::filesystem::path& path);
 
 struct LintedModule {
     LintFile file;
-    std::optional<SpirvLint> lint;  // nothing where the file can't be read
+    std::optional<compiler::SpirvLint> lint;  // nothing where the file can't be read
     std::optional<MaliocReport> malioc;
-    std::vector<LintFinding> findings;  // all of them: shape, budgets, why it can't be read
+    std::vector<compiler::LintFinding> findings;  // all of them: shape, budgets, why it can't be read
 };
 
 struct LintedFolder {
     std::string path;
-    std::vector<LintFinding> findings;  // of its modules together
+    std::vector<compiler::LintFinding> findings;  // of its modules together
 };
 
 struct LintReport {
@@ -50,7 +50,7 @@ struct LintReport {
 };
 
 // Returns "file.spv: error: in main (word 214): message; hint [rule]".
-Diagnostic toDiagnostic(const LintFinding& finding, const std::string& where);
+Diagnostic toDiagnostic(const compiler::LintFinding& finding, const std::string& where);
 
 // The most that a module may have of each; nothing: no limit.
 struct LintBudgets {
@@ -65,6 +65,6 @@ LintedModule lintModule(const LintFile& file, const LintBudgets& budgets,
                         const std::optional<std::filesystem::path>& malioc, const std::string& core);
 
 // Judges a folder's modules together: a pipeline with many closest-hit shaders.
-std::vector<LintFinding> judgeTogether(std::span<const LintedModule> modules);
+std::vector<compiler::LintFinding> judgeTogether(std::span<const LintedModule> modules);
 
 }  // namespace glint::inspect

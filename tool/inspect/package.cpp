@@ -75,7 +75,8 @@ Diagnostic unknownModule(const InspectedPackage& inspected, const std::string& w
     const std::vector<std::string> all(names.begin(), names.end());
     return makeError(
         "module-unknown", inspected.folder,
-        fmt::format("has no module \"{}\"{}{}", wanted, enumeration(shaders), suggestion(wanted, all)),
+        fmt::format("has no module \"{}\"{}{}", wanted, base::enumeration(shaders),
+                    base::suggestion(wanted, all)),
         "use the ID of a shader that has modules of its own, or the name of a role, a shader or a file");
 }
 
@@ -83,7 +84,7 @@ Diagnostic unknownModule(const InspectedPackage& inspected, const std::string& w
 
 Result<Manifest> readManifest(const std::filesystem::path& folder) {
     const std::filesystem::path path = folder / package::kManifestFile;
-    const Result<Bytes> bytes = readFile(path);
+    const Result<base::Bytes> bytes = base::readFile(path);
     if (!bytes) {
         return bytes.error();
     }
@@ -91,7 +92,7 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         return makeError("manifest-format", path.string(), "is no manifest that can be read: " + why,
                          "compile the package again");
     };
-    if (nestsTooDeep(*bytes)) {
+    if (base::nestsTooDeep(*bytes)) {
         return unreadable("nests too deep");
     }
     try {
@@ -110,10 +111,10 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         manifest.host = json.value("host", std::vector<std::string>());
         manifest.packs = json.value("packs", std::vector<std::string>());
         for (const auto& row : json.at("features")) {
-            Feature& feature = manifest.features.features.emplace_back();
+            materials::Feature& feature = manifest.features.features.emplace_back();
             feature.name = row.at("name").get<std::string>();
-            feature.bit = std::clamp(row.at("bit").get<int>(), 0, kFeatureBits - 1);
-            feature.isLobe = row.value("lobe", feature.bit < kFirstInput);
+            feature.bit = std::clamp(row.at("bit").get<int>(), 0, materials::kFeatureBits - 1);
+            feature.isLobe = row.value("lobe", feature.bit < materials::kFirstInput);
             manifest.features.lobes |= feature.isLobe ? feature.mask() : 0;
         }
         for (const auto& shader : json.at("shaders")) {
@@ -176,8 +177,8 @@ Result<InspectedPackage> inspectPackage(const Package& package, const Manifest& 
                                         std::string folder) {
     InspectedPackage inspected{package, manifest, std::move(folder), {}, {}};
     for (const package::ModuleEntry& entry : package.modules()) {
-        const Result<SpirvStatistics> statistics =
-            measureSpirv(package.spirv({entry.role, entry.index, entry.tracer}));
+        const Result<compiler::SpirvStatistics> statistics =
+            compiler::measureSpirv(package.spirv({entry.role, entry.index, entry.tracer}));
         if (!statistics) {
             return statistics.error();
         }
@@ -196,7 +197,7 @@ Result<std::vector<Disassembly>> disassembleModules(const InspectedPackage& insp
     std::vector<Disassembly> list;
     for (const InspectedModule* module : findModules(inspected, wanted)) {
         const auto words = inspected.package.spirv(module->key());
-        Result<std::string> text = disassemble({words.begin(), words.end()});
+        Result<std::string> text = compiler::disassemble({words.begin(), words.end()});
         if (!text) {
             return text.error();
         }

@@ -25,9 +25,9 @@ struct Manifest {
     std::vector<std::string> hitLobes;
     bool energyCompensation = true;
     std::string textureLod;
-    std::vector<std::string> host;   // files that --host replaced
-    std::vector<std::string> packs;  // declarations of packs
-    MaterialModel features;          // names and bits of features alone
+    std::vector<std::string> host;      // files that --host replaced
+    std::vector<std::string> packs;     // declarations of packs
+    materials::MaterialModel features;  // names and bits of features alone
     // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
 };
@@ -37,7 +37,7 @@ Result<Manifest> readManifest(const std::filesystem::path& folder);
 
 struct InspectedModule {
     const package::ModuleEntry* entry = nullptr;
-    SpirvStatistics statistics;
+    compiler::SpirvStatistics statistics;
 
     package::ModuleKey key() const {
         return {entry->role, entry->index, entry->tracer};

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
 MaterialModel readBuiltinModel() {
     std::vector<DeclarationFile> files;
-    for (const BuiltinFile& file : declarationFiles()) {
+    for (const base::BuiltinFile& file : declarationFiles()) {
         files.push_back({file.name, file.text});
     }
     Result<MaterialModel> model = readDeclarations(files);
@@ -33,4 +33,4 @@ const MaterialModel& builtinMaterialModel() {
     return kModel;
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -277,4 +277,4 @@ MaterialTexture& ModelBuilder::textureNamed(const Members& members, std::string_
     return model_.textures[static_cast<std::size_t>(found)];
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -5,10 +5,10 @@
 
 #include <span>
 
-namespace glint {
+namespace glint::materials {
 
 // Returns the declarations of shaders/materials and shaders/effects ("materials/sheen/sheen.json"). They have
 // static storage.
-std::span<const BuiltinFile> declarationFiles();
+std::span<const base::BuiltinFile> declarationFiles();
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 using DeclarationJson = nlohmann::ordered_json;
 
@@ -45,7 +45,8 @@ public:
         const std::vector<std::string> names(known.begin(), known.end());
         for (const auto& [name, value] : json.items()) {
             if (std::ranges::find(names, name) == names.end()) {
-                failAt(at(name), fmt::format("there is no member \"{}\"{}", name, suggestion(name, names)));
+                failAt(at(name),
+                       fmt::format("there is no member \"{}\"{}", name, base::suggestion(name, names)));
             }
         }
     }
@@ -147,9 +148,9 @@ const Row& choose(const Row (&table)[Count], const Members& members, std::string
             names.emplace_back(row.name);
         }
         failAt(members.at(member),
-               fmt::format("there is no \"{}\"{}", name, suggestion(std::string(name), names)));
+               fmt::format("there is no \"{}\"{}", name, base::suggestion(std::string(name), names)));
     }
     return *found;
 }
 
-}  // namespace glint
+}  // namespace glint::materials

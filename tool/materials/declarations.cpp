@@ -9,7 +9,7 @@
 #include <cctype>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -81,7 +81,7 @@ int ModelBuilder::replacing(int object) const {
 void ModelBuilder::parse(const DeclarationFile& file) {
     File parsed{std::string(file.name), {}, 0, -1, file.isOfPack};
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(file.text.data());
-    if (nestsTooDeep({bytes, file.text.size()})) {
+    if (base::nestsTooDeep({bytes, file.text.size()})) {
         failAt(parsed.name, "nests too deep");
     }
     parsed.json = DeclarationJson::parse(file.text, nullptr, false);
@@ -162,4 +162,4 @@ Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -10,7 +10,7 @@
 #include <span>
 #include <string_view>
 
-namespace glint {
+namespace glint::materials {
 
 struct DeclarationFile {
     std::string_view name;  // for diagnostics: "materials/sheen/sheen.json"
@@ -24,4 +24,4 @@ struct DeclarationFile {
 // place is file#/json/pointer.
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
 
-}  // namespace glint
+}  // namespace glint::materials

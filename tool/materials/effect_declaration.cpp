@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -100,4 +100,4 @@ package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::s
     return found == effects.end() ? 0 : package::Effect{1} << (found - effects.begin());
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 enum class Behaviour : std::uint8_t;
 
@@ -73,4 +73,4 @@ package::EffectSet effectSetOf(const std::vector<EffectDeclaration>& effects, st
 // Returns the bit of the effect of that name, or 0 if there is none.
 package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::string_view name);
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -164,4 +164,4 @@ void numberEffects(std::vector<EffectDeclaration>& effects) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::materials

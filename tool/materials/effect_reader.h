@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 // The members that a declaration may have.
 std::vector<std::string_view> effectMembers();
@@ -16,4 +16,4 @@ EffectDeclaration readEffect(const Members& members, std::string_view file, bool
 // Orders the effects: their place is the number of their bit. Throws DeclarationFault.
 void numberEffects(std::vector<EffectDeclaration>& effects);
 
-}  // namespace glint
+}  // namespace glint::materials

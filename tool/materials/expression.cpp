@@ -8,7 +8,7 @@
 #include <iterator>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -498,4 +498,4 @@ Certainty Expression::truthOf(int index, const Facts& facts) const {
     return node.operation == Operation::Different ? !all : all;
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 // What a name, or a function with names for arguments, stands for.
 struct Symbol {
@@ -114,4 +114,4 @@ private:
     std::vector<int> symbols_;
 };
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 void ModelBuilder::assignBits() {
     std::vector<int> sorted(pending_.size());
@@ -145,4 +145,4 @@ void ModelBuilder::addNeeds(const Expression& expression, std::set<int>& needs) 
     }
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -1,6 +1,6 @@
 #include "materials/feature_code.h"
 
-namespace glint {
+namespace glint::materials {
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
@@ -75,7 +75,7 @@ std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code) {
         for (const std::string& name : declared.after) {
             if (std::ranges::find(names, name) == names.end()) {
                 failAt(declared.where + "/after", fmt::format("no declaration with GLSL is called \"{}\"{}",
-                                                              name, suggestion(name, names)));
+                                                              name, base::suggestion(name, names)));
             }
         }
     }
@@ -97,4 +97,4 @@ std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code) {
     return ordered;
 }
 
-}  // namespace glint
+}  // namespace glint::materials

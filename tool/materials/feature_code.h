@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 struct DeclaredCode {
     FeatureCode code;
@@ -23,4 +23,4 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
 // DeclarationFault if a name is unknown, or if two wait for each other.
 std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code);
 
-}  // namespace glint
+}  // namespace glint::materials

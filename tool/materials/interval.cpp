@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -127,4 +127,4 @@ Certainty isAtMost(ValueInterval a, ValueInterval b) {
     return !isLess(b, a);
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace glint {
+namespace glint::materials {
 
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -64,4 +64,4 @@ Certainty isEqual(ValueInterval a, ValueInterval b);
 Certainty isLess(ValueInterval a, ValueInterval b);
 Certainty isAtMost(ValueInterval a, ValueInterval b);
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -35,6 +35,7 @@ constexpr struct {
     {"", "MASK", Fact::Mask, false},
     {"", "BLEND", Fact::Blend, false},
     {"", "raysTestAlpha", Fact::RaysTestAlpha, false},
+    {"", "raysBlend", Fact::RaysBlend, false},
     {"reads", "TEXCOORD_0", Fact::ReadsTexCoord0, false},
     {"reads", "TEXCOORD_1", Fact::ReadsTexCoord1, false},
     {"", "movesTextures", Fact::MovesTextures, false},
@@ -270,4 +271,4 @@ void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
     model_.behaviours.insert(place, std::move(rule));
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace glint {
+namespace glint::materials {
 
 namespace {
 
@@ -131,4 +131,4 @@ int MaterialModel::symbolOfPair(int pair) const {
     return symbolOfAttribute(static_cast<int>(attributes.size())) + pair;
 }
 
-}  // namespace glint
+}  // namespace glint::materials

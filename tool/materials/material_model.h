@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 // A set of features by their bits.
 //
@@ -221,6 +221,7 @@ enum class Fact : std::uint8_t {
     Mask,
     Blend,
     RaysTestAlpha,   // the package tests alpha
+    RaysBlend,       // the package shows surfaces of alphaMode BLEND by chance
     ReadsTexCoord0,  // a texture that the key reads uses the set
     ReadsTexCoord1,
     MovesTextures,    // a texture that the key reads has a transform
@@ -288,4 +289,4 @@ public:
 // that are embedded in the library, and lives as long as the program.
 const MaterialModel& builtinMaterialModel();
 
-}  // namespace glint
+}  // namespace glint::materials

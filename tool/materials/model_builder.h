@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 inline constexpr double kNoOrder = 1e6;
 inline constexpr double kLargestFloat = std::numeric_limits<float>::max();
@@ -149,4 +149,4 @@ private:
     std::ptrdiff_t baseBehaviours_ = 0;
 };
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::materials {
 
 namespace fs = std::filesystem;
 
@@ -120,11 +120,11 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     std::deque<std::string> texts;
     std::vector<DeclarationFile> declarations;
     std::vector<ModelSource> sources;
-    for (const BuiltinFile& file : declarationFiles()) {
+    for (const base::BuiltinFile& file : declarationFiles()) {
         declarations.push_back({file.name, file.text});
     }
     for (const fs::path& file : *files) {
-        const Result<Bytes> bytes = readFile(file, kMaxFileBytes);
+        const Result<base::Bytes> bytes = base::readFile(file, kMaxFileBytes);
         if (!bytes) {
             return bytes.error();
         }
@@ -147,4 +147,4 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     return &keep(std::move(*model));
 }
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::materials {
 
 // Returns the files of the packs in `folders`: each folder's own declarations (.json) and GLSL (.glsl), and
 // those of the folders in it, sorted by name. Error "materials-folder" if one can't be listed or has no
@@ -23,4 +23,4 @@ Result<std::vector<std::filesystem::path>> packFiles(std::span<const std::string
 // not there.
 Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders);
 
-}  // namespace glint
+}  // namespace glint::materials

@@ -23,14 +23,15 @@ namespace {
 
 // Opens the device with as many of its optional features as possible: those that the default needs, and those
 // that the sweep could use.
-Result<std::unique_ptr<Context>> openDevice(const Settings& render, DeviceOptions& features) {
+Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, DeviceOptions& features) {
     const HeadlessOptions wanted = deviceOptions(render);
     HeadlessOptions options = wanted;
     Result<std::unique_ptr<Context>> context = Diagnostic{};
     for (const DeviceOptions tried :
          {DeviceOptions{true, true}, {false, true}, {true, false}, {false, false}}) {
         // It is used if shaders can be compiled for it and the validation layers know it.
-        options.positionFetch = wanted.positionFetch || (tried.positionFetch && supportsPositionFetch());
+        options.positionFetch =
+            wanted.positionFetch || (tried.positionFetch && compiler::supportsPositionFetch());
         options.shaderFloat16 = wanted.shaderFloat16 || tried.float16;
         context = Context::createHeadless(options);
         if (context) {
@@ -56,10 +57,11 @@ SceneSize sizeOf(const scene_view::SceneViewData& data) {
 
 // Returns as words the swept settings for which `decides` is true.
 template <typename Decides>
-std::string decided(const Settings& settings, const Decides& decides) {
-    Configuration configuration = configurationOf(settings);
-    std::erase_if(configuration, [&](const auto& choice) { return !decides(*sweptSetting(choice.first)); });
-    return fmt::format("{}", fmt::join(wordsOf(configuration), " "));
+std::string decided(const compiler::Settings& settings, const Decides& decides) {
+    compiler::Configuration configuration = configurationOf(settings);
+    std::erase_if(configuration,
+                  [&](const auto& choice) { return !decides(*compiler::sweptSetting(choice.first)); });
+    return fmt::format("{}", fmt::join(compiler::wordsOf(configuration), " "));
 }
 
 // A pass of a case counts with those of the others.
@@ -131,8 +133,8 @@ Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t sampl
     return renderer_->render(frame, samples);
 }
 
-Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const Settings& base,
-                                                   const Scene& scene, ModuleCache* cache) {
+Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const compiler::Settings& base,
+                                                   const gltf::Scene& scene, compiler::ModuleCache* cache) {
     std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache));
     const scene_view::SceneViewData data = sceneView(base, scene);
     const Result<scene_view::CameraChoice> camera = scene_view::chooseCamera(
@@ -170,7 +172,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
 // A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
 // chosen for this scene.
 Status BenchBed::settleChoices() {
-    const Result<PlanChoice> plan = choosePlan(base_, SceneList({&scene_, 1}));
+    const Result<PlanChoice> plan = choosePlan(base_, gltf::SceneList({&scene_, 1}));
     if (!plan) {
         return plan.error();
     }
@@ -179,7 +181,7 @@ Status BenchBed::settleChoices() {
         return okStatus();
     }
     std::vector<Diagnostic> warnings;
-    const Result<StrategyAdvice> advice =
+    const Result<compiler::StrategyAdvice> advice =
         adviseRender(base_, plan->options, *context_, scene_, nullptr, warnings);
     observer_.report(warnings);
     if (!advice) {
@@ -190,8 +192,8 @@ Status BenchBed::settleChoices() {
     return okStatus();
 }
 
-Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const Settings& render) {
-    const SceneList scenes({&scene_, 1});
+Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::Settings& render) {
+    const gltf::SceneList scenes({&scene_, 1});
     const Result<PlanChoice> plan = choosePlan(render, scenes);
     if (!plan) {
         return plan.error();
@@ -227,13 +229,14 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const Settings& r
     return mounted;
 }
 
-Result<Mount> BenchBed::mount(const Configuration& configuration, const std::string& package) {
-    Settings render = withSettings(base_, configuration);
+Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, const std::string& package) {
+    compiler::Settings render = withSettings(base_, configuration);
     render.package = package;
-    const std::string key = fmt::format("{} {}", package, decided(render, [](const Descriptor& row) {
-                                            // With --effects auto, the limit of roughness decides too.
-                                            return isCompiled(row) || row.name == "max-roughness";
-                                        }));
+    const std::string key =
+        fmt::format("{} {}", package, decided(render, [](const compiler::Descriptor& row) {
+                        // With --effects auto, the limit of roughness decides too.
+                        return isCompiled(row) || row.name == "max-roughness";
+                    }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {
         Result<std::shared_ptr<MountedPackage>> made = mountPackage(render);
@@ -243,9 +246,10 @@ Result<Mount> BenchBed::mount(const Configuration& configuration, const std::str
         shared = std::move(*made);
         packages_[key] = shared;
     }
-    const std::string rendererKey = fmt::format("{} {}", key, decided(render, [](const Descriptor& row) {
-                                                    return row.stage == SettingStage::Renderer;
-                                                }));
+    const std::string rendererKey =
+        fmt::format("{} {}", key, decided(render, [](const compiler::Descriptor& row) {
+                        return row.stage == compiler::SettingStage::Renderer;
+                    }));
     std::shared_ptr<Renderer> renderer = renderers_[rendererKey].lock();
     if (!renderer) {
         Result<std::unique_ptr<Renderer>> made =

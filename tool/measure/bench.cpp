@@ -15,7 +15,7 @@ namespace glint::measure {
 
 namespace {
 
-BenchPoint makePoint(PointKind kind, Configuration configuration) {
+BenchPoint makePoint(PointKind kind, compiler::Configuration configuration) {
     BenchPoint point;
     point.kind = kind;
     point.name = nameOf(configuration);
@@ -26,11 +26,11 @@ BenchPoint makePoint(PointKind kind, Configuration configuration) {
 // Does all the work between reading the scene and writing the files.
 class Bench {
 public:
-    Bench(const Observer& observer, const BenchSettings& settings, BenchBed& bed, CacheStore* store,
+    Bench(const Observer& observer, const BenchSettings& settings, BenchBed& bed, compiler::CacheStore* store,
           BenchReport& report)
         : observer_(observer), settings_(settings), bed_(bed), store_(store), report_(report) {}
 
-    Status run(const PlanOptions& plan) {
+    Status run(const compiler::PlanOptions& plan) {
         if (Status made = makeTruth(plan); !made) {
             return made;
         }
@@ -81,8 +81,8 @@ private:
     }
 
     // Makes the reference, learns about the scene's light from it, and then decides which settings there are.
-    Status makeTruth(const PlanOptions& plan) {
-        BenchFacts facts = factsOf(bed_.base(), bed_.scene(), plan);
+    Status makeTruth(const compiler::PlanOptions& plan) {
+        compiler::BenchFacts facts = factsOf(bed_.base(), bed_.scene(), plan);
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
         facts.positionFetch = bed_.features().positionFetch;
@@ -114,8 +114,8 @@ private:
     }
 
     static void add(std::vector<BenchPoint>& points, PointKind kind,
-                    std::vector<Configuration> configurations) {
-        for (Configuration& configuration : configurations) {
+                    std::vector<compiler::Configuration> configurations) {
+        for (compiler::Configuration& configuration : configurations) {
             points.push_back(makePoint(kind, std::move(configuration)));
         }
     }
@@ -206,13 +206,13 @@ private:
     const Observer& observer_;
     const BenchSettings& settings_;
     BenchBed& bed_;
-    CacheStore* store_;
+    compiler::CacheStore* store_;
     BenchReport& report_;
     BenchPoint base_;  // joins the report's points at the end
 };
 
 void describeScene(BenchBed& bed, BenchReport& report) {
-    const Settings& render = bed.base();
+    const compiler::Settings& render = bed.base();
     BenchScene& scene = report.scene;
     const SceneSize size = bed.sceneSize();
     scene.triangles = size.triangles;
@@ -228,8 +228,8 @@ void describeScene(BenchBed& bed, BenchReport& report) {
 
 }  // namespace
 
-Status runBench(const Observer& observer, const BenchSettings& settings, const PlanOptions& plan,
-                BenchBed& bed, CacheStore* store, BenchReport& report) {
+Status runBench(const Observer& observer, const BenchSettings& settings, const compiler::PlanOptions& plan,
+                BenchBed& bed, compiler::CacheStore* store, BenchReport& report) {
     describeScene(bed, report);
     report.base = configurationOf(bed.base());
     return Bench(observer, settings, bed, store, report).run(plan);

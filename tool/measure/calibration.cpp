@@ -58,7 +58,7 @@ std::vector<Value> chosen(const std::vector<std::string>& names, std::initialize
 class Calibration {
 public:
     Calibration(const Observer& observer, const CalibrationSettings& settings, Context& context,
-                ModuleCache* cache, CalibrationReport& report)
+                compiler::ModuleCache* cache, CalibrationReport& report)
         : observer_(observer), settings_(settings), context_(context), cache_(cache), report_(report) {
         cases_ = settings.cases.empty() ? usualCases(settings.quick) : settings.cases;
         rays_ = settings.rays.empty() ? usualRays(settings.quick, isOnCpu(context)) : settings.rays;
@@ -91,7 +91,7 @@ public:
 
 private:
     double secondsSinceStart() const {
-        return std::chrono::duration<double>(Clock::now() - start_).count();
+        return std::chrono::duration<double>(base::Clock::now() - start_).count();
     }
 
     // Returns the options of the scenes of each group.
@@ -202,15 +202,15 @@ private:
             return makeError("bench-folder", folder.string(), "can't be made: " + error.message(),
                              "give another -o");
         }
-        return writeFile(folder / kCalibrationFile, glint::toText(toJson(report_)));
+        return base::writeFile(folder / kCalibrationFile, base::toText(toJson(report_)));
     }
 
     const Observer& observer_;
     const CalibrationSettings& settings_;
     Context& context_;
-    ModuleCache* cache_;
+    compiler::ModuleCache* cache_;
     CalibrationReport& report_;
-    Clock::time_point start_ = Clock::now();
+    base::Clock::time_point start_ = base::Clock::now();
     std::vector<std::uint32_t> cases_;
     std::vector<std::uint64_t> rays_;
     std::vector<synthetic::Cost> costs_;
@@ -219,12 +219,12 @@ private:
 
 }  // namespace
 
-Result<std::unique_ptr<Context>> openCalibrationDevice(const Settings& render) {
+Result<std::unique_ptr<Context>> openCalibrationDevice(const compiler::Settings& render) {
     return Context::createHeadless(deviceOptions(render));
 }
 
 Status runCalibration(const Observer& observer, const CalibrationSettings& settings, Context& context,
-                      ModuleCache* cache, CalibrationReport& report) {
+                      compiler::ModuleCache* cache, CalibrationReport& report) {
     return Calibration(observer, settings, context, cache, report).run();
 }
 
@@ -244,7 +244,7 @@ Result<std::optional<DeviceFile>> fitCalibration(const Observer& observer, const
         observer.report(note);
         return std::optional<DeviceFile>();
     }
-    if (Status written = writeFile(folder / kDeviceFile, toText(*fitted)); !written) {
+    if (Status written = base::writeFile(folder / kDeviceFile, toText(*fitted)); !written) {
         return written.error();
     }
     return std::optional(std::move(*fitted));

@@ -11,31 +11,32 @@ namespace glint::measure {
 namespace {
 
 package::Effect effectOf(synthetic::Coherence coherence) {
-    return builtinEffects({coherence == synthetic::Coherence::Coherent ? "reflection" : "indirect-diffuse"});
+    return compiler::builtinEffects(
+        {coherence == synthetic::Coherence::Coherent ? "reflection" : "indirect-diffuse"});
 }
 
-CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
-    PlanOptions plan;
-    plan.merge = MergePolicy::None;
-    CompileSettings compile = compileSettings(settings.render, plan, tracers, {});
+compiler::CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
+    compiler::PlanOptions plan;
+    plan.merge = compiler::MergePolicy::None;
+    compiler::CompileSettings compile = compileSettings(settings.render, plan, tracers, {});
     compile.strategies = 0;
     for (const std::string& strategy : strategiesFor(tracers)) {
         compile.strategies |= *valueNamed<package::Strategy>(strategy);
     }
     compile.addsLight = false;
     // The settings cover scenes with both kinds of rays, so that they can share a package.
-    compile.effects = {false, builtinEffects({"reflection", "indirect-diffuse"})};
+    compile.effects = {false, compiler::builtinEffects({"reflection", "indirect-diffuse"})};
     if (settings.shadows) {
-        compile.effects.named |= builtinEffects({"shadow"});
+        compile.effects.named |= compiler::builtinEffects({"shadow"});
     }
     compile.emitHeader = false;
     return compile;
 }
 
 // Returns the size of the code of each case's own shader.
-std::vector<CaseWork> workOf(const CompiledPackage& compiled) {
+std::vector<CaseWork> workOf(const compiler::CompiledPackage& compiled) {
     std::vector<CaseWork> work(compiled.plan.cases.size());
-    for (const CompiledModule& module : compiled.modules) {
+    for (const compiler::CompiledModule& module : compiled.modules) {
         if (module.key.role == package::ModuleRole::ShadeCase) {
             CaseWork& one = work[module.key.index];
             one.instructions = module.statistics.instructions;
@@ -59,13 +60,15 @@ std::vector<std::string> strategiesFor(std::uint32_t tracers) {
 }
 
 Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uint32_t tracers,
-                                   std::vector<synthetic::CasesOptions> options, ModuleCache* cache) {
+                                   std::vector<synthetic::CasesOptions> options,
+                                   compiler::ModuleCache* cache) {
     CompiledGroup group;
     for (const synthetic::CasesOptions& one : options) {
         group.scenes.push_back(synthetic::makeCasesScene(one));
     }
     group.options = std::move(options);
-    Result<CompiledPackage> compiled = compilePackage(group.scenes, settingsOf(settings, tracers), cache);
+    Result<compiler::CompiledPackage> compiled =
+        compilePackage(group.scenes, settingsOf(settings, tracers), cache);
     if (!compiled) {
         return compiled.error();
     }
@@ -82,7 +85,7 @@ Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& comp
     }
     group.package = std::make_unique<Package>(std::move(*package));
     for (std::size_t i = 0; i < compiled.scenes.size(); ++i) {
-        const Scene& scene = compiled.scenes[i];
+        const gltf::Scene& scene = compiled.scenes[i];
         const synthetic::CasesOptions& options = compiled.options[i];
         scene_view::SceneViewData data = scene_view::makeSceneView(scene);
         data.packageScene = static_cast<std::uint32_t>(i);

@@ -29,8 +29,8 @@ struct CalibrationScene {
 // The same, but only on the host.
 struct CompiledGroup {
     std::vector<synthetic::CasesOptions> options;  // of each scene
-    std::vector<Scene> scenes;
-    CompiledPackage package;  // of every strategy, with a case a key
+    std::vector<gltf::Scene> scenes;
+    compiler::CompiledPackage package;  // of every strategy, with a case a key
 };
 
 struct CalibrationGroup {
@@ -45,7 +45,8 @@ std::vector<std::string> strategiesFor(std::uint32_t tracers);
 // Makes a scene for each of `options`, which differ in coherence alone, and compiles their package with the
 // strategies of strategiesFor(). Has the errors of compilePackage().
 Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uint32_t tracers,
-                                   std::vector<synthetic::CasesOptions> options, ModuleCache* cache);
+                                   std::vector<synthetic::CasesOptions> options,
+                                   compiler::ModuleCache* cache);
 
 // Has the errors of each step.
 Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled);

@@ -158,12 +158,12 @@ private:
     }
 
     Status renderFirst(Renderer& renderer, StrategyMeasure& measure) {
-        const Clock::time_point start = Clock::now();
+        const base::Clock::time_point start = base::Clock::now();
         Result<LinearImage> image = renderer.render(frame_, 1);
         if (!image) {
             return image.error();
         }
-        measure.firstMs = millisecondsSince(start);
+        measure.firstMs = base::millisecondsSince(start);
         const Result<FrameCounters> counters = renderer.counters();
         if (!counters) {
             return counters.error();
@@ -176,7 +176,8 @@ private:
         measure.difference.pixels = image->pixels.size();
         reference_ = std::move(*image);
         if (!options_.picture.empty()) {
-            if (Status written = writeImage(options_.picture, reference_, automaticExposure(reference_));
+            if (Status written =
+                    image::writeImage(options_.picture, reference_, image::automaticExposure(reference_));
                 !written) {
                 return written;
             }
@@ -209,8 +210,8 @@ private:
     }
 
     Status warmUp(Runner& runner, Milliseconds time) const {
-        const Clock::time_point start = Clock::now();
-        while (Clock::now() - start < time) {
+        const base::Clock::time_point start = base::Clock::now();
+        while (base::Clock::now() - start < time) {
             if (Status warm = runner.renderer->renderSamples(frame_, 1); !warm) {
                 return warm;
             }

@@ -15,7 +15,7 @@ bool counts(const StrategyMeasure& measure) {
     return !measure.times.empty() && !measure.difference.isWrong();
 }
 
-Json splitToJson(const HitTimes& split) {
+base::Json splitToJson(const HitTimes& split) {
     return {{"dispatch", split.dispatch},
             {"trace", split.trace},
             {"order", split.order},
@@ -23,15 +23,15 @@ Json splitToJson(const HitTimes& split) {
             {"shadow", split.shadow}};
 }
 
-Json strategyToJson(const StrategyMeasure& measure) {
+base::Json strategyToJson(const StrategyMeasure& measure) {
     if (measure.times.empty()) {
         return {{"strategy", measure.strategy}, {"skipped", measure.skipped}};
     }
-    Json time = toJson(measure::intervalOf(measure.times));
+    base::Json time = toJson(measure::intervalOf(measure.times));
     time["values"] = measure.times;
     return {{"strategy", measure.strategy},
             {"tracer", measure.tracer},
-            {"ordering", textOrNull(measure.ordering)},
+            {"ordering", base::textOrNull(measure.ordering)},
             {"time", std::move(time)},
             {"ratio", toJson(measure::intervalOf(measure.ratios))},
             {"split", splitToJson(measure.split)},
@@ -45,13 +45,13 @@ Json strategyToJson(const StrategyMeasure& measure) {
               {"wrong", measure.difference.isWrong()}}}};
 }
 
-Json entryToJson(const CalibrationEntry& entry) {
+base::Json entryToJson(const CalibrationEntry& entry) {
     const CalibrationPoint& point = entry.point;
-    Json work = Json::array();
+    base::Json work = base::Json::array();
     for (const CaseWork& one : point.work) {
         work.push_back({{"share", one.share}, {"instructions", one.instructions}, {"fetches", one.fetches}});
     }
-    Json strategies = Json::array();
+    base::Json strategies = base::Json::array();
     for (const StrategyMeasure& measure : entry.strategies) {
         strategies.push_back(strategyToJson(measure));
     }
@@ -112,8 +112,8 @@ void settleEntry(CalibrationEntry& entry) {
     }
 }
 
-Json toJson(const CalibrationReport& report) {
-    Json points = Json::array();
+base::Json toJson(const CalibrationReport& report) {
+    base::Json points = base::Json::array();
     for (const CalibrationEntry& entry : report.entries) {
         points.push_back(entryToJson(entry));
     }

@@ -25,14 +25,14 @@ constexpr double kMostOfUnit = 1e12;
 constexpr double kMaxSubgroup = 1024.0;
 
 // Returns the JSON name of a constant: "launches" in milliseconds is "launchesMs".
-std::string memberOf(const CostTermInfo& info) {
+std::string memberOf(const compiler::CostTermInfo& info) {
     const std::string unit = info.unit == "ms" ? "Ms" : info.unit == "ns" ? "Ns" : "Ps";
     return std::string(info.name) + unit;
 }
 
-Json constantsToJson(const StrategyCosts& costs) {
-    Json constants = Json::object();
-    for (const CostTermInfo& info : costTerms()) {
+base::Json constantsToJson(const compiler::StrategyCosts& costs) {
+    base::Json constants = base::Json::object();
+    for (const compiler::CostTermInfo& info : compiler::costTerms()) {
         if (hasTerm(costs.strategy, info.term)) {
             constants[memberOf(info)] = costs.constants[static_cast<std::size_t>(info.term)];
         }
@@ -40,65 +40,68 @@ Json constantsToJson(const StrategyCosts& costs) {
     return constants;
 }
 
-Json toJson(const StrategyQuality& quality) {
+base::Json toJson(const StrategyQuality& quality) {
     return {{"points", quality.points},
             {"medianError", quality.medianError},
             {"worstError", quality.worstError},
-            {"worstPoint", textOrNull(quality.worstPoint)}};
+            {"worstPoint", base::textOrNull(quality.worstPoint)}};
 }
 
-Json strategiesToJson(const DeviceFile& file) {
-    Json list = Json::array();
-    for (const StrategyCosts& costs : file.costs.strategies) {
+base::Json strategiesToJson(const DeviceFile& file) {
+    base::Json list = base::Json::array();
+    for (const compiler::StrategyCosts& costs : file.costs.strategies) {
         const auto quality =
             std::ranges::find(file.quality.strategies, costs.strategy, &StrategyQuality::strategy);
         const bool known = quality != file.quality.strategies.end();
         list.push_back({{"strategy", costs.strategy},
                         {"constants", constantsToJson(costs)},
-                        {"fit", known ? toJson(*quality) : Json(nullptr)}});
+                        {"fit", known ? toJson(*quality) : base::Json(nullptr)}});
     }
     return list;
 }
 
-StrategyQuality readQuality(JsonReader& reader, const Json& json, const std::string& place,
+StrategyQuality readQuality(base::JsonReader& reader, const base::Json& json, const std::string& place,
                             const std::string& strategy) {
     StrategyQuality quality;
     quality.strategy = strategy;
     quality.points = reader.count(json, place, "points", kMaxPoints);
     quality.medianError = reader.number(json, place, "medianError", 0.0, kMostOfUnit);
     quality.worstError = reader.number(json, place, "worstError", 0.0, kMostOfUnit);
-    const Json* const point = reader.member(json, place, "worstPoint");
+    const base::Json* const point = reader.member(json, place, "worstPoint");
     if (point != nullptr && !point->is_null()) {
         quality.worstPoint = reader.text(json, place, "worstPoint");
     }
     return quality;
 }
 
-void readStrategy(JsonReader& reader, const Json& json, const std::string& place, DeviceFile& file) {
-    StrategyCosts costs;
+void readStrategy(base::JsonReader& reader, const base::Json& json, const std::string& place,
+                  DeviceFile& file) {
+    compiler::StrategyCosts costs;
     costs.strategy = reader.text(json, place, "strategy");
-    if (reader.ok() && std::ranges::find(kStrategyNames, costs.strategy) == std::end(kStrategyNames)) {
-        reader.fail(place + "/strategy", fmt::format("is none of {}", fmt::join(kStrategyNames, ", ")));
+    if (reader.ok() &&
+        std::ranges::find(compiler::kStrategyNames, costs.strategy) == std::end(compiler::kStrategyNames)) {
+        reader.fail(place + "/strategy",
+                    fmt::format("is none of {}", fmt::join(compiler::kStrategyNames, ", ")));
     }
     if (reader.ok() && findCosts(file.costs, costs.strategy) != nullptr) {
         reader.fail(place + "/strategy", "is there twice");
     }
-    const Json* const constants = reader.member(json, place, "constants");
-    for (const CostTermInfo& info : costTerms()) {
+    const base::Json* const constants = reader.member(json, place, "constants");
+    for (const compiler::CostTermInfo& info : compiler::costTerms()) {
         if (reader.ok() && hasTerm(costs.strategy, info.term)) {
             costs.constants[static_cast<std::size_t>(info.term)] =
                 reader.number(*constants, place + "/constants", memberOf(info).c_str(), 0.0, kMostOfUnit);
         }
     }
-    const Json* const fit = reader.member(json, place, "fit");
+    const base::Json* const fit = reader.member(json, place, "fit");
     if (fit != nullptr && !fit->is_null()) {
         file.quality.strategies.push_back(readQuality(reader, *fit, place + "/fit", costs.strategy));
     }
     file.costs.strategies.push_back(std::move(costs));
 }
 
-void readRegret(JsonReader& reader, const Json& json, FitQuality& quality) {
-    const Json* const regret = reader.member(json, "", "regret");
+void readRegret(base::JsonReader& reader, const base::Json& json, FitQuality& quality) {
+    const base::Json* const regret = reader.member(json, "", "regret");
     if (regret == nullptr) {
         return;
     }
@@ -108,13 +111,13 @@ void readRegret(JsonReader& reader, const Json& json, FitQuality& quality) {
     quality.regret.median = reader.number(*regret, place, "median", 0.0, kMostOfUnit);
     quality.regret.worst = reader.number(*regret, place, "worst", 0.0, kMostOfUnit);
     quality.regret.withinFivePercent = reader.number(*regret, place, "withinFivePercent", 0.0, 1.0);
-    const Json* const point = reader.member(*regret, place, "worstPoint");
+    const base::Json* const point = reader.member(*regret, place, "worstPoint");
     if (point != nullptr && !point->is_null()) {
         quality.regret.worstPoint = reader.text(*regret, place, "worstPoint");
     }
 }
 
-void readMembers(JsonReader& reader, const Json& json, DeviceFile& file) {
+void readMembers(base::JsonReader& reader, const base::Json& json, DeviceFile& file) {
     file.costs.device = reader.text(json, "", "device");
     file.costs.driver = reader.text(json, "", "driver");
     const std::string type = reader.text(json, "", "deviceType");
@@ -126,7 +129,7 @@ void readMembers(JsonReader& reader, const Json& json, DeviceFile& file) {
     file.costs.tracer = reader.text(json, "", "tracer");
     file.costs.shadows = reader.text(json, "", "shadows");
     file.costs.source = reader.text(json, "", "command");
-    reader.each(json, "", "strategies", [&](const Json& strategy, const std::string& place) {
+    reader.each(json, "", "strategies", [&](const base::Json& strategy, const std::string& place) {
         readStrategy(reader, strategy, place, file);
     });
     if (reader.ok() && file.costs.strategies.empty()) {
@@ -140,9 +143,9 @@ constexpr std::uint64_t kMaxPointsBytes = 1ULL << 28;
 constexpr std::uint64_t kMaxCases = 1ULL << 20;
 constexpr double kAny = std::numeric_limits<double>::max();
 
-DeviceCosts readMachine(JsonReader& reader, const Json& json) {
-    DeviceCosts device;
-    const Json* const machine = reader.member(json, "", "machine");
+compiler::DeviceCosts readMachine(base::JsonReader& reader, const base::Json& json) {
+    compiler::DeviceCosts device;
+    const base::Json* const machine = reader.member(json, "", "machine");
     if (machine == nullptr) {
         return device;
     }
@@ -165,15 +168,15 @@ DeviceCosts readMachine(JsonReader& reader, const Json& json) {
 // Adds the time of a strategy if it was measured and drew the same picture as uber; otherwise its time would
 // mean nothing. `baseMs` is the time of the first measured strategy, to which ratios are relative; it is 0
 // before.
-void readTime(JsonReader& reader, const Json& json, const std::string& place, double& baseMs,
+void readTime(base::JsonReader& reader, const base::Json& json, const std::string& place, double& baseMs,
               CalibrationPoint& point) {
     if (json.is_object() && json.contains("skipped")) {
         return;
     }
     const std::string strategy = reader.text(json, place, "strategy");
-    const Json* const time = reader.member(json, place, "time");
-    const Json* const ratio = reader.member(json, place, "ratio");
-    const Json* const difference = reader.member(json, place, "difference");
+    const base::Json* const time = reader.member(json, place, "time");
+    const base::Json* const ratio = reader.member(json, place, "ratio");
+    const base::Json* const difference = reader.member(json, place, "difference");
     if (time == nullptr || ratio == nullptr || difference == nullptr) {
         return;
     }
@@ -185,7 +188,7 @@ void readTime(JsonReader& reader, const Json& json, const std::string& place, do
     }
 }
 
-CalibrationPoint readPoint(JsonReader& reader, const Json& json, const std::string& place) {
+CalibrationPoint readPoint(base::JsonReader& reader, const base::Json& json, const std::string& place) {
     CalibrationPoint point;
     point.cases = static_cast<std::uint32_t>(reader.count(json, place, "cases", kMaxCases));
     point.cost = reader.text(json, place, "cost");
@@ -195,13 +198,13 @@ CalibrationPoint readPoint(JsonReader& reader, const Json& json, const std::stri
     point.coherentShare = reader.number(json, place, "coherentShare", -1.0, 1.0);
     // A value below that of random order is noise of the sample.
     point.coherentShare = std::max(0.0, point.coherentShare);
-    reader.each(json, place, "work", [&](const Json& work, const std::string& there) {
+    reader.each(json, place, "work", [&](const base::Json& work, const std::string& there) {
         point.work.push_back({reader.number(work, there, "share", 0.0, 1.0),
                               reader.number(work, there, "instructions", 0.0, kAny),
                               reader.number(work, there, "fetches", 0.0, kAny)});
     });
     double baseMs = 0.0;
-    reader.each(json, place, "strategies", [&](const Json& measured, const std::string& there) {
+    reader.each(json, place, "strategies", [&](const base::Json& measured, const std::string& there) {
         readTime(reader, measured, there, baseMs, point);
     });
     return point;
@@ -209,7 +212,7 @@ CalibrationPoint readPoint(JsonReader& reader, const Json& json, const std::stri
 
 }  // namespace
 
-Result<DeviceFile> fitDevice(DeviceCosts device, std::span<const CalibrationPoint> points,
+Result<DeviceFile> fitDevice(compiler::DeviceCosts device, std::span<const CalibrationPoint> points,
                              std::vector<Diagnostic>& notes) {
     DeviceFit fit = fitStrategies(points, device.subgroupSize);
     for (const std::string& omitted : fit.omitted) {
@@ -226,30 +229,30 @@ Result<DeviceFile> fitDevice(DeviceCosts device, std::span<const CalibrationPoin
 }
 
 std::string toText(const DeviceFile& file) {
-    const DeviceCosts& costs = file.costs;
+    const compiler::DeviceCosts& costs = file.costs;
     const Regret& regret = file.quality.regret;
-    return glint::toText(Json{{"format", kDeviceFormat},
-                              {"version", kDeviceVersion},
-                              {"device", costs.device},
-                              {"driver", costs.driver},
-                              {"deviceType", costs.onCpu ? "cpu" : "gpu"},
-                              {"subgroupSize", costs.subgroupSize},
-                              {"tracer", costs.tracer},
-                              {"shadows", costs.shadows},
-                              {"command", costs.source},
-                              {"strategies", strategiesToJson(file)},
-                              {"regret",
-                               {{"heldOut", file.quality.held},
-                                {"points", regret.points},
-                                {"median", regret.median},
-                                {"worst", regret.worst},
-                                {"withinFivePercent", regret.withinFivePercent},
-                                {"worstPoint", textOrNull(regret.worstPoint)}}}});
+    return base::toText(base::Json{{"format", kDeviceFormat},
+                                   {"version", kDeviceVersion},
+                                   {"device", costs.device},
+                                   {"driver", costs.driver},
+                                   {"deviceType", costs.onCpu ? "cpu" : "gpu"},
+                                   {"subgroupSize", costs.subgroupSize},
+                                   {"tracer", costs.tracer},
+                                   {"shadows", costs.shadows},
+                                   {"command", costs.source},
+                                   {"strategies", strategiesToJson(file)},
+                                   {"regret",
+                                    {{"heldOut", file.quality.held},
+                                     {"points", regret.points},
+                                     {"median", regret.median},
+                                     {"worst", regret.worst},
+                                     {"withinFivePercent", regret.withinFivePercent},
+                                     {"worstPoint", base::textOrNull(regret.worstPoint)}}}});
 }
 
 Result<DeviceFile> readDeviceFile(const std::filesystem::path& path) {
-    JsonReader reader(path, "calibration-format", "make the file again with glint bench --calibrate");
-    const Result<Json> json = reader.read(kMaxDeviceBytes);
+    base::JsonReader reader(path, "calibration-format", "make the file again with glint bench --calibrate");
+    const Result<base::Json> json = reader.read(kMaxDeviceBytes);
     if (!json) {
         return json.error();
     }
@@ -269,15 +272,15 @@ Result<DeviceFile> readDeviceFile(const std::filesystem::path& path) {
 }
 
 Result<CalibrationPoints> readCalibrationPoints(const std::filesystem::path& path) {
-    JsonReader reader(path, "calibration-format",
-                      "give the calibration.json that glint bench --calibrate wrote");
-    const Result<Json> json = reader.read(kMaxPointsBytes);
+    base::JsonReader reader(path, "calibration-format",
+                            "give the calibration.json that glint bench --calibrate wrote");
+    const Result<base::Json> json = reader.read(kMaxPointsBytes);
     if (!json) {
         return json.error();
     }
     CalibrationPoints read;
     read.device = readMachine(reader, *json);
-    reader.each(*json, "", "points", [&](const Json& point, const std::string& place) {
+    reader.each(*json, "", "points", [&](const base::Json& point, const std::string& place) {
         read.points.push_back(readPoint(reader, point, place));
     });
     return reader.ok() ? Result<CalibrationPoints>(std::move(read))

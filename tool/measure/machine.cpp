@@ -28,8 +28,8 @@ std::string processorName() {
     return {};
 }
 
-Json numberOrNull(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
+base::Json numberOrNull(double value) {
+    return std::isfinite(value) ? base::Json(value) : base::Json(nullptr);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ BenchMachine machineOf(Context& context) {
     machine.device = context.deviceName();
     machine.driver = context.driverName();
     machine.deviceType = isOnCpu(context) ? "cpu" : "gpu";
-    machine.tracers = tracerNames(context.handles().tracers);
+    machine.tracers = compiler::tracerNames(context.handles().tracers);
     machine.processor = processorName();
     machine.cores = std::thread::hardware_concurrency();
     utsname system{};
@@ -53,13 +53,13 @@ bool isOnCpu(const Context& context) {
     return context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
 }
 
-Json toJson(const BenchMachine& machine) {
+base::Json toJson(const BenchMachine& machine) {
     return {{"device", machine.device},   {"driver", machine.driver}, {"deviceType", machine.deviceType},
             {"tracers", machine.tracers}, {"cpu", machine.processor}, {"cores", machine.cores},
             {"os", machine.system}};
 }
 
-Json toJson(const Interval& interval) {
+base::Json toJson(const Interval& interval) {
     return {{"median", numberOrNull(interval.median)},
             {"low", numberOrNull(interval.low)},
             {"high", numberOrNull(interval.high)},

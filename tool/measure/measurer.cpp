@@ -23,13 +23,13 @@ bool sameBits(const LinearImage& a, const LinearImage& b) {
 
 // Returns the errors of all pictures, using all cores. The first picture is the default's. A picture that
 // equals the default's gets its errors.
-std::vector<ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth) {
-    std::vector<ImageErrors> errors(images.size());
+std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth) {
+    std::vector<image::ImageErrors> errors(images.size());
     std::atomic<std::size_t> next{0};
     const auto work = [&] {
         for (std::size_t i = next++; i < images.size(); i = next++) {
             if (i == 0 || !sameBits(*images[i], *images[0])) {
-                errors[i] = measureErrors(*images[i], truth.image, truth.exposure);
+                errors[i] = image::measureErrors(*images[i], truth.image, truth.exposure);
             }
         }
     };
@@ -131,8 +131,8 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
 }
 
 Status Measurer::warmUp(const Entry& entry, std::chrono::milliseconds time) const {
-    const Clock::time_point start = Clock::now();
-    while (!bed_.onCpu() && Clock::now() - start < time) {
+    const base::Clock::time_point start = base::Clock::now();
+    while (!bed_.onCpu() && base::Clock::now() - start < time) {
         if (const Result<LinearImage> warm = entry.mount.exposeSamples(0, 16); !warm) {
             return warm.error();
         }
@@ -157,7 +157,7 @@ void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
     for (const Entry* const entry : entries) {
         images.push_back(&entry->exposure.image);
     }
-    const std::vector<ImageErrors> errors = errorsOf(images, truth_);
+    const std::vector<image::ImageErrors> errors = errorsOf(images, truth_);
     const double baseMs = entries[0]->exposure.milliseconds;
     const double baseHitMs = entries[0]->exposure.hitMs;
     for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -31,9 +31,9 @@ struct Pictures {
 };
 
 // Returns means over `factor` x `factor` pixels. The remainder at the right and the bottom is cut off.
-DisplayImage shrunk(const DisplayImage& image, std::uint32_t factor) {
+image::DisplayImage shrunk(const image::DisplayImage& image, std::uint32_t factor) {
     const std::uint32_t area = std::max(1U, factor * factor);
-    DisplayImage small{image.width / factor, image.height / factor, {}};
+    image::DisplayImage small{image.width / factor, image.height / factor, {}};
     for (std::uint32_t y = 0; y < small.height; ++y) {
         for (std::uint32_t x = 0; x < small.width; ++x) {
             std::array<std::uint32_t, 3> sum{};
@@ -54,12 +54,13 @@ DisplayImage shrunk(const DisplayImage& image, std::uint32_t factor) {
     return small;
 }
 
-Status add(Pictures& pictures, std::uint32_t factor, const std::string& name, const DisplayImage& image) {
-    Result<Bytes> png = encodePng(image, name);
+Status add(Pictures& pictures, std::uint32_t factor, const std::string& name,
+           const image::DisplayImage& image) {
+    Result<base::Bytes> png = encodePng(image, name);
     if (!png) {
         return png.error();
     }
-    Result<Bytes> small = factor == 1 ? *png : encodePng(shrunk(image, factor), name);
+    Result<base::Bytes> small = factor == 1 ? *png : encodePng(shrunk(image, factor), name);
     if (!small) {
         return small.error();
     }
@@ -68,11 +69,11 @@ Status add(Pictures& pictures, std::uint32_t factor, const std::string& name, co
     return okStatus();
 }
 
-DisplayImage shown(const LinearImage& image, double exposure) {
-    DisplayImage display{image.width, image.height, {}};
+image::DisplayImage shown(const LinearImage& image, double exposure) {
+    image::DisplayImage display{image.width, image.height, {}};
     display.pixels.reserve(image.pixels.size());
     for (const std::array<float, 4>& pixel : image.pixels) {
-        display.pixels.push_back(toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
+        display.pixels.push_back(image::toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
     }
     return display;
 }
@@ -81,14 +82,14 @@ Result<Pictures> picturesOf(const BenchReport& report) {
     const double exposure = report.reference.exposure;
     const std::uint32_t factor = pictureScale(report);
     Pictures pictures;
-    const LinearImage reference = exposed(report.reference.image, exposure);
+    const LinearImage reference = image::exposed(report.reference.image, exposure);
     Status added = add(pictures, factor, kReferenceImage, shown(report.reference.image, exposure));
     for (std::size_t i = 0; added && i < report.points.size(); ++i) {
         const LinearImage& image = report.points[i].image;
         added = add(pictures, factor, imageName(i), shown(image, exposure));
         if (added) {
-            added =
-                add(pictures, factor, errorImageName(i), differenceMap(exposed(image, exposure), reference));
+            added = add(pictures, factor, errorImageName(i),
+                        image::differenceMap(image::exposed(image, exposure), reference));
         }
     }
     return added ? Result(std::move(pictures)) : Result<Pictures>(added.error());
@@ -143,25 +144,25 @@ Status writeBench(const BenchReport& report, const fs::path& folder) {
                          "give another -o");
     }
     for (const PageImage& picture : pictures->files) {
-        if (Status written = writeFile(folder / picture.name, picture.png); !written) {
+        if (Status written = base::writeFile(folder / picture.name, picture.png); !written) {
             return written;
         }
     }
     if (report.advice && report.advice->point) {
-        Configuration settings = report.base;
+        compiler::Configuration settings = report.base;
         for (const auto& [name, value] : report.points[*report.advice->point].configuration) {
             settings[name] = value;
         }
-        if (Status written = writeFile(folder / kSettingsFile, settingsText(settings, report.command));
+        if (Status written = base::writeFile(folder / kSettingsFile, settingsText(settings, report.command));
             !written) {
             return written;
         }
     }
-    const Json json = toJson(report);
-    if (Status written = writeFile(folder / kReportFile, glint::toText(json)); !written) {
+    const base::Json json = toJson(report);
+    if (Status written = base::writeFile(folder / kReportFile, base::toText(json)); !written) {
         return written;
     }
-    if (Status written = writeFile(folder / kPageFile, makePage(json, pictures->ofPage)); !written) {
+    if (Status written = base::writeFile(folder / kPageFile, makePage(json, pictures->ofPage)); !written) {
         return written;
     }
     removeOthers(folder, pictures->files);

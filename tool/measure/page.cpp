@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // RFC 4648, section 4.
-std::string toBase64(const Bytes& bytes) {
+std::string toBase64(const base::Bytes& bytes) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
@@ -60,7 +60,7 @@ std::string makePage(const Json& report, std::span<const PageImage> images) {
     std::string html;
     std::string css;
     std::string script;
-    for (const BuiltinFile& file : pageFiles()) {
+    for (const base::BuiltinFile& file : pageFiles()) {
         std::string& part = file.name.ends_with(".js") ? script : file.name.ends_with(".css") ? css : html;
         part += file.text;
     }

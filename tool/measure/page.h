@@ -12,7 +12,7 @@ namespace glint::measure {
 
 struct PageImage {
     std::string name;  // as the report names it: "images/000.png"
-    Bytes png;
+    base::Bytes png;
 };
 
 // Returns one HTML file that needs no other file and no network: it contains the report, the images that it

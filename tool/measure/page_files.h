@@ -3,9 +3,9 @@
 
 #include "emit/builtin.h"
 
-namespace glint {
+namespace glint::measure {
 
 // Returns the files, sorted by name. They have static storage.
-std::span<const BuiltinFile> pageFiles();
+std::span<const base::BuiltinFile> pageFiles();
 
-}  // namespace glint
+}  // namespace glint::measure

@@ -22,7 +22,7 @@ ErrorMetric metricNamed(std::string_view name) {
     return static_cast<ErrorMetric>(std::distance(kMetrics.begin(), found));
 }
 
-double valueOf(ErrorMetric metric, const ImageErrors& errors) {
+double valueOf(ErrorMetric metric, const image::ImageErrors& errors) {
     switch (metric) {
         case ErrorMetric::RelMse:
             return errors.relMse;
@@ -46,7 +46,7 @@ Interval timeRatio(const BenchPoint& point) {
 
 Interval errorOf(const BenchPoint& point, ErrorMetric metric) {
     std::vector<double> values;
-    for (const ImageErrors& errors : point.errors) {
+    for (const image::ImageErrors& errors : point.errors) {
         values.push_back(valueOf(metric, errors));
     }
     return measure::intervalOf(values);

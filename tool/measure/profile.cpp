@@ -25,7 +25,7 @@ constexpr std::uint64_t kMaxProfileBytes = 1ULL << 26;
 constexpr std::uint64_t kMaxHits = 1ULL << 48;
 constexpr std::size_t kMaxKeys = std::size_t{1} << 16;
 
-std::vector<std::string> namesOf(const MaterialModel& model, FeatureMask mask) {
+std::vector<std::string> namesOf(const materials::MaterialModel& model, materials::FeatureMask mask) {
     std::vector<std::string> names;
     for (const std::string_view name : model.names(mask)) {
         names.emplace_back(name);
@@ -33,7 +33,7 @@ std::vector<std::string> namesOf(const MaterialModel& model, FeatureMask mask) {
     return names;
 }
 
-void readFormat(JsonReader& reader, const Json& json) {
+void readFormat(base::JsonReader& reader, const base::Json& json) {
     if (!json.is_object()) {
         reader.fail("", "is no JSON object");
         return;
@@ -47,18 +47,18 @@ void readFormat(JsonReader& reader, const Json& json) {
     }
 }
 
-Profile readMembers(JsonReader& reader, const Json& json) {
+Profile readMembers(base::JsonReader& reader, const base::Json& json) {
     Profile profile;
-    reader.each(json, "", "sources", [&](const Json& source, const std::string& place) {
+    reader.each(json, "", "sources", [&](const base::Json& source, const std::string& place) {
         profile.sources.push_back({reader.text(source, place, "file"), reader.text(source, place, "hash")});
     });
-    const Json* variant = reader.ok() ? reader.member(json, "", "variant") : nullptr;
+    const base::Json* variant = reader.ok() ? reader.member(json, "", "variant") : nullptr;
     if (variant != nullptr && !variant->is_null()) {
         profile.variant = reader.text(json, "", "variant");
     }
     profile.alpha = reader.text(json, "", "alpha");
     profile.hitLobes = reader.texts(json, "", "hitLobes");
-    reader.each(json, "", "keys", [&](const Json& key, const std::string& place) {
+    reader.each(json, "", "keys", [&](const base::Json& key, const std::string& place) {
         if (profile.keys.size() == kMaxKeys) {
             reader.fail("/keys", fmt::format("has more than {} elements", kMaxKeys));
             return;
@@ -70,10 +70,11 @@ Profile readMembers(JsonReader& reader, const Json& json) {
 }
 
 // Returns nothing if this version of Glint lacks one of the features.
-std::optional<FeatureMask> maskOf(const MaterialModel& model, const std::vector<std::string>& features) {
-    FeatureMask mask = 0;
+std::optional<materials::FeatureMask> maskOf(const materials::MaterialModel& model,
+                                             const std::vector<std::string>& features) {
+    materials::FeatureMask mask = 0;
     for (const std::string& name : features) {
-        const FeatureMask feature = model.mask(name);
+        const materials::FeatureMask feature = model.mask(name);
         if (feature == 0) {
             return std::nullopt;
         }
@@ -109,7 +110,7 @@ void checkSettings(const Profile& profile, const Profile& expected, const std::s
     };
     warn("--alpha", profile.alpha, expected.alpha);
     warn("--variant", profile.variant, expected.variant);
-    warn("--hit-lobes", join(profile.hitLobes), join(expected.hitLobes));
+    warn("--hit-lobes", base::join(profile.hitLobes), base::join(expected.hitLobes));
 }
 
 // Returns whether a file that both have read has changed.
@@ -121,13 +122,13 @@ bool isStale(const Profile& profile, const Profile& expected) {
 }
 
 // Compares the keys of the profile with those of the scene, and takes its hits over.
-void takeHits(const Profile& profile, const Profile& expected, const MaterialModel& model,
+void takeHits(const Profile& profile, const Profile& expected, const materials::MaterialModel& model,
               const std::string& file, PlanChoice& choice) {
     std::vector<std::string> gone;
     std::uint64_t hits = 0;
     for (const ProfileKey& key : profile.keys) {
         const auto here = std::ranges::find(expected.keys, key.features, &ProfileKey::features);
-        const std::optional<FeatureMask> mask = maskOf(model, key.features);
+        const std::optional<materials::FeatureMask> mask = maskOf(model, key.features);
         if (here == expected.keys.end() || !mask) {
             gone.push_back(describe(key.features, key.materials));
             continue;
@@ -155,7 +156,7 @@ void takeHits(const Profile& profile, const Profile& expected, const MaterialMod
     }
     if (hits == 0 && !expected.keys.empty()) {
         // Auto has a better estimate than that nothing is hit.
-        const bool isAuto = choice.options.merge == MergePolicy::Auto;
+        const bool isAuto = choice.options.merge == compiler::MergePolicy::Auto;
         choice.options.hits.clear();
         choice.warnings.push_back(
             makeWarning("profile-empty", file, "has no hit of the scene's keys",
@@ -166,29 +167,42 @@ void takeHits(const Profile& profile, const Profile& expected, const MaterialMod
 }
 
 // Decides what `--alpha auto` stands for, and says so where a scene has surfaces that are not opaque.
-void chooseAlpha(const Settings& settings, const SceneList& scenes, PlanChoice& choice) {
-    if (!settings.alpha && hasAlphaMasks(scenes.materials(), scenes.primitives())) {
-        choice.options.keys.alpha = AlphaPolicy::Tested;
+void chooseAlpha(const compiler::Settings& settings, const gltf::SceneList& scenes, PlanChoice& choice) {
+    const package::AlphaPolicy needed = compiler::neededAlphaPolicy(scenes.materials(), scenes.primitives());
+    const package::AlphaPolicy chosen = settings.alpha.value_or(needed);
+    choice.options.keys.alpha = chosen;
+    if (!settings.alpha && needed == package::AlphaPolicy::Tested) {
         choice.notes.push_back({Severity::Note, "alpha-tested", "",
                                 "the scene has alpha masks, so rays test them (--alpha tested)",
                                 "--alpha opaque ignores masks where rays hit, which is faster"});
     }
     std::vector<std::string> blended;
-    for (const Material& material : scenes.materials()) {
-        if (material.alphaMode == AlphaMode::Blend) {
+    for (const materials::Material& material : scenes.materials()) {
+        if (material.alphaMode == materials::AlphaMode::Blend) {
             blended.push_back(material.name.empty() ? "a material without a name" : material.name);
         }
     }
-    if (!blended.empty()) {
+    if (needed != package::AlphaPolicy::Stochastic || blended.empty()) {
+        return;
+    }
+    if (chosen != package::AlphaPolicy::Stochastic) {
         choice.notes.push_back({Severity::Note, "alpha-blend", "",
                                 fmt::format("alphaMode BLEND is drawn opaque: {}", someOf(blended)), ""});
+    } else if (!settings.alpha) {
+        choice.notes.push_back(
+            {Severity::Note, "alpha-stochastic", "",
+             fmt::format("alphaMode BLEND is seen with the probability alpha, which is noise at few samples "
+                         "(--alpha stochastic): {}",
+                         someOf(blended)),
+             "--alpha tested draws BLEND opaque, which is faster and free of that noise"});
     }
 }
 
 // Adds the lobes of packs that hits keep. Their bits are known only once the packs are read.
-Status keepPackLobes(const Settings& settings, const SceneList& scenes, KeyOptions& keys) {
-    const MaterialModel& model =
-        scenes.materials().empty() ? builtinMaterialModel() : scenes.materials().front().model();
+Status keepPackLobes(const compiler::Settings& settings, const gltf::SceneList& scenes,
+                     materials::KeyOptions& keys) {
+    const materials::MaterialModel& model =
+        scenes.materials().empty() ? materials::builtinMaterialModel() : scenes.materials().front().model();
     for (const std::string& name : settings.packLobes) {
         const int feature = model.findFeature(name);
         if (feature < 0 || !model.features[static_cast<std::size_t>(feature)].isLobe) {
@@ -196,10 +210,10 @@ Status keepPackLobes(const Settings& settings, const SceneList& scenes, KeyOptio
             for (const std::string_view lobe : model.names(model.lobes)) {
                 names.emplace_back(lobe);
             }
-            return makeError(
-                "hit-lobe-unknown", "",
-                fmt::format("neither Glint nor a pack has a lobe \"{}\"{}", name, suggestion(name, names)),
-                "correct --hit-lobes, or add the pack by --materials");
+            return makeError("hit-lobe-unknown", "",
+                             fmt::format("neither Glint nor a pack has a lobe \"{}\"{}", name,
+                                         base::suggestion(name, names)),
+                             "correct --hit-lobes, or add the pack by --materials");
         }
         keys.keptLobes |= model.features[static_cast<std::size_t>(feature)].mask();
     }
@@ -208,18 +222,19 @@ Status keepPackLobes(const Settings& settings, const SceneList& scenes, KeyOptio
 
 }  // namespace
 
-Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions& options) {
+Profile makeProfile(const gltf::SceneList& scenes, const compiler::Plan& plan,
+                    const materials::KeyOptions& options) {
     Profile profile;
-    for (const Scene& scene : scenes.scenes()) {
-        for (const SourceFile& file : scene.files) {
+    for (const gltf::Scene& scene : scenes.scenes()) {
+        for (const gltf::SourceFile& file : scene.files) {
             profile.sources.push_back(
-                {std::filesystem::path(file.path).filename().string(), hexHash(file.hash)});
+                {std::filesystem::path(file.path).filename().string(), base::hexHash(file.hash)});
         }
     }
     profile.variant = scenes.variant();
     profile.alpha = nameOf(options.alpha);
     profile.hitLobes = namesOf(*plan.model, options.keptLobes & plan.model->lobes);
-    for (const Key& key : plan.keys) {
+    for (const compiler::Key& key : plan.keys) {
         ProfileKey entry;
         entry.features = namesOf(*plan.model, key.mask);
         for (const int material : key.materials) {
@@ -231,26 +246,28 @@ Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions&
 }
 
 std::string toText(const Profile& profile) {
-    Json sources = Json::array();
+    base::Json sources = base::Json::array();
     for (const ProfileSource& source : profile.sources) {
-        sources.push_back(Json{{"file", source.file}, {"hash", source.hash}});
+        sources.push_back(base::Json{{"file", source.file}, {"hash", source.hash}});
     }
-    Json keys = Json::array();
+    base::Json keys = base::Json::array();
     for (const ProfileKey& key : profile.keys) {
-        keys.push_back(Json{{"features", key.features}, {"materials", key.materials}, {"hits", key.hits}});
+        keys.push_back(
+            base::Json{{"features", key.features}, {"materials", key.materials}, {"hits", key.hits}});
     }
-    return glint::toText(Json{{"format", kProfileFormat},
-                              {"version", kProfileVersion},
-                              {"sources", sources},
-                              {"variant", profile.variant.empty() ? Json(nullptr) : Json(profile.variant)},
-                              {"alpha", profile.alpha},
-                              {"hitLobes", profile.hitLobes},
-                              {"keys", keys}});
+    return base::toText(
+        base::Json{{"format", kProfileFormat},
+                   {"version", kProfileVersion},
+                   {"sources", sources},
+                   {"variant", profile.variant.empty() ? base::Json(nullptr) : base::Json(profile.variant)},
+                   {"alpha", profile.alpha},
+                   {"hitLobes", profile.hitLobes},
+                   {"keys", keys}});
 }
 
 Result<Profile> readProfile(const std::filesystem::path& path) {
-    JsonReader reader(path, "profile-format", "make the profile again with glint render --profile");
-    const Result<Json> json = reader.read(kMaxProfileBytes);
+    base::JsonReader reader(path, "profile-format", "make the profile again with glint render --profile");
+    const Result<base::Json> json = reader.read(kMaxProfileBytes);
     if (!json) {
         return json.error();
     }
@@ -259,10 +276,9 @@ Result<Profile> readProfile(const std::filesystem::path& path) {
     return reader.ok() ? Result<Profile>(std::move(profile)) : Result<Profile>(reader.error());
 }
 
-Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes) {
+Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes) {
     PlanChoice choice;
     choice.options = settings.compile.plan;
-    choice.options.keys.alpha = settings.alpha.value_or(AlphaPolicy::Opaque);
     chooseAlpha(settings, scenes, choice);
     if (Status kept = keepPackLobes(settings, scenes, choice.options.keys); !kept) {
         return kept.error();
@@ -274,8 +290,8 @@ Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes)
     if (!profile) {
         return profile.error();
     }
-    const Plan plan =
-        makePlan(scenes.materials(), scenes.primitives(), {choice.options.keys, MergePolicy::None});
+    const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(),
+                                                   {choice.options.keys, compiler::MergePolicy::None});
     const Profile expected = makeProfile(scenes, plan, choice.options.keys);
     checkSettings(*profile, expected, settings.profile, choice.warnings);
     if (isStale(*profile, expected)) {
@@ -286,9 +302,10 @@ Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes)
     return choice;
 }
 
-Status writeProfile(const std::string& file, const SceneList& scenes, const PlanOptions& options,
-                    std::span<const std::uint64_t> hits, std::vector<Diagnostic>& warnings) {
-    const Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
+Status writeProfile(const std::string& file, const gltf::SceneList& scenes,
+                    const compiler::PlanOptions& options, std::span<const std::uint64_t> hits,
+                    std::vector<Diagnostic>& warnings) {
+    const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(), options);
     Profile profile = makeProfile(scenes, plan, options.keys);
     std::uint64_t sum = 0;
     for (std::size_t key = 0; key < profile.keys.size(); ++key) {
@@ -300,7 +317,7 @@ Status writeProfile(const std::string& file, const SceneList& scenes, const Plan
         warnings.push_back(makeWarning("profile-empty", file, "counts no hit: no ray reached a material",
                                        "choose another --camera, or a higher --max-roughness"));
     }
-    return writeFile(file, toText(profile));
+    return base::writeFile(file, toText(profile));
 }
 
 }  // namespace glint::measure

@@ -29,16 +29,16 @@ constexpr std::uint32_t kFewestBlocks = 4;
 constexpr std::uint32_t kFirstSeed = 0x51EED000U;
 
 // Returns everything that decides about the picture.
-Result<std::string> keyOf(BenchBed& bed, const Configuration& configuration) {
-    const Settings& base = bed.base();
-    Packer packer;
-    packer.add(programIdentity()).add(std::uint64_t{kBlock});
-    for (const SourceFile& file : bed.scene().files) {
+Result<std::string> keyOf(BenchBed& bed, const compiler::Configuration& configuration) {
+    const compiler::Settings& base = bed.base();
+    compiler::Packer packer;
+    packer.add(compiler::programIdentity()).add(std::uint64_t{kBlock});
+    for (const gltf::SourceFile& file : bed.scene().files) {
         packer.add(file.bytes).add(file.hash);
     }
-    const Settings settings = withSettings(base, configuration);
-    for (const Descriptor& row : settingsTable()) {
-        if (row.bench.use != BenchUse::None) {
+    const compiler::Settings settings = withSettings(base, configuration);
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if (row.bench.use != compiler::BenchUse::None) {
             packer.add(row.name).add(std::string_view(row.values.text(settings)));
         }
     }
@@ -47,7 +47,7 @@ Result<std::string> keyOf(BenchBed& bed, const Configuration& configuration) {
         .add(std::string_view(bed.context().deviceName()))
         .add(std::string_view(bed.context().driverName()));
     if (!base.environment.empty()) {
-        const Result<FileDigest> digest = digestFile(base.environment);
+        const Result<base::FileDigest> digest = base::digestFile(base.environment);
         if (!digest) {
             return digest.error();
         }
@@ -75,17 +75,17 @@ std::optional<LinearImage> unpack(std::optional<std::string_view> bytes, std::ui
 
 // What a cache keeps of a reference.
 struct Kept {
-    MeanImage mean;
+    image::MeanImage mean;
     std::vector<std::uint8_t> surfaces;
 };
 
-std::optional<Kept> findKept(CacheStore* store, const std::string& key, std::uint32_t width,
+std::optional<Kept> findKept(compiler::CacheStore* store, const std::string& key, std::uint32_t width,
                              std::uint32_t height) {
     const std::optional<std::string> bytes = store == nullptr ? std::nullopt : store->find(kKind, key);
     if (!bytes) {
         return std::nullopt;
     }
-    Unpacker unpacker(*bytes);
+    compiler::Unpacker unpacker(*bytes);
     const std::optional<std::uint64_t> blocks = unpacker.number();
     const std::optional<LinearImage> mean = unpack(unpacker.text(), width, height);
     const std::optional<LinearImage> error = unpack(unpacker.text(), width, height);
@@ -94,17 +94,17 @@ std::optional<Kept> findKept(CacheStore* store, const std::string& key, std::uin
         !unpacker.atEnd() || *blocks < 2 || *blocks > 0xFFFFFFU) {
         return std::nullopt;
     }
-    return Kept{MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks)),
+    return Kept{image::MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks)),
                 {surfaces->begin(), surfaces->end()}};
 }
 
 // Fills in the picture and how certain it is.
-void judge(const MeanImage& sum, std::span<const std::uint8_t> surfaces, const ReferenceOptions& options,
-           Reference& reference) {
+void judge(const image::MeanImage& sum, std::span<const std::uint8_t> surfaces,
+           const ReferenceOptions& options, Reference& reference) {
     reference.image = sum.mean();
     reference.samples = sum.blocks() * kBlock;
-    reference.exposure = automaticExposure(reference.image, surfaces);
-    reference.noise = noiseOf(reference.image, sum.standardError(), reference.exposure);
+    reference.exposure = image::automaticExposure(reference.image, surfaces);
+    reference.noise = image::noiseOf(reference.image, sum.standardError(), reference.exposure);
     reference.relativeError = std::sqrt(reference.noise.trimmed);
     reference.target = options.target;
     reference.reached = reference.relativeError <= options.target;
@@ -112,9 +112,9 @@ void judge(const MeanImage& sum, std::span<const std::uint8_t> surfaces, const R
 
 }  // namespace
 
-Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const BenchFacts& facts,
-                                const ReferenceOptions& options, CacheStore* store) {
-    const Clock::time_point start = Clock::now();
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const compiler::BenchFacts& facts,
+                                const ReferenceOptions& options, compiler::CacheStore* store) {
+    const base::Clock::time_point start = base::Clock::now();
     Reference reference;
     reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
     const std::uint32_t width = bed.base().renderer.width;
@@ -125,7 +125,7 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const B
     }
     std::optional<Kept> kept = findKept(store, *key, width, height);
     reference.cached = kept.has_value();
-    MeanImage sum = kept ? std::move(kept->mean) : MeanImage(width, height);
+    image::MeanImage sum = kept ? std::move(kept->mean) : image::MeanImage(width, height);
     std::vector<std::uint8_t> surfaces = kept ? std::move(kept->surfaces) : std::vector<std::uint8_t>();
     const std::uint32_t before = sum.blocks();
     std::optional<Mount> mount;
@@ -161,14 +161,14 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const B
         }
     }
     if (store != nullptr && sum.blocks() > before) {
-        Packer packer;
+        compiler::Packer packer;
         packer.add(std::uint64_t{sum.blocks()})
             .add(std::string_view(pack(sum.mean())))
             .add(std::string_view(pack(sum.standardError())))
             .add(std::string_view(std::string(surfaces.begin(), surfaces.end())));
         store->put(kKind, *key, packer.take());
     }
-    reference.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    reference.seconds = std::chrono::duration<double>(base::Clock::now() - start).count();
     return reference;
 }
 

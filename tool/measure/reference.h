@@ -7,9 +7,9 @@
 
 #include <cstdint>
 
-namespace glint {
+namespace glint::compiler {
 class CacheStore;
-}
+}  // namespace glint::compiler
 
 namespace glint::measure {
 
@@ -23,7 +23,7 @@ struct ReferenceOptions {
 // Renders blocks of samples with independent random numbers; their spread gives the uncertainty of their
 // mean. If `store` has the samples of an earlier run of the same program with the same scene, view and
 // device, it continues from them. With a null `store` nothing is kept.
-Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const BenchFacts& facts,
-                                const ReferenceOptions& options, CacheStore* store);
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const compiler::BenchFacts& facts,
+                                const ReferenceOptions& options, compiler::CacheStore* store);
 
 }  // namespace glint::measure

@@ -12,25 +12,28 @@ namespace glint::measure {
 namespace {
 
 // Returns whether hits of any primitive lose a lobe if they keep only those of the base.
-bool losesLobes(const Scene& scene, const PlanOptions& plan) {
-    const std::vector<PrimitiveInputs> primitives = planningInputs(scene);
-    return std::ranges::any_of(primitives, [&](const PrimitiveInputs& inputs) {
-        const Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
-        return (makeKey(material, inputs, plan.keys) & kLobeMask & ~baseLobes()) != 0;
+bool losesLobes(const gltf::Scene& scene, const compiler::PlanOptions& plan) {
+    const std::vector<materials::PrimitiveInputs> primitives = planningInputs(scene);
+    return std::ranges::any_of(primitives, [&](const materials::PrimitiveInputs& inputs) {
+        const materials::Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
+        return (compiler::makeKey(material, inputs, plan.keys) & materials::kLobeMask &
+                ~compiler::baseLobes()) != 0;
     });
 }
 
 }  // namespace
 
-BenchFacts factsOf(const Settings& settings, const Scene& scene, const PlanOptions& plan) {
-    BenchFacts facts;
-    facts.masks = std::ranges::any_of(
-        scene.materials, [](const Material& material) { return material.alphaMode == AlphaMode::Mask; });
+compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Scene& scene,
+                             const compiler::PlanOptions& plan) {
+    compiler::BenchFacts facts;
+    facts.masks = std::ranges::any_of(scene.materials, [](const materials::Material& material) {
+        return material.alphaMode != materials::AlphaMode::Opaque;
+    });
     facts.furtherLobes = losesLobes(scene, plan);
     facts.textures = !scene.textures.empty();
-    const CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);
-    const EffectPlan effects = planEffects(SceneList({&scene, 1}), compile);
-    for (const EffectDecision& decision : effects.decisions) {
+    const compiler::CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);
+    const compiler::EffectPlan effects = planEffects(gltf::SceneList({&scene, 1}), compile);
+    for (const compiler::EffectDecision& decision : effects.decisions) {
         if (decision.chosen) {
             facts.effects.emplace(decision.name);
         }
@@ -42,12 +45,12 @@ BenchFacts factsOf(const Settings& settings, const Scene& scene, const PlanOptio
     return facts;
 }
 
-bool addsSun(const Settings& settings, const Scene& scene) {
+bool addsSun(const compiler::Settings& settings, const gltf::Scene& scene) {
     const bool isUnlit = scene.lights.empty() && settings.environment.empty();
-    return settings.sun == Sun::On || (settings.sun == Sun::Auto && isUnlit);
+    return settings.sun == compiler::Sun::On || (settings.sun == compiler::Sun::Auto && isUnlit);
 }
 
-HeadlessOptions deviceOptions(const Settings& settings) {
+HeadlessOptions deviceOptions(const compiler::Settings& settings) {
     HeadlessOptions options;
     options.validation = settings.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = settings.device;
@@ -56,7 +59,7 @@ HeadlessOptions deviceOptions(const Settings& settings) {
     return options;
 }
 
-void sizeLights(const Settings& settings, scene_view::SceneViewData& scene) {
+void sizeLights(const compiler::Settings& settings, scene_view::SceneViewData& scene) {
     for (LightView& light : scene.lights) {
         light.size = light.type == LightView::Type::Directional
                          ? static_cast<float>(0.5 * settings.sunAngle * std::numbers::pi / 180.0)
@@ -64,7 +67,7 @@ void sizeLights(const Settings& settings, scene_view::SceneViewData& scene) {
     }
 }
 
-scene_view::SceneViewData sceneView(const Settings& settings, const Scene& scene) {
+scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gltf::Scene& scene) {
     scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     if (addsSun(settings, scene)) {
         data.lights.push_back(scene_view::sunLight());
@@ -74,16 +77,18 @@ scene_view::SceneViewData sceneView(const Settings& settings, const Scene& scene
     return data;
 }
 
-CompileSettings compileSettings(const Settings& settings, const PlanOptions& plan) {
-    CompileSettings compile = settings.compile;
+compiler::CompileSettings compileSettings(const compiler::Settings& settings,
+                                          const compiler::PlanOptions& plan) {
+    compiler::CompileSettings compile = settings.compile;
     compile.plan = plan;
     compile.effects.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
     return compile;
 }
 
-CompileSettings compileSettings(const Settings& settings, const PlanOptions& plan, std::uint32_t tracers,
-                                const Scene& scene) {
-    CompileSettings compile = compileSettings(settings, plan);
+compiler::CompileSettings compileSettings(const compiler::Settings& settings,
+                                          const compiler::PlanOptions& plan, std::uint32_t tracers,
+                                          const gltf::Scene& scene) {
+    compiler::CompileSettings compile = compileSettings(settings, plan);
     compile.strategies = settings.strategy.value_or(package::kAllStrategies);
     const bool queries = (tracers & package::kTracerRayQuery) != 0;
     compile.tracers =
@@ -93,7 +98,7 @@ CompileSettings compileSettings(const Settings& settings, const PlanOptions& pla
     return compile;
 }
 
-RendererOptions rendererOptions(const Settings& settings) {
+RendererOptions rendererOptions(const compiler::Settings& settings) {
     RendererOptions options = settings.renderer;
     options.strategy = settings.strategy.value_or(options.strategy);
     options.bounces = settings.compile.maxBounces;
@@ -101,7 +106,7 @@ RendererOptions rendererOptions(const Settings& settings) {
     return options;
 }
 
-scene_view::SkyChoice chooseSky(const Settings& settings, const Scene& scene,
+scene_view::SkyChoice chooseSky(const compiler::Settings& settings, const gltf::Scene& scene,
                                 const scene_view::SceneViewData& view) {
     scene_view::SkyChoice choice;
     choice.automatic = !settings.sky;
@@ -115,7 +120,7 @@ scene_view::SkyChoice chooseSky(const Settings& settings, const Scene& scene,
     return scene_view::skyForLights(scene_view::litPatches(scene, view, view.lights));
 }
 
-FrameOptions frameOptions(const Settings& settings, const CameraView& camera,
+FrameOptions frameOptions(const compiler::Settings& settings, const CameraView& camera,
                           const scene_view::SkyChoice& sky, const Environment* environment) {
     FrameOptions options = settings.frame;
     options.camera = camera;

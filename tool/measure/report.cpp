@@ -20,9 +20,9 @@ Interval times(const Interval& interval, double factor) {
             interval.q3 * factor};
 }
 
-Json settingsToJson(const Configuration& configuration) {
-    Json object = Json::object();
-    for (const std::string& name : settingNames()) {
+base::Json settingsToJson(const compiler::Configuration& configuration) {
+    base::Json object = base::Json::object();
+    for (const std::string& name : compiler::settingNames()) {
         const auto value = configuration.find(name);
         if (value != configuration.end()) {
             object[name] = value->second;
@@ -32,31 +32,31 @@ Json settingsToJson(const Configuration& configuration) {
 }
 
 // Returns the interval over the rounds of a point.
-Interval errorInterval(const BenchPoint& point, double ImageErrors::*member) {
+Interval errorInterval(const BenchPoint& point, double image::ImageErrors::*member) {
     std::vector<double> values;
-    for (const ImageErrors& errors : point.errors) {
+    for (const image::ImageErrors& errors : point.errors) {
         values.push_back(errors.*member);
     }
     return measure::intervalOf(values);
 }
 
-Json errorsToJson(const BenchPoint& point) {
+base::Json errorsToJson(const BenchPoint& point) {
     std::vector<double> biases;
-    for (const ImageErrors& errors : point.errors) {
+    for (const image::ImageErrors& errors : point.errors) {
         biases.push_back(errors.bias);
     }
     const MeanInterval bias = measure::meanOf(biases);
-    return {{"relMse", toJson(errorInterval(point, &ImageErrors::relMse))},
-            {"rmse", toJson(errorInterval(point, &ImageErrors::rmse))},
-            {"psnr", toJson(errorInterval(point, &ImageErrors::psnr))},
-            {"p999", toJson(errorInterval(point, &ImageErrors::p999))},
-            {"trimmed", toJson(errorInterval(point, &ImageErrors::trimmed))},
-            {"flip", toJson(errorInterval(point, &ImageErrors::flip))},
+    return {{"relMse", toJson(errorInterval(point, &image::ImageErrors::relMse))},
+            {"rmse", toJson(errorInterval(point, &image::ImageErrors::rmse))},
+            {"psnr", toJson(errorInterval(point, &image::ImageErrors::psnr))},
+            {"p999", toJson(errorInterval(point, &image::ImageErrors::p999))},
+            {"trimmed", toJson(errorInterval(point, &image::ImageErrors::trimmed))},
+            {"flip", toJson(errorInterval(point, &image::ImageErrors::flip))},
             {"bias", {{"mean", bias.mean}, {"low", bias.low}, {"high", bias.high}}}};
 }
 
-Json passesToJson(const BenchPoint& point) {
-    Json passes = Json::array();
+base::Json passesToJson(const BenchPoint& point) {
+    base::Json passes = base::Json::array();
     for (const auto& [name, milliseconds] : point.passes) {
         const Interval interval = measure::intervalOf(milliseconds);
         passes.push_back(
@@ -65,15 +65,15 @@ Json passesToJson(const BenchPoint& point) {
     return passes;
 }
 
-Json pointToJson(const BenchReport& report, std::size_t index) {
+base::Json pointToJson(const BenchReport& report, std::size_t index) {
     const BenchPoint& point = report.points[index];
-    Json time = toJson(timeOf(report, index));
+    base::Json time = toJson(timeOf(report, index));
     time["values"] = point.times;
     return {{"id", index},
             {"name", point.name},
             {"kind", nameOf(point.kind)},
             {"settings", settingsToJson(point.configuration)},
-            {"package", textOrNull(point.package)},
+            {"package", base::textOrNull(point.package)},
             {"command", renderCommand(report, point)},
             {"time", std::move(time)},
             {"ratio", toJson(timeRatio(point))},
@@ -84,7 +84,7 @@ Json pointToJson(const BenchReport& report, std::size_t index) {
             {"sameImage", point.sameImage},
             {"front", std::ranges::find(report.front, index) != report.front.end()},
             {"tracer", point.tracer},
-            {"ordering", textOrNull(point.ordering)},
+            {"ordering", base::textOrNull(point.ordering)},
             {"rays", point.counters.rays},
             {"cases", point.cases},
             {"pipelines", point.footprint.pipelines},
@@ -93,8 +93,8 @@ Json pointToJson(const BenchReport& report, std::size_t index) {
             {"errorImage", errorImageName(index)}};
 }
 
-Json settingToJson(const Setting& setting) {
-    Json skipped = Json::array();
+base::Json settingToJson(const Setting& setting) {
+    base::Json skipped = base::Json::array();
     for (const SkippedValue& value : setting.skipped) {
         skipped.push_back({{"value", value.value}, {"reason", value.reason}});
     }
@@ -108,7 +108,7 @@ Json settingToJson(const Setting& setting) {
             {"skipped", std::move(skipped)}};
 }
 
-Json referenceToJson(const BenchReport& report) {
+base::Json referenceToJson(const BenchReport& report) {
     const Reference& reference = report.reference;
     return {{"image", kReferenceImage},
             {"samples", reference.samples},
@@ -126,26 +126,26 @@ Json referenceToJson(const BenchReport& report) {
 }
 
 // Returns the values of the base and the point that `glint compile` decides, or the others.
-Json decided(const BenchReport& report, const BenchPoint& point, bool compiled) {
-    Configuration values;
+base::Json decided(const BenchReport& report, const BenchPoint& point, bool compiled) {
+    compiler::Configuration values;
     for (const auto& [name, value] : report.base) {
-        if (isCompiled(*sweptSetting(name)) == compiled) {
+        if (compiler::isCompiled(*compiler::sweptSetting(name)) == compiled) {
             values[name] = valueOf(name, point.configuration, report.base);
         }
     }
     return settingsToJson(values);
 }
 
-Json adviceToJson(const BenchReport& report) {
+base::Json adviceToJson(const BenchReport& report) {
     if (!report.advice) {
         return nullptr;
     }
     const BenchAdvice& advice = *report.advice;
-    Json object{{"budgetMs", advice.budgetMs ? Json(*advice.budgetMs) : Json(nullptr)},
-                {"maxError", advice.maxError ? Json(*advice.maxError) : Json(nullptr)},
-                {"metric", nameOf(report.metric)},
-                {"point", advice.point ? Json(*advice.point) : Json(nullptr)},
-                {"file", advice.point ? Json(advice.file) : Json(nullptr)}};
+    base::Json object{{"budgetMs", advice.budgetMs ? base::Json(*advice.budgetMs) : base::Json(nullptr)},
+                      {"maxError", advice.maxError ? base::Json(*advice.maxError) : base::Json(nullptr)},
+                      {"metric", nameOf(report.metric)},
+                      {"point", advice.point ? base::Json(*advice.point) : base::Json(nullptr)},
+                      {"file", advice.point ? base::Json(advice.file) : base::Json(nullptr)}};
     if (advice.point) {
         const BenchPoint& point = report.points[*advice.point];
         object["compile"] = decided(report, point, true);
@@ -155,9 +155,9 @@ Json adviceToJson(const BenchReport& report) {
     return object;
 }
 
-Json strategiesToJson(const BenchReport& report) {
+base::Json strategiesToJson(const BenchReport& report) {
     const StrategyReport& strategies = report.strategies;
-    Json rows = Json::array();
+    base::Json rows = base::Json::array();
     for (const StrategyRow& row : strategies.rows) {
         rows.push_back({{"strategy", row.strategy},
                         {"point", row.point},
@@ -208,30 +208,31 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
     // With these options the command renders the picture of the first round exactly.
     words.insert(words.end(), {"--seed", fmt::format("{}", report.seed), "--exposure",
                                fmt::format("{:.9g}", report.reference.exposure)});
-    Configuration given;
-    const Configuration defaults = configurationOf(Settings());
+    compiler::Configuration given;
+    const compiler::Configuration defaults = configurationOf(compiler::Settings());
     for (const auto& [name, value] : defaults) {
         const std::string& own = valueOf(name, point.configuration, report.base);
-        const bool isPackaged = !point.package.empty() && sweptSetting(name)->stage == SettingStage::Package;
+        const bool isPackaged =
+            !point.package.empty() && compiler::sweptSetting(name)->stage == compiler::SettingStage::Package;
         if (own != value && !isPackaged) {
             given[name] = own;
         }
     }
-    for (const std::string& word : wordsOf(given)) {
+    for (const std::string& word : compiler::wordsOf(given)) {
         words.push_back(word);
     }
     if (!point.package.empty()) {
         words.insert(words.end(), {"--package", point.package});
     }
-    return shellWords(words);
+    return base::shellWords(words);
 }
 
-Json toJson(const BenchReport& report) {
-    Json settings = Json::array();
+base::Json toJson(const BenchReport& report) {
+    base::Json settings = base::Json::array();
     for (const Setting& setting : report.settings) {
         settings.push_back(settingToJson(setting));
     }
-    Json points = Json::array();
+    base::Json points = base::Json::array();
     for (std::size_t i = 0; i < report.points.size(); ++i) {
         points.push_back(pointToJson(report, i));
     }
@@ -252,7 +253,7 @@ Json toJson(const BenchReport& report) {
               {"camera", scene.camera},
               {"width", scene.width},
               {"height", scene.height},
-              {"environment", textOrNull(scene.environment)}}},
+              {"environment", base::textOrNull(scene.environment)}}},
             {"machine", toJson(report.machine)},
             {"method",
              {{"rounds", report.rounds},

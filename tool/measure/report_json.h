@@ -8,10 +8,10 @@
 
 namespace glint::measure {
 
-Json toJson(const BenchMachine& machine);
+base::Json toJson(const BenchMachine& machine);
 // Numbers that are not finite become null.
-Json toJson(const Interval& interval);
-Json toJson(const BenchReport& report);
-Json toJson(const CalibrationReport& report);
+base::Json toJson(const Interval& interval);
+base::Json toJson(const BenchReport& report);
+base::Json toJson(const CalibrationReport& report);
 
 }  // namespace glint::measure

@@ -9,9 +9,9 @@ namespace glint::measure {
 
 namespace {
 
-std::vector<std::string> valuesToTry(const Descriptor& row, const BenchFacts& facts, const std::string& base,
-                                     bool quick) {
-    const SettingBench& bench = row.bench;
+std::vector<std::string> valuesToTry(const compiler::Descriptor& row, const compiler::BenchFacts& facts,
+                                     const std::string& base, bool quick) {
+    const compiler::SettingBench& bench = row.bench;
     if (bench.triedFor != nullptr) {
         return bench.triedFor(facts, base, quick);
     }
@@ -21,7 +21,7 @@ std::vector<std::string> valuesToTry(const Descriptor& row, const BenchFacts& fa
         values.push_back(value);
     }
     if (values.empty()) {
-        for (SettingWord& word : wordsOf(row)) {
+        for (compiler::SettingWord& word : wordsOf(row)) {
             values.push_back(std::move(word.name));
         }
     }
@@ -49,11 +49,12 @@ bool ordersHits(std::string_view strategy) {
 
 }  // namespace
 
-std::vector<Setting> settingsFor(const BenchFacts& facts, const Configuration& base, bool quick) {
+std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compiler::Configuration& base,
+                                 bool quick) {
     std::vector<Setting> settings;
-    for (const Descriptor& row : settingsTable()) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
         const auto own = base.find(row.name);
-        if (row.bench.use != BenchUse::Swept || own == base.end()) {
+        if (row.bench.use != compiler::BenchUse::Swept || own == base.end()) {
             continue;
         }
         Setting setting{.name = std::string(row.name),
@@ -83,23 +84,24 @@ std::vector<Setting> settingsFor(const BenchFacts& facts, const Configuration& b
     return settings;
 }
 
-Configuration exactValues(const BenchFacts& facts) {
-    Configuration exact;
-    for (const Descriptor& row : settingsTable()) {
-        const bool isSwept = row.bench.use == BenchUse::Swept;
+compiler::Configuration exactValues(const compiler::BenchFacts& facts) {
+    compiler::Configuration exact;
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        const bool isSwept = row.bench.use == compiler::BenchUse::Swept;
         if (isSwept && row.bench.exact && !row.bench.exact->empty()) {
             exact.emplace(row.name, *row.bench.exact);
         }
     }
     // A higher limit of roughness would call for reflections.
-    if (!withoutEffect(*sweptSetting("max-roughness"), facts).empty()) {
+    if (!withoutEffect(*compiler::sweptSetting("max-roughness"), facts).empty()) {
         exact.erase("max-roughness");
     }
     return exact;
 }
 
-Configuration simplified(const Configuration& configuration, const Configuration& base) {
-    Configuration rest = configuration;
+compiler::Configuration simplified(const compiler::Configuration& configuration,
+                                   const compiler::Configuration& base) {
+    compiler::Configuration rest = configuration;
     const std::string strategy = valueOf("strategy", configuration, base);
     if (!ordersHits(strategy)) {
         rest.erase("ordering");
@@ -114,15 +116,15 @@ Configuration simplified(const Configuration& configuration, const Configuration
     return rest;
 }
 
-const std::string& valueOf(std::string_view name, const Configuration& configuration,
-                           const Configuration& base) {
+const std::string& valueOf(std::string_view name, const compiler::Configuration& configuration,
+                           const compiler::Configuration& base) {
     const auto own = configuration.find(name);
     return own != configuration.end() ? own->second : base.find(name)->second;
 }
 
-std::string nameOf(const Configuration& configuration) {
+std::string nameOf(const compiler::Configuration& configuration) {
     std::string name;
-    for (const std::string& setting : settingNames()) {
+    for (const std::string& setting : compiler::settingNames()) {
         const auto own = configuration.find(setting);
         if (own != configuration.end()) {
             name += fmt::format("{}{} {}", name.empty() ? "" : ", ", setting, own->second);

@@ -20,7 +20,7 @@ constexpr const char* kSettingsFormat = "glint-settings";
 constexpr int kSettingsVersion = 1;
 
 // Returns a number, a switch or a text as a word of the command line, or nothing for other values.
-std::optional<std::string> settingText(const Json& value) {
+std::optional<std::string> settingText(const base::Json& value) {
     if (value.is_string()) {
         return value.get<std::string>();
     }
@@ -38,43 +38,44 @@ Diagnostic settingsError(const std::filesystem::path& file, const std::string& p
                      message, hint);
 }
 
-std::string settingsText(const Configuration& settings, const std::string& origin) {
-    Json values = Json::object();
-    for (const std::string& name : settingNames()) {
+std::string settingsText(const compiler::Configuration& settings, const std::string& origin) {
+    base::Json values = base::Json::object();
+    for (const std::string& name : compiler::settingNames()) {
         const auto value = settings.find(name);
         if (value != settings.end()) {
             values[name] = value->second;
         }
     }
-    return glint::toText(Json{{"format", kSettingsFormat},
-                              {"version", kSettingsVersion},
-                              {"origin", origin},
-                              {"settings", std::move(values)}});
+    return base::toText(base::Json{{"format", kSettingsFormat},
+                                   {"version", kSettingsVersion},
+                                   {"origin", origin},
+                                   {"settings", std::move(values)}});
 }
 
-Result<Configuration> readSettings(const std::filesystem::path& file) {
+Result<compiler::Configuration> readSettings(const std::filesystem::path& file) {
     constexpr std::uint64_t kMostBytes = 1U << 20;
-    const Result<Bytes> bytes = readFile(file, kMostBytes);
+    const Result<base::Bytes> bytes = base::readFile(file, kMostBytes);
     if (!bytes) {
         return bytes.error();
     }
     const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     constexpr const char* kHint = "give a file that `glint bench --budget-ms` or --max-error wrote";
-    const Json json = nestsTooDeep(*bytes) ? Json() : Json::parse(text, nullptr, false);
-    if (!json.is_object() || json.value("format", Json()) != Json(kSettingsFormat) ||
+    const base::Json json =
+        base::nestsTooDeep(*bytes) ? base::Json() : base::Json::parse(text, nullptr, false);
+    if (!json.is_object() || json.value("format", base::Json()) != base::Json(kSettingsFormat) ||
         !json.contains("settings") || !json["settings"].is_object()) {
         return settingsError(file, "", "is no file of settings", kHint);
     }
-    if (json.value("version", Json()) != Json(kSettingsVersion)) {
+    if (json.value("version", base::Json()) != base::Json(kSettingsVersion)) {
         return settingsError(file, "/version", fmt::format("is not {}", kSettingsVersion),
                              "this glint reads that version");
     }
-    Configuration settings;
-    const std::vector<std::string> names = settingNames();
+    compiler::Configuration settings;
+    const std::vector<std::string> names = compiler::settingNames();
     for (const auto& [name, value] : json["settings"].items()) {
         const std::string pointer = "/settings/" + name;
         if (std::ranges::find(names, name) == names.end()) {
-            return settingsError(file, pointer, "is no setting" + suggestion(name, names),
+            return settingsError(file, pointer, "is no setting" + base::suggestion(name, names),
                                  "leave it out, or see docs/cli.md for those there are");
         }
         std::optional<std::string> word = settingText(value);
@@ -82,7 +83,8 @@ Result<Configuration> readSettings(const std::filesystem::path& file) {
             return settingsError(file, pointer, "is neither a text nor a number",
                                  fmt::format("write it as on the command line, behind --{}", name));
         }
-        if (sweptSetting(name)->values.form == ValueForm::Switch && *word != "on" && *word != "off") {
+        if (compiler::sweptSetting(name)->values.form == compiler::ValueForm::Switch && *word != "on" &&
+            *word != "off") {
             return settingsError(file, pointer, fmt::format("is \"{}\", neither on nor off", *word), kHint);
         }
         settings.emplace(name, std::move(*word));

@@ -119,7 +119,7 @@ void explain(StrategyReport& report) {
 StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base) {
     StrategyReport report;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const Configuration& configuration = points[i].configuration;
+        const compiler::Configuration& configuration = points[i].configuration;
         const auto own = configuration.find("strategy");
         const bool isAlone =
             configuration.empty() || (own != configuration.end() && configuration.size() == 1);

@@ -17,21 +17,22 @@ namespace glint::measure {
 
 namespace {
 
-FrameShape shapeOf(const Settings& render, std::uint32_t effects) {
+compiler::FrameShape shapeOf(const compiler::Settings& render, std::uint32_t effects) {
     return {static_cast<double>(render.renderer.width) * render.renderer.height, effects,
             render.frame.maxReflectionRoughness, render.renderer.batchEffects};
 }
 
 // Returns the rounds of a scene whose cases are those of a package.
-std::vector<Round> roundsOf(const Package& package, const Scene& scene, const FrameShape& shape) {
-    std::vector<CaseFeatures> cases;
+std::vector<compiler::Round> roundsOf(const Package& package, const gltf::Scene& scene,
+                                      const compiler::FrameShape& shape) {
+    std::vector<compiler::CaseFeatures> cases;
     for (const package::CaseEntry& entry : package.cases()) {
         cases.push_back({entry.always, entry.sometimes, entry.keyCount == 0});
     }
-    const std::vector<PrimitiveInputs> primitives = planningInputs(scene);
-    std::vector<CaseHits> hits;
+    const std::vector<materials::PrimitiveInputs> primitives = planningInputs(scene);
+    std::vector<compiler::CaseHits> hits;
     if (const std::optional<std::uint32_t> index = scene_view::sceneIn(package, scene)) {
-        for (const PrimitiveInputs& inputs : primitives) {
+        for (const materials::PrimitiveInputs& inputs : primitives) {
             const package::PrimitiveEntry* const entry = package.scene(*index).findPrimitive(
                 static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));
             if (entry != nullptr && entry->shaderId < cases.size()) {
@@ -46,7 +47,7 @@ std::vector<Round> roundsOf(const Package& package, const Scene& scene, const Fr
 
 Result<KnownCosts> knownCosts(const std::string& file, bool onCpu) {
     if (file.empty()) {
-        return KnownCosts{builtInCosts(onCpu), true};
+        return KnownCosts{compiler::builtInCosts(onCpu), true};
     }
     Result<DeviceFile> read = readDeviceFile(file);
     if (!read) {
@@ -60,7 +61,7 @@ std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
     const std::uint32_t wanted = tracer ? std::uint32_t{*tracer} : package::kAllTracers;
     const std::uint32_t compiled = package != nullptr ? package->shape().tracers : package::kAllTracers;
     std::vector<std::string> names;
-    for (const std::string_view name : kStrategyNames) {
+    for (const std::string_view name : compiler::kStrategyNames) {
         const package::Strategy strategy = *valueNamed<package::Strategy>(name);
         const bool has = package == nullptr || package->supports(strategy);
         // hit-shaders needs ray tracing pipelines, whatever the package's tracers are.
@@ -72,25 +73,28 @@ std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
     return names;
 }
 
-std::vector<Round> roundsOf(const SceneList& scenes, const Plan& plan, const PlanOptions& options,
-                            const FrameShape& shape) {
-    const std::vector<CaseFeatures> cases = caseFeatures(plan);
-    std::vector<Round> rounds;
+std::vector<compiler::Round> roundsOf(const gltf::SceneList& scenes, const compiler::Plan& plan,
+                                      const compiler::PlanOptions& options,
+                                      const compiler::FrameShape& shape) {
+    const std::vector<compiler::CaseFeatures> cases = caseFeatures(plan);
+    std::vector<compiler::Round> rounds;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
-        const SceneList::Range range = scenes.primitivesOf(i);
-        const std::span<const PrimitiveInputs> primitives =
+        const gltf::SceneList::Range range = scenes.primitivesOf(i);
+        const std::span<const materials::PrimitiveInputs> primitives =
             scenes.primitives().subspan(range.first, range.count);
-        const std::vector<CaseHits> hits = caseHits(plan, options, primitives, range.first);
-        for (Round& round : frameRounds(scenes.materials(), primitives, roundCases(cases, hits), shape)) {
+        const std::vector<compiler::CaseHits> hits = caseHits(plan, options, primitives, range.first);
+        for (compiler::Round& round :
+             frameRounds(scenes.materials(), primitives, roundCases(cases, hits), shape)) {
             rounds.push_back(std::move(round));
         }
     }
     return rounds;
 }
 
-Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector<Round>& rounds,
-                                      const std::vector<std::string>& available, double pixels) {
-    std::optional<StrategyChoice> choice = chooseStrategy(rounds, costs.device, available);
+Result<compiler::StrategyAdvice> adviseStrategy(const KnownCosts& costs,
+                                                const std::vector<compiler::Round>& rounds,
+                                                const std::vector<std::string>& available, double pixels) {
+    std::optional<compiler::StrategyChoice> choice = chooseStrategy(rounds, costs.device, available);
     if (!choice) {
         return makeError(
             "calibration-strategies", costs.device.device,
@@ -98,12 +102,13 @@ Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector
                         available.empty() ? "none" : fmt::format("{}", fmt::join(available, ", "))),
             "name a --strategy, or measure the device again with glint bench --calibrate");
     }
-    return StrategyAdvice{std::move(*choice), costs.device.device, costs.builtIn, pixels};
+    return compiler::StrategyAdvice{std::move(*choice), costs.device.device, costs.builtIn, pixels};
 }
 
-Result<StrategyAdvice> adviseRender(const Settings& render, const PlanOptions& plan, const Context& context,
-                                    const Scene& scene, const Package* package,
-                                    std::vector<Diagnostic>& warnings) {
+Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& render,
+                                              const compiler::PlanOptions& plan, const Context& context,
+                                              const gltf::Scene& scene, const Package* package,
+                                              std::vector<Diagnostic>& warnings) {
     Result<KnownCosts> costs =
         knownCosts(render.calibration, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU);
     if (!costs) {
@@ -118,19 +123,19 @@ Result<StrategyAdvice> adviseRender(const Settings& render, const PlanOptions& p
                                        "measure this device with glint bench --calibrate"));
     }
     const std::uint32_t tracers = context.handles().tracers;
-    const SceneList scenes({&scene, 1});
+    const gltf::SceneList scenes({&scene, 1});
     if (package == nullptr) {
-        const CompileSettings settings = compileSettings(render, plan, tracers, scene);
-        const FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects.all);
-        const Plan made = makePlan(scenes.materials(), scenes.primitives(), plan);
+        const compiler::CompileSettings settings = compileSettings(render, plan, tracers, scene);
+        const compiler::FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects.all);
+        const compiler::Plan made = makePlan(scenes.materials(), scenes.primitives(), plan);
         return adviseStrategy(*costs, roundsOf(scenes, made, plan, shape),
                               runnableStrategies(tracers, render.renderer.tracer, nullptr), shape.pixels);
     }
-    const FrameShape shape = shapeOf(render, package->shape().effects.all);
+    const compiler::FrameShape shape = shapeOf(render, package->shape().effects.all);
     std::vector<std::string> available = runnableStrategies(tracers, render.renderer.tracer, package);
     if (available.empty()) {
         // What the device lacks is reported when the package is used.
-        available = strategyNames(package->shape().strategies);
+        available = compiler::strategyNames(package->shape().strategies);
     }
     return adviseStrategy(*costs, roundsOf(*package, scene, shape), available, shape.pixels);
 }

@@ -20,7 +20,7 @@ namespace {
 struct Sample {
     std::string name;
     std::string group;  // the same for points that differ in their rays alone
-    TermValues terms{};
+    compiler::TermValues terms{};
     std::map<std::string, double, std::less<>> ms;  // by strategy
 };
 
@@ -65,7 +65,8 @@ std::vector<Sample> samplesOf(std::span<const CalibrationPoint> points, double s
         sample.group = fmt::format("{} {} {}", point.cases, point.cost, point.coherence);
         sample.terms = termsOf(roundOf(point), subgroupSize);
         for (const StrategyTime& time : point.times) {
-            const bool known = std::ranges::find(kStrategyNames, time.strategy) != std::end(kStrategyNames);
+            const bool known = std::ranges::find(compiler::kStrategyNames, time.strategy) !=
+                               std::end(compiler::kStrategyNames);
             if (known && std::isfinite(time.ms) && time.ms > 0.0) {
                 sample.ms[time.strategy] = time.ms;
             } else {
@@ -81,17 +82,17 @@ std::vector<Sample> samplesOf(std::span<const CalibrationPoint> points, double s
 using Samples = std::vector<const Sample*>;
 
 // Returns the terms that the strategy has.
-std::vector<CostTermInfo> termsOf(std::string_view strategy) {
-    std::vector<CostTermInfo> terms;
-    std::ranges::copy_if(costTerms(), std::back_inserter(terms),
-                         [&](const CostTermInfo& info) { return hasTerm(strategy, info.term); });
+std::vector<compiler::CostTermInfo> termsOf(std::string_view strategy) {
+    std::vector<compiler::CostTermInfo> terms;
+    std::ranges::copy_if(compiler::costTerms(), std::back_inserter(terms),
+                         [&](const compiler::CostTermInfo& info) { return hasTerm(strategy, info.term); });
     return terms;
 }
 
 // Each row is divided by the measured time, so that the error of a quick point counts as much as that of a
 // slow one.
-std::optional<StrategyCosts> fitOne(std::string_view strategy, const Samples& samples) {
-    const std::vector<CostTermInfo> terms = termsOf(strategy);
+std::optional<compiler::StrategyCosts> fitOne(std::string_view strategy, const Samples& samples) {
+    const std::vector<compiler::CostTermInfo> terms = termsOf(strategy);
     std::vector<std::vector<double>> rows;
     for (const Sample* const sample : samples) {
         const auto time = sample->ms.find(strategy);
@@ -99,7 +100,7 @@ std::optional<StrategyCosts> fitOne(std::string_view strategy, const Samples& sa
             continue;
         }
         std::vector<double>& row = rows.emplace_back();
-        for (const CostTermInfo& info : terms) {
+        for (const compiler::CostTermInfo& info : terms) {
             row.push_back(sample->terms[static_cast<std::size_t>(info.term)] * info.milliseconds /
                           time->second);
         }
@@ -112,7 +113,7 @@ std::optional<StrategyCosts> fitOne(std::string_view strategy, const Samples& sa
     if (!x) {
         return std::nullopt;
     }
-    StrategyCosts costs;
+    compiler::StrategyCosts costs;
     costs.strategy = strategy;
     for (std::size_t i = 0; i < terms.size(); ++i) {
         costs.constants[static_cast<std::size_t>(terms[i].term)] = (*x)[i];
@@ -120,9 +121,9 @@ std::optional<StrategyCosts> fitOne(std::string_view strategy, const Samples& sa
     return costs;
 }
 
-double estimateOf(const Sample& sample, const StrategyCosts& costs) {
+double estimateOf(const Sample& sample, const compiler::StrategyCosts& costs) {
     double ms = 0.0;
-    for (const CostTermInfo& info : costTerms()) {
+    for (const compiler::CostTermInfo& info : compiler::costTerms()) {
         const auto i = static_cast<std::size_t>(info.term);
         ms += sample.terms[i] * costs.constants[i] * info.milliseconds;
     }
@@ -147,8 +148,8 @@ Estimates estimateHeldOut(const std::vector<Sample>& samples, bool& held) {
                 others.push_back(&sample);
             }
         }
-        for (const std::string_view strategy : kStrategyNames) {
-            const std::optional<StrategyCosts> costs = fitOne(strategy, others);
+        for (const std::string_view strategy : compiler::kStrategyNames) {
+            const std::optional<compiler::StrategyCosts> costs = fitOne(strategy, others);
             for (const Sample& sample : samples) {
                 if (costs && sample.group == group && sample.ms.contains(strategy)) {
                     estimates[&sample][std::string(strategy)] = estimateOf(sample, *costs);
@@ -194,15 +195,15 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
         // The loop follows the order in which a choice takes the first of equals.
         std::string_view taken;
         std::string_view fastest;
-        for (const std::string_view strategy : kStrategyNames) {
+        for (const std::string_view strategy : compiler::kStrategyNames) {
             const auto estimated = own->second.find(strategy);
             if (estimated == own->second.end()) {
                 continue;
             }
             const auto cases =
-                static_cast<std::size_t>(sample.terms[static_cast<std::size_t>(CostTerm::Cases)]);
-            if (taken.empty() || isBetterChoice({strategy, estimated->second},
-                                                {taken, own->second.find(taken)->second}, cases)) {
+                static_cast<std::size_t>(sample.terms[static_cast<std::size_t>(compiler::CostTerm::Cases)]);
+            if (taken.empty() || compiler::isBetterChoice({strategy, estimated->second},
+                                                          {taken, own->second.find(taken)->second}, cases)) {
                 taken = strategy;
             }
             if (fastest.empty() || sample.ms.find(strategy)->second < sample.ms.find(fastest)->second) {
@@ -226,13 +227,13 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
 
 }  // namespace
 
-Round roundOf(const CalibrationPoint& point) {
+compiler::Round roundOf(const CalibrationPoint& point) {
     // If there is one case, all hits are alike, wherever rays go.
-    Round round{point.rays,
-                point.hitShare,
-                std::max(0.0, point.coherentShare),
-                point.coherence == "coherent" ? 0.0 : 1.0,
-                {}};
+    compiler::Round round{point.rays,
+                          point.hitShare,
+                          std::max(0.0, point.coherentShare),
+                          point.coherence == "coherent" ? 0.0 : 1.0,
+                          {}};
     for (const CaseWork& work : point.work) {
         round.cases.push_back({work.share, work.instructions, work.fetches});
     }
@@ -247,14 +248,14 @@ DeviceFit fitStrategies(std::span<const CalibrationPoint> points, double subgrou
         all.push_back(&sample);
     }
     const Estimates estimates = estimateHeldOut(samples, fit.quality.held);
-    for (const std::string_view strategy : kStrategyNames) {
+    for (const std::string_view strategy : compiler::kStrategyNames) {
         const auto measured = static_cast<std::size_t>(std::ranges::count_if(
             samples, [&](const Sample& sample) { return sample.ms.contains(strategy); }));
         if (measured == 0) {
             fit.omitted.push_back(fmt::format("{} was not measured", strategy));
             continue;
         }
-        std::optional<StrategyCosts> costs = fitOne(strategy, all);
+        std::optional<compiler::StrategyCosts> costs = fitOne(strategy, all);
         if (!costs) {
             fit.omitted.push_back(fmt::format("{} has {} usable points, and {} terms to find", strategy,
                                               measured, termsOf(strategy).size()));

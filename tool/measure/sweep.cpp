@@ -143,7 +143,7 @@ std::vector<Rated> predictedFront(std::span<const Setting> settings, const Steps
 }
 
 // Returns points of the measured front with one setting moved to the previous or next value.
-std::vector<Rated> neighbours(std::span<const Setting> settings, const Configuration& base,
+std::vector<Rated> neighbours(std::span<const Setting> settings, const compiler::Configuration& base,
                               const Steps& steps, std::span<const Rated> measured) {
     std::vector<Rated> found;
     for (const std::size_t i : paretoFront(measured)) {
@@ -176,8 +176,8 @@ std::vector<Rated> neighbours(std::span<const Setting> settings, const Configura
 }
 
 // Returns `count` of the sorted candidates, evenly spread, including both ends.
-std::vector<Configuration> spread(const std::vector<Rated>& candidates, std::size_t count) {
-    std::vector<Configuration> chosen;
+std::vector<compiler::Configuration> spread(const std::vector<Rated>& candidates, std::size_t count) {
+    std::vector<compiler::Configuration> chosen;
     const std::size_t taken = std::min(count, candidates.size());
     for (std::size_t i = 0; i < taken; ++i) {
         const std::size_t at = taken == 1 ? 0 : i * (candidates.size() - 1) / (taken - 1);
@@ -193,11 +193,12 @@ bool isWithin(const Offer& offer, const Demand& demand) {
 
 }  // namespace
 
-std::vector<Configuration> singles(std::span<const Setting> settings, const Configuration& base) {
-    std::vector<Configuration> all;
+std::vector<compiler::Configuration> singles(std::span<const Setting> settings,
+                                             const compiler::Configuration& base) {
+    std::vector<compiler::Configuration> all;
     for (const Setting& setting : settings) {
         for (const std::string& value : setting.values) {
-            Configuration one = simplified({{setting.name, value}}, base);
+            compiler::Configuration one = simplified({{setting.name, value}}, base);
             if (!one.empty()) {
                 all.push_back(std::move(one));
             }
@@ -206,9 +207,10 @@ std::vector<Configuration> singles(std::span<const Setting> settings, const Conf
     return all;
 }
 
-std::vector<Configuration> pairs(std::span<const Setting> settings, const Configuration& base, bool quick) {
-    std::vector<Configuration> all;
-    std::set<Configuration> known;
+std::vector<compiler::Configuration> pairs(std::span<const Setting> settings,
+                                           const compiler::Configuration& base, bool quick) {
+    std::vector<compiler::Configuration> all;
+    std::set<compiler::Configuration> known;
     for (const Pair& pair : kPairs) {
         const Setting* const first = find(settings, pair.first);
         const Setting* const second = find(settings, pair.second);
@@ -217,7 +219,7 @@ std::vector<Configuration> pairs(std::span<const Setting> settings, const Config
         }
         for (const std::string& a : pairValues(*first, quick)) {
             for (const std::string& b : pairValues(*second, quick)) {
-                Configuration both = simplified({{first->name, a}, {second->name, b}}, base);
+                compiler::Configuration both = simplified({{first->name, a}, {second->name, b}}, base);
                 if (both.size() == 2 && known.insert(both).second) {
                     all.push_back(std::move(both));
                 }
@@ -255,15 +257,16 @@ std::vector<std::size_t> paretoFront(std::span<const Rated> points) {
     return front;
 }
 
-std::vector<Configuration> proposals(std::span<const Setting> settings, const Configuration& base,
-                                     std::span<const Rated> points, std::size_t count) {
+std::vector<compiler::Configuration> proposals(std::span<const Setting> settings,
+                                               const compiler::Configuration& base,
+                                               std::span<const Rated> points, std::size_t count) {
     const std::vector<Rated> measured = withTiesSettled(points);
     const Steps steps = stepsOf(settings, measured);
     std::vector<Rated> candidates = neighbours(settings, base, steps, measured);
     for (const Rated& way : fastestWays(settings, measured)) {
         std::ranges::move(predictedFront(settings, steps, way), std::back_inserter(candidates));
     }
-    std::set<Configuration> known;
+    std::set<compiler::Configuration> known;
     for (const Rated& point : measured) {
         known.insert(point.configuration);
     }

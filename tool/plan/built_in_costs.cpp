@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace glint {
+namespace glint::compiler {
 
 DeviceCosts builtInCosts(bool onCpu) {
     const auto* row = std::ranges::find(fitted::kDevices, onCpu, &fitted::DeviceRow::onCpu);
@@ -26,4 +26,4 @@ DeviceCosts builtInCosts(bool onCpu) {
     return costs;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -3,10 +3,10 @@
 
 #include "plan/strategy_cost.h"
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the constants of the measured device of that type (plan/strategy_constants.h). If no device of that
 // type was measured, it returns those of the other type.
 DeviceCosts builtInCosts(bool onCpu);
 
-}  // namespace glint
+}  // namespace glint::compiler

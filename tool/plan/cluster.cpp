@@ -4,7 +4,7 @@
 #include <cassert>
 #include <limits>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -236,4 +236,4 @@ double totalCost(std::span<const Cluster> clusters, std::span<const WeightedKey>
     return cost;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct Cluster {
     std::vector<int> keys;  // indices, ascending
@@ -32,4 +32,4 @@ std::vector<Cluster> moveKeys(std::vector<Cluster> clusters, std::span<const Wei
 // Returns the cost of a plan: the surplus of its cases, plus kCaseCost for each case.
 double totalCost(std::span<const Cluster> clusters, std::span<const WeightedKey> keys);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cassert>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -22,7 +22,7 @@ double idleShare(double p) {
 
 // Calls use(bit) for each bit of `mask`, the lowest first.
 template <typename Use>
-void forEachBit(FeatureMask mask, const Use& use) {
+void forEachBit(materials::FeatureMask mask, const Use& use) {
     for (; mask != 0; mask &= mask - 1) {
         use(static_cast<std::size_t>(std::countr_zero(mask)));
     }
@@ -31,8 +31,8 @@ void forEachBit(FeatureMask mask, const Use& use) {
 // Calls use(feature) for each feature of `mask`, the lowest bit first. Bits that the model does not have are
 // skipped.
 template <typename Use>
-void forEachFeature(const MaterialModel& model, FeatureMask mask, const Use& use) {
-    for (const Feature& feature : model.features) {
+void forEachFeature(const materials::MaterialModel& model, materials::FeatureMask mask, const Use& use) {
+    for (const materials::Feature& feature : model.features) {
         if ((mask & feature.mask()) != 0) {
             use(feature);
         }
@@ -40,7 +40,7 @@ void forEachFeature(const MaterialModel& model, FeatureMask mask, const Use& use
 }
 
 // Returns the surplus of an average hit of a case in which the share p of the hits have the feature.
-double surplusOf(const Feature& feature, bool isUnlit, double p) {
+double surplusOf(const materials::Feature& feature, bool isUnlit, double p) {
     double cost = feature.isLobe ? fitted::kLobeBranch : fitted::kInputBranch;
     cost += (feature.cost.instructions + kFetchCost * feature.cost.fetches) * idleShare(p);
     if (isUnlit) {
@@ -50,12 +50,13 @@ double surplusOf(const Feature& feature, bool isUnlit, double p) {
 }
 
 template <typename ShareWith>
-double surplus(const MaterialModel& model, double share, FeatureMask sometimes, const ShareWith& shareWith) {
+double surplus(const materials::MaterialModel& model, double share, materials::FeatureMask sometimes,
+               const ShareWith& shareWith) {
     if (share <= 0.0) {
         return 0.0;
     }
     double cost = 0.0;
-    forEachFeature(model, sometimes, [&](const Feature& feature) {
+    forEachFeature(model, sometimes, [&](const materials::Feature& feature) {
         const double with = shareWith(static_cast<std::size_t>(feature.bit));
         cost += surplusOf(feature, (feature.mask() & model.unlit) != 0, with / share);
     });
@@ -77,7 +78,7 @@ KeySet toSet(const WeightedKey& key) {
 KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys) {
     assert(!indices.empty());
     KeySet set;
-    set.always = ~FeatureMask{0};
+    set.always = ~materials::FeatureMask{0};
     set.model = keys[static_cast<std::size_t>(indices.front())].model;
     for (const int index : indices) {
         const WeightedKey& key = keys[static_cast<std::size_t>(index)];
@@ -111,26 +112,27 @@ double mergingCost(const KeySet& a, const KeySet& b) {
                    [&](std::size_t place) { return a.shareWith[place] + b.shareWith[place]; });
 }
 
-double branchCost(const KeySet& keys, const Feature& feature) {
+double branchCost(const KeySet& keys, const materials::Feature& feature) {
     return surplus(*keys.model, keys.share, keys.any & ~keys.always & feature.mask(),
                    [&](std::size_t place) { return keys.shareWith[place]; });
 }
 
-CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes, const MaterialModel& model) {
+CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask sometimes,
+                          const materials::MaterialModel& model) {
     CodeEstimate estimate;
     estimate.instructions = fitted::kUnlitInstructions;
     if ((always & model.unlit) == 0) {
         estimate.instructions += fitted::kLitInstructions;
     }
-    forEachFeature(model, always | sometimes, [&](const Feature& feature) {
+    forEachFeature(model, always | sometimes, [&](const materials::Feature& feature) {
         estimate.instructions += feature.cost.instructions;
         estimate.fetches += feature.cost.fetches;
     });
-    estimate.lobeBranches = std::popcount(sometimes & kLobeMask);
-    estimate.inputBranches = std::popcount(sometimes & ~kLobeMask);
+    estimate.lobeBranches = std::popcount(sometimes & materials::kLobeMask);
+    estimate.inputBranches = std::popcount(sometimes & ~materials::kLobeMask);
     estimate.instructions +=
         estimate.lobeBranches * fitted::kLobeBranch + estimate.inputBranches * fitted::kInputBranch;
     return estimate;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -22,7 +22,7 @@
 #include <array>
 #include <span>
 
-namespace glint {
+namespace glint::compiler {
 
 // The weight of a texture fetch in instructions, on top of those that make its coordinates and level. It is a
 // choice: a fetch hides behind other work or waits for memory, which depends on the device and the scene.
@@ -40,18 +40,19 @@ inline constexpr double kCaseCost = 10.0;
 // A key and its share of all hits. Shares are not negative; they add up to 1 over all keys, or all of them
 // are 0.
 struct WeightedKey {
-    FeatureMask mask = 0;
+    materials::FeatureMask mask = 0;
     double share = 0.0;
-    const MaterialModel* model = &builtinMaterialModel();  // the same for all keys
+    const materials::MaterialModel* model = &materials::builtinMaterialModel();  // the same for all keys
 };
 
 // The facts about a set of keys that the model needs.
 struct KeySet {
     double share = 0.0;
-    FeatureMask always = 0;
-    FeatureMask any = 0;
-    std::array<double, kFeatureBits> shareWith{};  // by bit: the total share of the keys that have it
-    const MaterialModel* model = &builtinMaterialModel();
+    materials::FeatureMask always = 0;
+    materials::FeatureMask any = 0;
+    std::array<double, materials::kFeatureBits>
+        shareWith{};  // by bit: the total share of the keys that have it
+    const materials::MaterialModel* model = &materials::builtinMaterialModel();
 };
 
 KeySet toSet(const WeightedKey& key);
@@ -65,7 +66,7 @@ double mergingCost(const KeySet& keys);
 double mergingCost(const KeySet& a, const KeySet& b);
 
 // Returns the surplus that comes from one feature which some of `keys` have and others don't.
-double branchCost(const KeySet& keys, const Feature& feature);
+double branchCost(const KeySet& keys, const materials::Feature& feature);
 
 // An estimate of the code that the shader of a case holds; only compiling it gives the exact numbers.
 struct CodeEstimate {
@@ -74,7 +75,7 @@ struct CodeEstimate {
     int inputBranches = 0;
     int lobeBranches = 0;
 };
-CodeEstimate estimateCode(FeatureMask always, FeatureMask sometimes,
-                          const MaterialModel& model = builtinMaterialModel());
+CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask sometimes,
+                          const materials::MaterialModel& model = materials::builtinMaterialModel());
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -11,7 +11,7 @@
 // The mean and the largest error are relative; R2 is that of the instructions.
 #pragma once
 
-namespace glint::fitted {
+namespace glint::compiler::fitted {
 
 // SPIR-V instructions of the shader of one unlit key without other features, and what being lit adds.
 inline constexpr double kUnlitInstructions = 69.0;
@@ -23,4 +23,4 @@ inline constexpr double kLobeBranch = 163.0;
 
 // What a shader has more for a feature is in the feature's declaration ("cost").
 
-}  // namespace glint::fitted
+}  // namespace glint::compiler::fitted

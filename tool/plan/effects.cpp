@@ -8,7 +8,7 @@
 #include <map>
 #include <tuple>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -19,16 +19,16 @@ struct Finding {
 
 // A material as some primitive has it.
 struct Surface {
-    const Material* material = nullptr;
-    const PrimitiveInputs* primitive = nullptr;
+    const materials::Material* material = nullptr;
+    const materials::PrimitiveInputs* primitive = nullptr;
 };
 
 // Returns each material of the primitives once for each set of UV sets that it is used with, in the order of
 // materials.
-std::vector<Surface> surfacesOf(std::span<const Material> materials,
-                                std::span<const PrimitiveInputs> primitives) {
-    std::map<std::tuple<int, bool, bool>, const PrimitiveInputs*> found;
-    for (const PrimitiveInputs& primitive : primitives) {
+std::vector<Surface> surfacesOf(std::span<const materials::Material> materials,
+                                std::span<const materials::PrimitiveInputs> primitives) {
+    std::map<std::tuple<int, bool, bool>, const materials::PrimitiveInputs*> found;
+    for (const materials::PrimitiveInputs& primitive : primitives) {
         found.try_emplace({primitive.material, primitive.hasTexCoords0, primitive.hasTexCoords1}, &primitive);
     }
     std::vector<Surface> surfaces;
@@ -38,7 +38,7 @@ std::vector<Surface> surfacesOf(std::span<const Material> materials,
     return surfaces;
 }
 
-std::string nameOf(const Material& material) {
+std::string nameOf(const materials::Material& material) {
     return material.name.empty() ? "a material without a name"
                                  : fmt::format("material \"{}\"", material.name);
 }
@@ -55,14 +55,15 @@ class SurfaceBehaviour {
 public:
     explicit SurfaceBehaviour(const Surface& surface)
         : material_(*surface.material),
-          key_(makeKey(material_, *surface.primitive, {.alpha = AlphaPolicy::Tested})),
+          key_(makeKey(material_, *surface.primitive, {.alpha = package::AlphaPolicy::Tested})),
           facts_(material_, *surface.primitive, options_, key_),
-          factors_(material_, *surface.primitive, options_, key_, MaterialFacts::Textures::Ignored) {}
+          factors_(material_, *surface.primitive, options_, key_,
+                   materials::MaterialFacts::Textures::Ignored) {}
 
     // Returns why the surface may behave so, or an empty text. A rougher reflection than `limit` does not
     // count.
-    std::string why(Behaviour behaviour, double limit) const {
-        for (const BehaviourRule& rule : material_.model().behaviours) {
+    std::string why(materials::Behaviour behaviour, double limit) const {
+        for (const materials::BehaviourRule& rule : material_.model().behaviours) {
             if (rule.does != behaviour || !holds(rule)) {
                 continue;
             }
@@ -81,8 +82,8 @@ public:
     }
 
     double leastRoughness() const {
-        double least = kUnlimited;
-        for (const BehaviourRule& rule : material_.model().behaviours) {
+        double least = materials::kUnlimited;
+        for (const materials::BehaviourRule& rule : material_.model().behaviours) {
             if (rule.roughness && holds(rule)) {
                 least = std::min(least, rule.roughness->number(factors_).of[0].low);
             }
@@ -93,15 +94,15 @@ public:
 private:
     static constexpr std::string_view kDefaultText = "scatters light diffusely";
 
-    bool holds(const BehaviourRule& rule) const {
-        return material_.reads(rule.object) && rule.when.holds(facts_) != Certainty::False;
+    bool holds(const materials::BehaviourRule& rule) const {
+        return material_.reads(rule.object) && rule.when.holds(facts_) != materials::Certainty::False;
     }
 
-    const Material& material_;
-    KeyOptions options_{};
-    FeatureMask key_;
-    MaterialFacts facts_;
-    MaterialFacts factors_;
+    const materials::Material& material_;
+    materials::KeyOptions options_{};
+    materials::FeatureMask key_;
+    materials::MaterialFacts facts_;
+    materials::MaterialFacts factors_;
 };
 
 // Finds the first lit surface for which why(surface) gives a reason.
@@ -120,10 +121,10 @@ Finding findSurface(std::span<const Surface> surfaces, const std::string& none, 
     return {false, surfaces.empty() ? "nothing has a surface" : anyLit ? none : "every material is unlit"};
 }
 
-Finding find(const EffectDeclaration& effect, std::span<const Surface> surfaces, const SceneLights& lights,
-             const EffectRequest& request) {
+Finding find(const materials::EffectDeclaration& effect, std::span<const Surface> surfaces,
+             const SceneLights& lights, const EffectRequest& request) {
     const double limit = request.maxReflectionRoughness;
-    const EffectCall& call = effect.call;
+    const materials::EffectCall& call = effect.call;
     if (call.lights && !lights.lit) {
         return {false, "no light shines"};
     }
@@ -132,12 +133,12 @@ Finding find(const EffectDeclaration& effect, std::span<const Surface> surfaces,
     });
 }
 
-const MaterialModel& modelOf(std::span<const Material> materials) {
-    return materials.empty() ? builtinMaterialModel() : materials.front().model();
+const materials::MaterialModel& modelOf(std::span<const materials::Material> materials) {
+    return materials.empty() ? materials::builtinMaterialModel() : materials.front().model();
 }
 
 // Returns the bits of the effects that the user asks for.
-std::uint32_t namedEffects(const EffectRequest& request, const MaterialModel& model) {
+std::uint32_t namedEffects(const EffectRequest& request, const materials::MaterialModel& model) {
     std::uint32_t named = request.named;
     for (const std::string& name : request.ofPacks) {
         named |= findEffect(model.effects, name);
@@ -150,31 +151,32 @@ std::uint32_t namedEffects(const EffectRequest& request, const MaterialModel& mo
 std::uint32_t builtinEffects(std::initializer_list<std::string_view> names) {
     std::uint32_t bits = 0;
     for (const std::string_view name : names) {
-        bits |= findEffect(builtinMaterialModel().effects, name);
+        bits |= materials::findEffect(materials::builtinMaterialModel().effects, name);
     }
     return bits;
 }
 
-bool sendsRays(const EffectDeclaration& effect, const Material& material, const PrimitiveInputs& primitive,
-               float maxReflectionRoughness) {
+bool sendsRays(const materials::EffectDeclaration& effect, const materials::Material& material,
+               const materials::PrimitiveInputs& primitive, float maxReflectionRoughness) {
     const Surface alone[] = {{&material, &primitive}};
     EffectRequest request;
     request.maxReflectionRoughness = maxReflectionRoughness;
     return effect.kind == package::EffectKind::Rays && find(effect, alone, {}, request).usable;
 }
 
-double leastRoughness(const Material& material, const PrimitiveInputs& primitive) {
+double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive) {
     return SurfaceBehaviour({&material, &primitive}).leastRoughness();
 }
 
-EffectPlan decideEffects(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
-                         const SceneLights& lights, const EffectRequest& request) {
+EffectPlan decideEffects(std::span<const materials::Material> materials,
+                         std::span<const materials::PrimitiveInputs> primitives, const SceneLights& lights,
+                         const EffectRequest& request) {
     const std::vector<Surface> surfaces = surfacesOf(materials, primitives);
-    const MaterialModel& model = modelOf(materials);
+    const materials::MaterialModel& model = modelOf(materials);
     const std::uint32_t allNamed = namedEffects(request, model);
     EffectPlan plan;
     for (std::size_t i = 0; i < model.effects.size(); ++i) {
-        const EffectDeclaration& effect = model.effects[i];
+        const materials::EffectDeclaration& effect = model.effects[i];
         const package::EffectInfo info = infoOf(effect, i);
         Finding finding = find(effect, surfaces, lights, request);
         const bool named = (allNamed & info.effect) != 0;
@@ -199,4 +201,4 @@ EffectPlan decideEffects(std::span<const Material> materials, std::span<const Pr
     return plan;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // What the user asks for.
 struct EffectRequest {
@@ -51,15 +51,16 @@ std::uint32_t builtinEffects(std::initializer_list<std::string_view> names);
 // Only the materials of `primitives` count. Requires every PrimitiveInputs::material to index `materials`.
 // The reasons name values, not extensions that are merely present. The effects are those of the materials'
 // model. The names of `request` must be among them.
-EffectPlan decideEffects(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
-                         const SceneLights& lights, const EffectRequest& request);
+EffectPlan decideEffects(std::span<const materials::Material> materials,
+                         std::span<const materials::PrimitiveInputs> primitives, const SceneLights& lights,
+                         const EffectRequest& request);
 
 // Returns whether pixels of this material on this primitive may send rays of an effect of the kind Rays. A
 // texture may make parts of it rougher or black.
-bool sendsRays(const EffectDeclaration& effect, const Material& material, const PrimitiveInputs& primitive,
-               float maxReflectionRoughness);
+bool sendsRays(const materials::EffectDeclaration& effect, const materials::Material& material,
+               const materials::PrimitiveInputs& primitive, float maxReflectionRoughness);
 
 // Returns the least roughness of anything that reflects, without what textures do; infinity if nothing does.
-double leastRoughness(const Material& material, const PrimitiveInputs& primitive);
+double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -5,22 +5,22 @@
 #include <algorithm>
 #include <numeric>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
-double coherenceOf(const EffectDeclaration& effect, const Material& material,
-                   const PrimitiveInputs& primitive) {
-    const EffectCoherence& coherence = effect.coherence;
+double coherenceOf(const materials::EffectDeclaration& effect, const materials::Material& material,
+                   const materials::PrimitiveInputs& primitive) {
+    const materials::EffectCoherence& coherence = effect.coherence;
     const bool differs = coherence.mirror != coherence.glossy;
     return differs && leastRoughness(material, primitive) <= kMirrorRoughness ? coherence.mirror
                                                                               : coherence.glossy;
 }
 
 // Returns each primitive's share of the surfaces in the picture. All shares are equal if nothing is known.
-std::vector<double> surfaceShares(std::span<const PrimitiveInputs> primitives) {
+std::vector<double> surfaceShares(std::span<const materials::PrimitiveInputs> primitives) {
     std::vector<double> shares;
-    for (const PrimitiveInputs& inputs : primitives) {
+    for (const materials::PrimitiveInputs& inputs : primitives) {
         shares.push_back(std::max(0.0, inputs.expectedHits));
     }
     const double all = std::accumulate(shares.begin(), shares.end(), 0.0);
@@ -51,7 +51,7 @@ std::vector<CaseFeatures> caseFeatures(const Plan& plan) {
 }
 
 std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
-                               std::span<const PrimitiveInputs> primitives, std::size_t first) {
+                               std::span<const materials::PrimitiveInputs> primitives, std::size_t first) {
     const bool counted = countsHits(options);
     std::vector<CaseHits> hits;
     for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -64,7 +64,7 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
 }
 
 std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
-                                  const MaterialModel& model) {
+                                  const materials::MaterialModel& model) {
     std::vector<double> byCase(cases.size());
     double all = 0.0;
     for (const CaseHits& entry : hits) {
@@ -84,14 +84,15 @@ std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span
     return result;
 }
 
-std::vector<Round> frameRounds(std::span<const Material> materials,
-                               std::span<const PrimitiveInputs> primitives,
+std::vector<Round> frameRounds(std::span<const materials::Material> materials,
+                               std::span<const materials::PrimitiveInputs> primitives,
                                const std::vector<RoundCase>& cases, const FrameShape& shape) {
     const std::vector<double> shares = surfaceShares(primitives);
     std::vector<Round> rounds;
-    const MaterialModel& model = materials.empty() ? builtinMaterialModel() : materials.front().model();
+    const materials::MaterialModel& model =
+        materials.empty() ? materials::builtinMaterialModel() : materials.front().model();
     for (std::size_t number = 0; number < model.effects.size(); ++number) {
-        const EffectDeclaration& effect = model.effects[number];
+        const materials::EffectDeclaration& effect = model.effects[number];
         if ((shape.effects & infoOf(effect, number).effect) == 0 ||
             effect.kind != package::EffectKind::Rays) {
             continue;
@@ -99,7 +100,7 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
         Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
         double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
-            const Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
+            const materials::Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
             if (sendsRays(effect, material, primitives[i], shape.maxReflectionRoughness)) {
                 senders += shares[i];
                 round.coherence += shares[i] * coherenceOf(effect, material, primitives[i]);
@@ -121,4 +122,4 @@ std::vector<Round> frameRounds(std::span<const Material> materials,
     return rounds;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

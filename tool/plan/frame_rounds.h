@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The share of pixels that show a surface, and the share of effects' rays that hit one. Both are chosen:
 // outdoor scenes have less, rooms have 1. They scale the times of all strategies alike, except for the
@@ -41,8 +41,8 @@ struct FrameShape {
 
 // The features of a case's shader. A retired case has none, and no code.
 struct CaseFeatures {
-    FeatureMask always = 0;
-    FeatureMask sometimes = 0;
+    materials::FeatureMask always = 0;
+    materials::FeatureMask sometimes = 0;
     bool retired = false;
 };
 std::vector<CaseFeatures> caseFeatures(const Plan& plan);
@@ -55,17 +55,17 @@ struct CaseHits {
 // Returns the hits of the plan's primitives from index `first` on, as many as `primitives` has. They are
 // counted by the profile if options has hits; otherwise they are those that the primitives expect.
 std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
-                               std::span<const PrimitiveInputs> primitives, std::size_t first);
+                               std::span<const materials::PrimitiveInputs> primitives, std::size_t first);
 
 // Returns every case that is not retired, with its share of the hits and its estimated code. Shares are equal
 // if nothing is known. `cases` is indexed by shader ID.
 std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
-                                  const MaterialModel& model = builtinMaterialModel());
+                                  const materials::MaterialModel& model = materials::builtinMaterialModel());
 
 // Returns one round for each effect that sends rays, in the order of the effects, or one round for all.
 // `primitives` are those of one scene; their materials index `materials`.
-std::vector<Round> frameRounds(std::span<const Material> materials,
-                               std::span<const PrimitiveInputs> primitives,
+std::vector<Round> frameRounds(std::span<const materials::Material> materials,
+                               std::span<const materials::PrimitiveInputs> primitives,
                                const std::vector<RoundCase>& cases, const FrameShape& shape);
 
-}  // namespace glint
+}  // namespace glint::compiler

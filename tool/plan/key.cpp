@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -24,16 +24,17 @@ struct Presence {
 // one, except for the base models, which are always kept.
 class KeyMaker {
 public:
-    KeyMaker(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options)
+    KeyMaker(const materials::Material& material, const materials::PrimitiveInputs& primitive,
+             const materials::KeyOptions& options)
         : model_(material.model()),
           material_(material),
           primitive_(primitive),
           kept_(~model_.lobes | options.keptLobes | model_.baseModels()),
           facts_(material, primitive, options, key_) {}
 
-    FeatureMask make(Drops* dropped) {
+    materials::FeatureMask make(Drops* dropped) {
         for (const int index : model_.order) {
-            const Feature& feature = model_.features[static_cast<std::size_t>(index)];
+            const materials::Feature& feature = model_.features[static_cast<std::size_t>(index)];
             Presence presence = decide(feature);
             if (presence.present) {
                 key_ |= feature.mask() & kept_;
@@ -51,8 +52,8 @@ private:
 
     // A texture that is not there is not asked for. A lobe is present by its values, whether or not the file
     // gives its extension.
-    Presence decide(const Feature& feature) const {
-        const TextureInfo* const info =
+    Presence decide(const materials::Feature& feature) const {
+        const materials::TextureInfo* const info =
             feature.texture < 0 ? nullptr : &material_.textures[static_cast<std::size_t>(feature.texture)];
         if (info != nullptr && info->texture < 0) {
             return {};
@@ -69,18 +70,18 @@ private:
         return {false, !reports ? "" : excluded ? *excluded : neutral.value_or("")};
     }
 
-    bool isGiven(const Feature& feature) const {
+    bool isGiven(const materials::Feature& feature) const {
         if (feature.texture >= 0) {
             return true;
         }
         if (feature.given) {
-            return feature.given->holds(facts_) != Certainty::False;
+            return feature.given->holds(facts_) != materials::Certainty::False;
         }
         return feature.object >= 0 && material_.given[static_cast<std::size_t>(feature.object)] != 0;
     }
 
-    std::optional<std::string> findExclusion(const Feature& feature) const {
-        for (const Exclusion& exclusion : model_.exclusions) {
+    std::optional<std::string> findExclusion(const materials::Feature& feature) const {
+        for (const materials::Exclusion& exclusion : model_.exclusions) {
             if (has(exclusion.by) && (exclusion.excluded & feature.mask()) != 0) {
                 return exclusion.because;
             }
@@ -88,21 +89,22 @@ private:
         return std::nullopt;
     }
 
-    std::optional<std::string> findNeutral(const Feature& feature, const TextureInfo* info) const {
+    std::optional<std::string> findNeutral(const materials::Feature& feature,
+                                           const materials::TextureInfo* info) const {
         if (feature.lobe >= 0 && !has(feature.lobe)) {
             return fmt::format("the key has no {}",
                                model_.features[static_cast<std::size_t>(feature.lobe)].name);
         }
-        for (const NeutralReason& reason : feature.neutral) {
+        for (const materials::NeutralReason& reason : feature.neutral) {
             const bool counts = (reason.onlyWith < 0 || has(reason.onlyWith)) &&
                                 (reason.onlyWithout < 0 || !has(reason.onlyWithout));
-            if (counts && reason.when.holds(facts_) == Certainty::True) {
+            if (counts && reason.when.holds(facts_) == materials::Certainty::True) {
                 return reason.because;
             }
         }
         const auto index = static_cast<int>(&feature - model_.features.data());
         for (std::size_t i = 0; i < model_.attributes.size(); ++i) {
-            const VertexAttribute& attribute = model_.attributes[i];
+            const materials::VertexAttribute& attribute = model_.attributes[i];
             if (attribute.feature == index && !attribute.fallback && (primitive_.attributes >> i & 1U) == 0) {
                 return fmt::format("the primitive has no {}", attribute.gltf);
             }
@@ -122,25 +124,27 @@ private:
         return std::nullopt;
     }
 
-    const MaterialModel& model_;
-    const Material& material_;
-    const PrimitiveInputs& primitive_;
-    FeatureMask kept_;
-    FeatureMask key_ = 0;
-    MaterialFacts facts_;
+    const materials::MaterialModel& model_;
+    const materials::Material& material_;
+    const materials::PrimitiveInputs& primitive_;
+    materials::FeatureMask kept_;
+    materials::FeatureMask key_ = 0;
+    materials::MaterialFacts facts_;
 };
 
 }  // namespace
 
-FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
-                    Drops* dropped) {
+materials::FeatureMask makeKey(const materials::Material& material,
+                               const materials::PrimitiveInputs& primitive,
+                               const materials::KeyOptions& options, Drops* dropped) {
     // First drop what is neutral, and record the reasons. Then drop the lobes that hits leave out.
-    const MaterialModel& model = material.model();
-    const FeatureMask whole = KeyMaker(material, primitive, keepAllLobes(options)).make(dropped);
-    const bool keepsAll = (options.keptLobes & kLobeMask) == kLobeMask;
-    const FeatureMask kept = keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
+    const materials::MaterialModel& model = material.model();
+    const materials::FeatureMask whole = KeyMaker(material, primitive, keepAllLobes(options)).make(dropped);
+    const bool keepsAll = (options.keptLobes & materials::kLobeMask) == materials::kLobeMask;
+    const materials::FeatureMask kept =
+        keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
     if (dropped != nullptr) {
-        for (const Feature& feature : model.features) {
+        for (const materials::Feature& feature : model.features) {
             if ((whole & ~kept & feature.mask()) != 0) {
                 dropped->emplace_back(feature.name, feature.isLobe
                                                         ? "hits do not keep it (--hit-lobes)"
@@ -154,17 +158,24 @@ FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, 
     return kept;
 }
 
-KeyOptions keepAllLobes(KeyOptions options) {
-    options.keptLobes = kLobeMask;
+materials::KeyOptions keepAllLobes(materials::KeyOptions options) {
+    options.keptLobes = materials::kLobeMask;
     return options;
 }
 
-bool hasAlphaMasks(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives) {
-    return std::ranges::any_of(primitives, [&](const PrimitiveInputs& primitive) {
-        const Material& material = materials[static_cast<std::size_t>(primitive.material)];
-        return (makeKey(material, primitive, {.alpha = AlphaPolicy::Tested}) &
-                material.model().mask("alphaMask")) != 0;
-    });
+package::AlphaPolicy neededAlphaPolicy(std::span<const materials::Material> materials,
+                                       std::span<const materials::PrimitiveInputs> primitives) {
+    package::AlphaPolicy needed = package::AlphaPolicy::Opaque;
+    for (const materials::PrimitiveInputs& primitive : primitives) {
+        const materials::Material& material = materials[static_cast<std::size_t>(primitive.material)];
+        if ((makeKey(material, primitive, {.alpha = package::AlphaPolicy::Stochastic}) &
+             material.model().mask("alphaMask")) != 0) {
+            needed = std::max(needed, material.alphaMode == materials::AlphaMode::Blend
+                                          ? package::AlphaPolicy::Stochastic
+                                          : package::AlphaPolicy::Tested);
+        }
+    }
+    return needed;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

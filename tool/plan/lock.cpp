@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <set>
 
-namespace glint {
+namespace glint::compiler {
 
 LockUpdate updateLock(const LockedIds& locked, const Plan& plan, bool prune) {
     std::set<int> known;
@@ -31,4 +31,4 @@ LockUpdate updateLock(const LockedIds& locked, const Plan& plan, bool prune) {
     return update;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

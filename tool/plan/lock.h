@@ -6,10 +6,10 @@
 
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct MovedKey {
-    FeatureMask mask = 0;
+    materials::FeatureMask mask = 0;
     int from = 0;
     int to = 0;
     // Other cases have kept all IDs that this key's case had, so `to` is a new ID.
@@ -18,10 +18,10 @@ struct MovedKey {
 
 // The lists are in the order of masks.
 struct LockUpdate {
-    LockedIds ids;                   // the new content of the lock
-    std::vector<FeatureMask> added;  // keys that had no ID so far
-    std::vector<MovedKey> moved;     // keys whose ID has changed
-    std::vector<FeatureMask> stale;  // keys of the lock that the plan lacks
+    LockedIds ids;                              // the new content of the lock
+    std::vector<materials::FeatureMask> added;  // keys that had no ID so far
+    std::vector<MovedKey> moved;                // keys whose ID has changed
+    std::vector<materials::FeatureMask> stale;  // keys of the lock that the plan lacks
 
     // Returns whether the new content differs from the old one.
     bool changes(const LockedIds& locked) const {
@@ -33,4 +33,4 @@ struct LockUpdate {
 // they return, unless `prune` is set.
 LockUpdate updateLock(const LockedIds& locked, const Plan& plan, bool prune);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <set>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::vector<int> assignShaderIds(std::span<const WeightedKey> keys, std::span<co
     return ids;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The shader ID of each key, as a lock file keeps it. Keys with the same ID shared a case.
-using LockedIds = std::map<FeatureMask, int>;
+using LockedIds = std::map<materials::FeatureMask, int>;
 
 // Every ID up to the highest in use has a bucket and a row in tables. This limit keeps a wrong number in a
 // file from allocating gigabytes for them.
@@ -25,4 +25,4 @@ inline constexpr int kMaxLockedId = 65535;
 std::vector<int> assignShaderIds(std::span<const WeightedKey> keys, std::span<const CaseKeys> cases,
                                  const LockedIds& locked);
 
-}  // namespace glint
+}  // namespace glint::compiler

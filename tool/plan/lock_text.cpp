@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -54,7 +54,7 @@ std::optional<int> parseNumber(std::string_view word, int max) {
 
 class Parser {
 public:
-    explicit Parser(const MaterialModel& model) : model_(model) {}
+    explicit Parser(const materials::MaterialModel& model) : model_(model) {}
 
     std::variant<LockText, LockTextError> parse(std::string_view text) {
         constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -117,7 +117,7 @@ private:
                  "a line is a shader ID and the names of features");
             return;
         }
-        const FeatureMask mask = parseFeatures(rest);
+        const materials::FeatureMask mask = parseFeatures(rest);
         if (error_) {
             return;
         }
@@ -129,8 +129,8 @@ private:
         }
     }
 
-    FeatureMask parseFeatures(std::string_view rest) {
-        FeatureMask mask = 0;
+    materials::FeatureMask parseFeatures(std::string_view rest) {
+        materials::FeatureMask mask = 0;
         std::string_view word = takeWord(rest);
         if (word.empty()) {
             fail("has a shader ID and no features",
@@ -156,7 +156,7 @@ private:
         return mask;
     }
 
-    const MaterialModel& model_;
+    const materials::MaterialModel& model_;
     LockText lock_;
     std::optional<LockTextError> error_;
     int line_ = 0;
@@ -165,11 +165,12 @@ private:
 
 }  // namespace
 
-std::variant<LockText, LockTextError> parseLock(std::string_view text, const MaterialModel& model) {
+std::variant<LockText, LockTextError> parseLock(std::string_view text,
+                                                const materials::MaterialModel& model) {
     return Parser(model).parse(text);
 }
 
-std::string formatLock(const LockedIds& ids, const MaterialModel& model) {
+std::string formatLock(const LockedIds& ids, const materials::MaterialModel& model) {
     std::vector<std::pair<std::string, int>> lines;
     lines.reserve(ids.size());
     for (const auto& [mask, id] : ids) {
@@ -183,9 +184,9 @@ std::string formatLock(const LockedIds& ids, const MaterialModel& model) {
     return text;
 }
 
-std::string lockKeyName(FeatureMask mask, const MaterialModel& model) {
+std::string lockKeyName(materials::FeatureMask mask, const materials::MaterialModel& model) {
     const std::vector<std::string_view> names = model.names(mask);
     return names.empty() ? std::string(kNoFeatures) : fmt::format("{}", fmt::join(names, " "));
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -18,7 +18,7 @@
 #include <variant>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct LockTextError {
     int line = 0;  // from 1
@@ -30,7 +30,7 @@ struct LockTextError {
 // A key to which two lines give different IDs; the lower ID counts.
 struct RepeatedLockKey {
     int line = 0;  // the later of the two lines
-    FeatureMask mask = 0;
+    materials::FeatureMask mask = 0;
     int kept = 0;
     int ignored = 0;
 };
@@ -40,13 +40,15 @@ struct LockText {
     std::vector<RepeatedLockKey> repeated;
 };
 
-std::variant<LockText, LockTextError> parseLock(std::string_view text,
-                                                const MaterialModel& model = builtinMaterialModel());
+std::variant<LockText, LockTextError> parseLock(
+    std::string_view text, const materials::MaterialModel& model = materials::builtinMaterialModel());
 
 // Formats a lock file. parseLock() gives the same IDs back, and the same IDs always give the same text.
-std::string formatLock(const LockedIds& ids, const MaterialModel& model = builtinMaterialModel());
+std::string formatLock(const LockedIds& ids,
+                       const materials::MaterialModel& model = materials::builtinMaterialModel());
 
 // Returns a key as the file has it: "baseColorTexture texCoord0", or "-".
-std::string lockKeyName(FeatureMask mask, const MaterialModel& model = builtinMaterialModel());
+std::string lockKeyName(materials::FeatureMask mask,
+                        const materials::MaterialModel& model = materials::builtinMaterialModel());
 
-}  // namespace glint
+}  // namespace glint::compiler

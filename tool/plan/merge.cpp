@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -24,8 +24,9 @@ std::vector<int> byShare(Keys keys) {
 }
 
 // Groups the keys whose masks agree in the bits of `distinguishes`.
-std::vector<Cluster> groupBy(Keys keys, const std::vector<int>& indices, FeatureMask distinguishes) {
-    std::map<FeatureMask, Cluster> groups;
+std::vector<Cluster> groupBy(Keys keys, const std::vector<int>& indices,
+                             materials::FeatureMask distinguishes) {
+    std::map<materials::FeatureMask, Cluster> groups;
     for (const int key : indices) {
         groups[keys[static_cast<std::size_t>(key)].mask & distinguishes].keys.push_back(key);
     }
@@ -43,7 +44,7 @@ void append(std::vector<CaseKeys>& cases, std::vector<Cluster> clusters, CaseRea
     }
 }
 
-std::vector<CaseKeys> mergeByMask(Keys keys, FeatureMask distinguishes, CaseReason reason) {
+std::vector<CaseKeys> mergeByMask(Keys keys, materials::FeatureMask distinguishes, CaseReason reason) {
     std::vector<CaseKeys> cases;
     append(cases, groupBy(keys, byShare(keys), distinguishes), reason);
     return cases;
@@ -86,11 +87,12 @@ std::vector<Cluster> startApart(Keys keys, std::vector<int> order) {
 std::vector<Cluster> cheapestClusters(Keys keys, int maxCases) {
     const std::vector<int> order = byShare(keys);
     std::vector<std::vector<Cluster>> candidates;
-    for (std::vector<Cluster>& start : std::array{startApart(keys, order), groupBy(keys, order, kLobeMask)}) {
+    for (std::vector<Cluster>& start :
+         std::array{startApart(keys, order), groupBy(keys, order, materials::kLobeMask)}) {
         candidates.push_back(moveKeys(agglomerate(std::move(start), keys, maxCases), keys, maxCases));
     }
     if (keys.size() <= static_cast<std::size_t>(maxCases)) {
-        candidates.push_back(groupBy(keys, order, ~FeatureMask{0}));
+        candidates.push_back(groupBy(keys, order, ~materials::FeatureMask{0}));
     }
     candidates.push_back(groupBy(keys, order, 0));
     const auto cost = [&](const std::vector<Cluster>& clusters) { return totalCost(clusters, keys); };
@@ -149,7 +151,7 @@ std::vector<CaseKeys> mergeByHits(Keys keys, int maxCases) {
     }
     if (!cold.empty()) {
         const std::size_t left = budget - hot - (unhit.empty() ? 0 : 1);
-        append(cases, agglomerate(groupBy(keys, cold, kLobeMask), keys, static_cast<int>(left)),
+        append(cases, agglomerate(groupBy(keys, cold, materials::kLobeMask), keys, static_cast<int>(left)),
                CaseReason::Cold);
     }
     if (!unhit.empty()) {
@@ -161,9 +163,9 @@ std::vector<CaseKeys> mergeByHits(Keys keys, int maxCases) {
 std::vector<CaseKeys> mergeBy(Keys keys, MergePolicy merge, int maxCases) {
     switch (merge) {
         case MergePolicy::None:
-            return mergeByMask(keys, ~FeatureMask{0}, CaseReason::Own);
+            return mergeByMask(keys, ~materials::FeatureMask{0}, CaseReason::Own);
         case MergePolicy::Family:
-            return mergeByMask(keys, kLobeMask, CaseReason::Family);
+            return mergeByMask(keys, materials::kLobeMask, CaseReason::Family);
         case MergePolicy::All:
             return mergeByMask(keys, 0, CaseReason::All);
         case MergePolicy::Auto:
@@ -212,4 +214,4 @@ std::string_view explain(CaseReason reason) {
     return kSentences[static_cast<std::size_t>(reason)];
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

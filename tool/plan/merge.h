@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 enum class MergePolicy : std::uint8_t {
     None,     // each key has its own case
@@ -72,4 +72,7 @@ std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy m
 std::string_view toString(CaseReason reason);  // one word: "cold"
 std::string_view explain(CaseReason reason);   // a sentence without a full stop
 
-}  // namespace glint
+// Found by their arguments from other namespaces.
+using glint::nameOf;
+
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -22,18 +22,20 @@ void appendUnique(std::vector<int>& sorted, const std::vector<int>& more) {
 }
 
 // Gives each primitive its key. The keys are in ascending order of their masks.
-void collectKeys(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
-                 const KeyOptions& options, Plan& plan, DroppedMap& droppedBy) {
-    std::map<FeatureMask, Key> byMask;
-    std::vector<FeatureMask> masks;
+void collectKeys(std::span<const materials::Material> materials,
+                 std::span<const materials::PrimitiveInputs> primitives, const materials::KeyOptions& options,
+                 Plan& plan, DroppedMap& droppedBy) {
+    std::map<materials::FeatureMask, Key> byMask;
+    std::vector<materials::FeatureMask> masks;
     masks.reserve(primitives.size());
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const int materialIndex = primitives[i].material;
         assert(materialIndex >= 0 && static_cast<std::size_t>(materialIndex) < materials.size());
         std::vector<std::pair<std::string, std::string>> dropped;
-        const FeatureMask mask = makeKey(materials[materialIndex], primitives[i], options, &dropped);
+        const materials::FeatureMask mask =
+            makeKey(materials[materialIndex], primitives[i], options, &dropped);
         masks.push_back(mask);
-        const bool keepsAll = (options.keptLobes & kLobeMask) == kLobeMask;
+        const bool keepsAll = (options.keptLobes & materials::kLobeMask) == materials::kLobeMask;
         plan.primaryMaskOfPrimitive.push_back(
             keepsAll ? mask : makeKey(materials[materialIndex], primitives[i], keepAllLobes(options)));
         Key& key = byMask[mask];
@@ -46,26 +48,26 @@ void collectKeys(std::span<const Material> materials, std::span<const PrimitiveI
             droppedBy[std::move(entry)].insert(materialIndex);
         }
     }
-    std::map<FeatureMask, int> indexOf;
+    std::map<materials::FeatureMask, int> indexOf;
     for (auto& [mask, key] : byMask) {
         std::ranges::sort(key.materials);
         indexOf[mask] = static_cast<int>(plan.keys.size());
         plan.keys.push_back(std::move(key));
     }
-    for (const FeatureMask mask : masks) {
+    for (const materials::FeatureMask mask : masks) {
         plan.keyOfPrimitive.push_back(indexOf[mask]);
     }
 }
 
 struct FeatureSpread {
-    FeatureMask always = 0;     // features that all masks have
-    FeatureMask sometimes = 0;  // features that only some masks have
+    materials::FeatureMask always = 0;     // features that all masks have
+    materials::FeatureMask sometimes = 0;  // features that only some masks have
 };
 
-FeatureSpread spreadOf(const std::vector<FeatureMask>& masks) {
-    FeatureMask any = 0;
-    FeatureMask every = masks.empty() ? 0 : ~FeatureMask{0};
-    for (const FeatureMask mask : masks) {
+FeatureSpread spreadOf(const std::vector<materials::FeatureMask>& masks) {
+    materials::FeatureMask any = 0;
+    materials::FeatureMask every = masks.empty() ? 0 : ~materials::FeatureMask{0};
+    for (const materials::FeatureMask mask : masks) {
         any |= mask;
         every &= mask;
     }
@@ -86,7 +88,7 @@ bool normalizeShares(std::vector<Key>& keys) {
     return isPositive;
 }
 
-void shareHits(std::span<const PrimitiveInputs> primitives, const PlanOptions& options,
+void shareHits(std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options,
                std::vector<Key>& keys) {
     const bool counted = countsHits(options);
     for (Key& key : keys) {
@@ -107,14 +109,14 @@ void shareHits(std::span<const PrimitiveInputs> primitives, const PlanOptions& o
 
 // Names a case by its features, as an identifier: "Pbr_BaseTex_Normals"; "PbrFamily" if its keys differ in
 // inputs only; "PbrMixed" if they differ in lobes.
-std::string nameCase(const MaterialModel& model, const Case& shaderCase, bool hasAllKeys) {
+std::string nameCase(const materials::MaterialModel& model, const Case& shaderCase, bool hasAllKeys) {
     const bool merged = shaderCase.sometimes != 0;
     if (merged && hasAllKeys) {
         return "AllMaterials";
     }
     std::string lobes;
     std::string inputs;
-    for (const Feature& feature : model.features) {
+    for (const materials::Feature& feature : model.features) {
         if ((shaderCase.always & feature.mask()) == 0) {
             continue;
         }
@@ -125,7 +127,7 @@ std::string nameCase(const MaterialModel& model, const Case& shaderCase, bool ha
         }
     }
     const std::string base = lobes.empty() ? "Pbr" : lobes;
-    const bool mixed = (shaderCase.sometimes & kLobeMask) != 0;
+    const bool mixed = (shaderCase.sometimes & materials::kLobeMask) != 0;
     return !merged ? base + inputs : base + (mixed ? "Mixed" : "Family");
 }
 
@@ -134,7 +136,7 @@ Case makeCase(int shaderId, CaseKeys merged, std::vector<Key>& keys) {
     Case shaderCase;
     shaderCase.shaderId = shaderId;
     shaderCase.reason = merged.reason;
-    std::vector<FeatureMask> masks;
+    std::vector<materials::FeatureMask> masks;
     for (const int index : merged.keys) {
         Key& key = keys[static_cast<std::size_t>(index)];
         key.shaderId = shaderId;
@@ -189,8 +191,8 @@ bool countsHits(const PlanOptions& options) {
            (options.merge == MergePolicy::Auto && !options.hits.empty());
 }
 
-Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
-              const PlanOptions& options) {
+Plan makePlan(std::span<const materials::Material> materials,
+              std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options) {
     Plan plan;
     if (!materials.empty()) {
         plan.model = &materials.front().model();
@@ -200,7 +202,7 @@ Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInpu
     shareHits(primitives, options, plan.keys);
     makeCases(options, plan);
 
-    std::vector<FeatureMask> hitMasks;
+    std::vector<materials::FeatureMask> hitMasks;
     for (const Key& key : plan.keys) {
         hitMasks.push_back(key.mask);
     }
@@ -232,9 +234,9 @@ std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& o
     if (maxShaders <= 0 || caseCount(plan) <= static_cast<std::size_t>(maxShaders)) {
         return std::nullopt;
     }
-    std::set<FeatureMask> families;
+    std::set<materials::FeatureMask> families;
     for (const Key& key : plan.keys) {
-        families.insert(key.mask & kLobeMask);
+        families.insert(key.mask & materials::kLobeMask);
     }
     std::string advice = "raise --max-shaders";
     if (options.merge == MergePolicy::None && families.size() <= static_cast<std::size_t>(maxShaders)) {
@@ -248,4 +250,4 @@ std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& o
                        plan.keys.size(), maxShaders, advice);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -13,17 +13,17 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct PlanOptions {
-    KeyOptions keys;
+    materials::KeyOptions keys;
     MergePolicy merge = MergePolicy::Family;
     // Auto and Profile make no more cases than this. The other policies may exceed it, and describeExcess()
     // then says so. 0 means no limit, but kDefaultMaxCases for Auto and Profile.
     int maxShaders = 0;
     // Counted hits by key. Profile needs them, and Auto uses them if there are any. A key that is not in the
     // map was never hit.
-    std::map<FeatureMask, std::uint64_t> hits{};
+    std::map<materials::FeatureMask, std::uint64_t> hits{};
     // Shader IDs that keys had in earlier builds; their cases keep them.
     LockedIds lockedIds{};
 };
@@ -37,7 +37,7 @@ struct DroppedFeature {
 
 // A set of features that shading the hits of some primitives needs.
 struct Key {
-    FeatureMask mask = 0;
+    materials::FeatureMask mask = 0;
     std::vector<int> materials;   // ascending
     std::vector<int> primitives;  // indices into the plan's primitives, ascending
     int shaderId = 0;
@@ -48,8 +48,8 @@ struct Key {
 struct Case {
     int shaderId = 0;  // equal to its place in Plan::cases
     std::string name;  // C++ identifier, unique in the plan
-    FeatureMask always = 0;
-    FeatureMask sometimes = 0;
+    materials::FeatureMask always = 0;
+    materials::FeatureMask sometimes = 0;
     std::vector<int> keys;       // ascending
     std::vector<int> materials;  // ascending
     double share = 0.0;          // of all hits: the sum over its keys
@@ -65,39 +65,42 @@ struct Case {
 // The keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes): the key of
 // a primitive's hits is part of its primary mask, and equals it if hits keep all lobes.
 struct Plan {
-    const MaterialModel* model = &builtinMaterialModel();  // of all materials
-    std::vector<Key> keys;                                 // ascending by mask
-    std::vector<Case> cases;                               // by shader ID
-    std::vector<int> keyOfPrimitive;                       // by primitive
-    std::vector<FeatureMask> primaryMaskOfPrimitive;
+    const materials::MaterialModel* model = &materials::builtinMaterialModel();  // of all materials
+    std::vector<Key> keys;                                                       // ascending by mask
+    std::vector<Case> cases;                                                     // by shader ID
+    std::vector<int> keyOfPrimitive;                                             // by primitive
+    std::vector<materials::FeatureMask> primaryMaskOfPrimitive;
     std::vector<DroppedFeature> dropped;
-    FeatureMask always = 0;     // features that all keys have
-    FeatureMask sometimes = 0;  // features that only some keys have
-    FeatureMask primaryAlways = 0;
-    FeatureMask primarySometimes = 0;
+    materials::FeatureMask always = 0;     // features that all keys have
+    materials::FeatureMask sometimes = 0;  // features that only some keys have
+    materials::FeatureMask primaryAlways = 0;
+    materials::FeatureMask primarySometimes = 0;
     double keysPossible = 0.0;  // 2^n, where n is the number of features that occur in keys
     EffectPlan effects;         // The compiler fills this in.
 };
 
 // Returns the canonical key of one primitive. If `dropped` is not null, (feature name, reason) pairs are
 // added to it.
-FeatureMask makeKey(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,
-                    std::vector<std::pair<std::string, std::string>>* dropped = nullptr);
+materials::FeatureMask makeKey(const materials::Material& material,
+                               const materials::PrimitiveInputs& primitive,
+                               const materials::KeyOptions& options,
+                               std::vector<std::pair<std::string, std::string>>* dropped = nullptr);
 
 // Returns the same options, but with all lobes, as primary surfaces need them.
-KeyOptions keepAllLobes(KeyOptions options);
+materials::KeyOptions keepAllLobes(materials::KeyOptions options);
 
-// Returns whether rays can meet a surface that an alpha mask makes invisible in places. Requires every
-// PrimitiveInputs::material to index `materials`.
-bool hasAlphaMasks(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives);
+// Returns the policy under which rays see the alpha of every surface, which is Opaque if all are. Requires
+// every PrimitiveInputs::material to index `materials`.
+package::AlphaPolicy neededAlphaPolicy(std::span<const materials::Material> materials,
+                                       std::span<const materials::PrimitiveInputs> primitives);
 
 // Returns whether the shares of hits are counted rather than expected from the primitives.
 bool countsHits(const PlanOptions& options);
 
 // Clusters the keys of `primitives` into cases. Requires every PrimitiveInputs::material to index
 // `materials`, and one model for all of these.
-Plan makePlan(std::span<const Material> materials, std::span<const PrimitiveInputs> primitives,
-              const PlanOptions& options);
+Plan makePlan(std::span<const materials::Material> materials,
+              std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options);
 
 // Returns the largest number of cases that a plan may have; 0 means no limit.
 int budgetOf(const PlanOptions& options);
@@ -108,4 +111,4 @@ std::size_t caseCount(const Plan& plan);
 // Returns a message for the user if the plan has more cases than options.maxShaders.
 std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& options);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -12,7 +12,7 @@ using Keys = std::span<const WeightedKey>;
 
 std::vector<BranchCost> branchesOf(const KeySet& set) {
     std::vector<BranchCost> branches;
-    for (const Feature& feature : set.model->features) {
+    for (const materials::Feature& feature : set.model->features) {
         if ((set.any & ~set.always & feature.mask()) != 0) {
             const double with = set.shareWith[static_cast<std::size_t>(feature.bit)];
             branches.push_back(
@@ -110,4 +110,4 @@ double totalCost(double inVain, std::size_t cases) {
     return inVain + kCaseCost * static_cast<double>(cases);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

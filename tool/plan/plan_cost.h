@@ -10,12 +10,12 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // A feature that a case branches on.
 struct BranchCost {
-    const Feature* feature = nullptr;  // of the plan's model
-    double share = 0.0;                // share of the case's hits that have it; 0 if nothing hits the case
+    const materials::Feature* feature = nullptr;  // of the plan's model
+    double share = 0.0;  // share of the case's hits that have it; 0 if nothing hits the case
     double cost = 0.0;
 };
 
@@ -63,4 +63,4 @@ PlanCost costPlan(const Plan& plan, const PlanOptions& options);
 // Returns the total cost: the surplus, plus kCaseCost for each case.
 double totalCost(double inVain, std::size_t cases);
 
-}  // namespace glint
+}  // namespace glint::compiler

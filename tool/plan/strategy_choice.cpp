@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -164,4 +164,4 @@ std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, cons
     return choice;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

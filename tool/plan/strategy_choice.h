@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The time that a strategy is expected to take for all rounds of a frame, in milliseconds.
 struct StrategyEstimate {
@@ -63,4 +63,4 @@ struct StrategyAdvice {
     double pixels = 0.0;  // pixels of the assumed frame
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

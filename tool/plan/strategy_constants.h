@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-namespace glint::fitted {
+namespace glint::compiler::fitted {
 
 struct StrategyConstants {
     std::string_view strategy;
@@ -66,4 +66,4 @@ inline constexpr DeviceRow kDevices[] = {
      kCpu},
 };
 
-}  // namespace glint::fitted
+}  // namespace glint::compiler::fitted

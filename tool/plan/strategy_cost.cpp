@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -117,4 +117,4 @@ double estimatedMs(const Round& round, const StrategyCosts& costs, double subgro
     return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -47,7 +47,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 enum class CostTerm : std::uint8_t {
     Launches,
@@ -139,4 +139,4 @@ TermValues estimate(const Round& round, const StrategyCosts& costs, double subgr
 // Returns the sum of all terms, in milliseconds.
 double estimatedMs(const Round& round, const StrategyCosts& costs, double subgroupSize);
 
-}  // namespace glint
+}  // namespace glint::compiler

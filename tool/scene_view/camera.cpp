@@ -17,26 +17,26 @@ namespace glint::scene_view {
 namespace {
 
 // Returns nothing if the length is 0 or not finite.
-std::optional<Double3> normalized(const Double3& a) {
-    const double metres = length(a);
+std::optional<base::Double3> normalized(const base::Double3& a) {
+    const double metres = base::length(a);
     if (!(metres > 0.0) || !std::isfinite(metres)) {
         return std::nullopt;
     }
-    return scaled(a, 1.0 / metres);
+    return base::scaled(a, 1.0 / metres);
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Bounds kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
-void extend(Bounds& bounds, const Double3& point) {
+void extend(Bounds& bounds, const base::Double3& point) {
     for (std::size_t i = 0; i < 3; ++i) {
         bounds.min[i] = std::min(bounds.min[i], point[i]);
         bounds.max[i] = std::max(bounds.max[i], point[i]);
     }
 }
 
-Double3 corner(const Bounds& bounds, unsigned number) {
-    Double3 point{};
+base::Double3 corner(const Bounds& bounds, unsigned number) {
+    base::Double3 point{};
     for (std::size_t i = 0; i < 3; ++i) {
         point[i] = ((number >> i) & 1U) != 0 ? bounds.max[i] : bounds.min[i];
     }
@@ -48,8 +48,8 @@ std::vector<Bounds> meshBounds(const SceneViewData& scene) {
     std::vector<Bounds> bounds;
     for (const PrimitiveView& primitive : scene.primitives) {
         bounds.resize(std::max<std::size_t>(bounds.size(), primitive.mesh + std::size_t{1}), kNothing);
-        for (const Float3& position : primitive.positions) {
-            extend(bounds[primitive.mesh], toDouble3(position));
+        for (const gltf::Float3& position : primitive.positions) {
+            extend(bounds[primitive.mesh], base::toDouble3(position));
         }
     }
     return bounds;
@@ -58,13 +58,13 @@ std::vector<Bounds> meshBounds(const SceneViewData& scene) {
 Bounds transformedBox(const Bounds& box, const std::array<float, 12>& rows) {
     Bounds bounds = kNothing;
     for (unsigned number = 0; number < 8; ++number) {
-        extend(bounds, transformed(rows, corner(box, number)));
+        extend(bounds, base::transformed(rows, corner(box, number)));
     }
     return bounds;
 }
 
 bool isFiniteBox(const Bounds& bounds) {
-    return isFinite(bounds.min) && isFinite(bounds.max);
+    return base::isFinite(bounds.min) && base::isFinite(bounds.max);
 }
 
 // Returns a box that has some extent, whatever the scene contains.
@@ -73,13 +73,13 @@ Bounds withExtent(const Bounds& bounds) {
     if (box.min != box.max) {
         return box;
     }
-    return {sum(box.min, {-0.5, -0.5, -0.5}), sum(box.min, {0.5, 0.5, 0.5})};
+    return {base::sum(box.min, {-0.5, -0.5, -0.5}), base::sum(box.min, {0.5, 0.5, 0.5})};
 }
 
 // Returns the direction to the viewer of a box with this extent: in front, on +Z (glTF 2.0, section 3.4), a
 // little above and to the right. A flat object, such as a board or a floor, shows its face. An object is flat
 // if it is thinner than kFlat times its next larger extent.
-Double3 directionToViewer(const Double3& extent) {
+base::Double3 directionToViewer(const base::Double3& extent) {
     constexpr double kFlat = 0.25;
     const auto thin = [&](std::size_t axis) {
         return extent[axis] < kFlat * std::min(extent[(axis + 1) % 3], extent[(axis + 2) % 3]);
@@ -103,25 +103,25 @@ struct Fit {
     double distance;  // along backward
 };
 
-Fit fit(const Bounds& box, const Double3& axis, const Double3& backward, double slope) {
-    const Double3 centre = scaled(sum(box.min, box.max), 0.5);
+Fit fit(const Bounds& box, const base::Double3& axis, const base::Double3& backward, double slope) {
+    const base::Double3 centre = base::scaled(base::sum(box.min, box.max), 0.5);
     double low = -kInfinity;
     double high = -kInfinity;
     for (unsigned number = 0; number < 8; ++number) {
-        const Double3 point = difference(corner(box, number), centre);
+        const base::Double3 point = base::difference(corner(box, number), centre);
         // A point is inside if |point·axis - offset| <= slope (distance - point·backward).
-        low = std::max(low, slope * dot(point, backward) - dot(point, axis));
-        high = std::max(high, slope * dot(point, backward) + dot(point, axis));
+        low = std::max(low, slope * base::dot(point, backward) - base::dot(point, axis));
+        high = std::max(high, slope * base::dot(point, backward) + base::dot(point, axis));
     }
     return {0.5 * (high - low), 0.5 * (high + low) / slope};
 }
 
-std::string cameraName(const Scene& scene, std::size_t index) {
+std::string cameraName(const gltf::Scene& scene, std::size_t index) {
     const std::string& name = scene.cameras[index].name;
     return name.empty() ? std::to_string(index) : name;
 }
 
-std::optional<std::size_t> findCamera(const Scene& scene, const std::string& wanted) {
+std::optional<std::size_t> findCamera(const gltf::Scene& scene, const std::string& wanted) {
     std::size_t number = 0;
     const char* end = wanted.data() + wanted.size();
     const auto parsed = std::from_chars(wanted.data(), end, number);
@@ -129,22 +129,22 @@ std::optional<std::size_t> findCamera(const Scene& scene, const std::string& wan
         return number;
     }
     const auto found = std::find_if(scene.cameras.begin(), scene.cameras.end(),
-                                    [&](const Camera& camera) { return camera.name == wanted; });
+                                    [&](const gltf::Camera& camera) { return camera.name == wanted; });
     if (found == scene.cameras.end()) {
         return std::nullopt;
     }
     return static_cast<std::size_t>(found - scene.cameras.begin());
 }
 
-Diagnostic unknownCamera(const Scene& scene, const std::string& wanted) {
+Diagnostic unknownCamera(const gltf::Scene& scene, const std::string& wanted) {
     std::vector<std::string> names;
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
         names.push_back(cameraName(scene, i));
     }
-    const std::string known = names.empty() ? " (it has none)" : enumeration(names);
+    const std::string known = names.empty() ? " (it has none)" : base::enumeration(names);
     names.emplace_back("auto");
     return makeError("camera-unknown", scene.path,
-                     "has no camera \"" + wanted + "\"" + known + suggestion(wanted, names),
+                     "has no camera \"" + wanted + "\"" + known + base::suggestion(wanted, names),
                      "use --camera auto, a name, or a number from 0");
 }
 
@@ -182,26 +182,26 @@ Bounds united(const Bounds& a, const Bounds& b) {
     return both;
 }
 
-Bounds posedBounds(const Scene& scene, const SceneViewData& view) {
+Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view) {
     SceneViewData rigid;
     rigid.primitives = view.primitives;
     Bounds bounds = kNothing;
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
         const InstanceView& instance = view.instances[i];
-        const Node& node = scene.nodes[view.sources[i].node];
+        const gltf::Node& node = scene.nodes[view.sources[i].node];
         if (!instance.visible) {
             continue;
         }
-        if (!isDeformed(scene, node)) {
+        if (!compiler::isDeformed(scene, node)) {
             rigid.instances.push_back(instance);
             continue;
         }
-        const std::vector<Matrix4> joints =
-            instance.joints.empty() ? std::vector<Matrix4>()
+        const std::vector<gltf::Matrix4> joints =
+            instance.joints.empty() ? std::vector<gltf::Matrix4>()
                                     : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
         Bounds own = kNothing;
-        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            for (const Double3& point : deformedPositions(primitive, node.weights, joints)) {
+        for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+            for (const base::Double3& point : deformedPositions(primitive, node.weights, joints)) {
                 extend(own, point);
             }
         }
@@ -217,27 +217,28 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
     constexpr double kHalfHeight = 0.26794919243112270;  // tan(30° / 2)
     constexpr double kMargin = 1.05;
     const Bounds box = withExtent(bounds);
-    const Double3 centre = scaled(sum(box.min, box.max), 0.5);
-    const Double3 extent = difference(box.max, box.min);
-    const Double3 backward = directionToViewer(extent);
-    const Double3 right = *normalized(cross({0.0, 1.0, 0.0}, backward));
-    const Double3 up = cross(backward, right);
+    const base::Double3 centre = base::scaled(base::sum(box.min, box.max), 0.5);
+    const base::Double3 extent = base::difference(box.max, box.min);
+    const base::Double3 backward = directionToViewer(extent);
+    const base::Double3 right = *normalized(base::cross({0.0, 1.0, 0.0}, backward));
+    const base::Double3 up = base::cross(backward, right);
 
     const Fit across = fit(box, right, backward, kHalfHeight * aspect / kMargin);
     const Fit upright = fit(box, up, backward, kHalfHeight / kMargin);
     double nearest = -kInfinity;
     for (unsigned number = 0; number < 8; ++number) {
-        nearest = std::max(nearest, dot(difference(corner(box, number), centre), backward));
+        nearest = std::max(nearest, base::dot(base::difference(corner(box, number), centre), backward));
     }
     // Seen from the viewer, a box may be no more than a line. It is then viewed from a hundredth of its size.
-    const double clearance = 0.01 * length(extent);
+    const double clearance = 0.01 * base::length(extent);
     const double distance = std::max({across.distance, upright.distance, nearest + clearance});
 
     CameraView view;
-    view.position = toFloat3(sum(sum(centre, scaled(backward, distance)),
-                                 sum(scaled(right, across.offset), scaled(up, upright.offset))));
-    view.forward = toFloat3(scaled(backward, -1.0));
-    view.up = toFloat3(up);
+    view.position = base::toFloat3(
+        base::sum(base::sum(centre, base::scaled(backward, distance)),
+                  base::sum(base::scaled(right, across.offset), base::scaled(up, upright.offset))));
+    view.forward = base::toFloat3(base::scaled(backward, -1.0));
+    view.up = base::toFloat3(up);
     view.halfHeight = static_cast<float>(kHalfHeight);
     view.halfWidth = static_cast<float>(kHalfHeight * aspect);
     // Nothing is nearer than the box. The plane keeps off the box's face, which may be seen head-on.
@@ -245,22 +246,23 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
     return view;
 }
 
-Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double aspect) {
-    const Camera& camera = scene.cameras[index];
-    const Matrix4& m = camera.world;
-    const std::optional<Double3> forward = normalized({-m[8], -m[9], -m[10]});
-    const Double3 upward{m[4], m[5], m[6]};
-    const std::optional<Double3> up =
-        forward ? normalized(sum(upward, scaled(*forward, -dot(upward, *forward)))) : std::nullopt;
+Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, double aspect) {
+    const gltf::Camera& camera = scene.cameras[index];
+    const gltf::Matrix4& m = camera.world;
+    const std::optional<base::Double3> forward = normalized({-m[8], -m[9], -m[10]});
+    const base::Double3 upward{m[4], m[5], m[6]};
+    const std::optional<base::Double3> up =
+        forward ? normalized(base::sum(upward, base::scaled(*forward, -base::dot(upward, *forward))))
+                : std::nullopt;
     if (!up) {
         return makeError("camera-matrix", scene.path,
                          "the node of camera " + cameraName(scene, index) + " has a scale of 0",
                          "give it another scale, or use --camera auto");
     }
     CameraView view;
-    view.position = toFloat3({m[12], m[13], m[14]});
-    view.forward = toFloat3(*forward);
-    view.up = toFloat3(*up);
+    view.position = base::toFloat3({m[12], m[13], m[14]});
+    view.forward = base::toFloat3(*forward);
+    view.up = base::toFloat3(*up);
     view.orthographic = camera.orthographic;
     const double halfHeight = camera.orthographic ? camera.ymag : std::tan(0.5 * camera.yfov);
     view.halfHeight = static_cast<float>(halfHeight);
@@ -270,18 +272,18 @@ Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double asp
     return view;
 }
 
-bool framesEverything(const Scene& scene, const std::string& wanted) {
+bool framesEverything(const gltf::Scene& scene, const std::string& wanted) {
     return wanted == "auto" || (wanted.empty() && scene.cameras.empty());
 }
 
-Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
-                                  double aspect) {
+Result<CameraChoice> chooseCamera(const gltf::Scene& scene, const SceneViewData& view,
+                                  const std::string& wanted, double aspect) {
     const bool everything = framesEverything(scene, wanted);
     return chooseCameraAround(scene, everything ? posedBounds(scene, view) : Bounds{}, wanted, aspect);
 }
 
-Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
-                                        double aspect) {
+Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& framed,
+                                        const std::string& wanted, double aspect) {
     if (framesEverything(scene, wanted)) {
         return CameraChoice{framingCamera(framed, aspect), "auto"};
     }

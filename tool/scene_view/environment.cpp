@@ -37,7 +37,7 @@ std::vector<Diagnostic> describe(const std::string& file, const LinearImage& ima
 
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
                                                      std::vector<Diagnostic>& notes) {
-    const Result<LinearImage> image = readRadiance(file);
+    const Result<LinearImage> image = image::readRadiance(file);
     if (!image) {
         return image.error();
     }

@@ -30,16 +30,16 @@ Segment findSegment(const std::vector<float>& times, double time) {
 // The three parts of a keyframe of CubicSpline.
 enum Part : std::size_t { kInTangent = 0, kValue = 1, kOutTangent = 2 };
 
-double valueAt(const AnimationSampler& sampler, std::size_t keyframe, std::size_t number,
+double valueAt(const gltf::AnimationSampler& sampler, std::size_t keyframe, std::size_t number,
                Part part = kValue) {
-    if (sampler.interpolation == Interpolation::CubicSpline) {
+    if (sampler.interpolation == gltf::Interpolation::CubicSpline) {
         return sampler.values[(3 * keyframe + part) * sampler.width + number];
     }
     return sampler.values[keyframe * sampler.width + number];
 }
 
 // The formula is in glTF 2.0, appendix C.5.
-double cubic(const AnimationSampler& sampler, const Segment& at, std::size_t number) {
+double cubic(const gltf::AnimationSampler& sampler, const Segment& at, std::size_t number) {
     const double t = at.amount;
     const double t2 = t * t;
     const double t3 = t2 * t;
@@ -49,12 +49,12 @@ double cubic(const AnimationSampler& sampler, const Segment& at, std::size_t num
            at.seconds * (t3 - t2) * valueAt(sampler, at.to, number, kInTangent);
 }
 
-double interpolate(const AnimationSampler& sampler, const Segment& at, std::size_t number) {
+double interpolate(const gltf::AnimationSampler& sampler, const Segment& at, std::size_t number) {
     const double from = valueAt(sampler, at.from, number);
-    if (at.from == at.to || sampler.interpolation == Interpolation::Step) {
+    if (at.from == at.to || sampler.interpolation == gltf::Interpolation::Step) {
         return from;
     }
-    if (sampler.interpolation == Interpolation::CubicSpline) {
+    if (sampler.interpolation == gltf::Interpolation::CubicSpline) {
         return cubic(sampler, at, number);
     }
     return (1.0 - at.amount) * from + at.amount * valueAt(sampler, at.to, number);
@@ -99,7 +99,7 @@ Quaternion slerp(const Quaternion& from, Quaternion to, double amount) {
         weighted(from, std::sin((1.0 - amount) * angle) / sine, to, std::sin(amount * angle) / sine));
 }
 
-std::vector<double> sampleNumbers(const AnimationSampler& sampler, double time) {
+std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double time) {
     const Segment at = findSegment(sampler.times, time);
     std::vector<double> numbers(sampler.width);
     for (std::size_t i = 0; i < sampler.width; ++i) {
@@ -108,7 +108,7 @@ std::vector<double> sampleNumbers(const AnimationSampler& sampler, double time) 
     return numbers;
 }
 
-Quaternion sampleRotation(const AnimationSampler& sampler, double time) {
+Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time) {
     const Segment at = findSegment(sampler.times, time);
     const auto rotationAt = [&](std::size_t keyframe) {
         Quaternion rotation{};
@@ -117,10 +117,10 @@ Quaternion sampleRotation(const AnimationSampler& sampler, double time) {
         }
         return normalized(rotation);
     };
-    if (at.from == at.to || sampler.interpolation == Interpolation::Step) {
+    if (at.from == at.to || sampler.interpolation == gltf::Interpolation::Step) {
         return rotationAt(at.from);
     }
-    if (sampler.interpolation == Interpolation::Linear) {
+    if (sampler.interpolation == gltf::Interpolation::Linear) {
         return slerp(rotationAt(at.from), rotationAt(at.to), at.amount);
     }
     Quaternion rotation{};

@@ -17,10 +17,10 @@ Quaternion slerp(const Quaternion& from, Quaternion to, double amount);
 // Returns the values at `time` (seconds), sampler.width of them. Before the first keyframe they are those of
 // the first, and after the last those of the last. Numbers are interpolated one by one (glTF 2.0, appendix
 // C).
-std::vector<double> sampleNumbers(const AnimationSampler& sampler, double time);
+std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double time);
 
 // Returns the rotation at `time`, which has unit length. `sampler.width` is 4. Linear interpolation is
 // spherical. A rotation of length 0 has no meaning, and counts as no rotation.
-Quaternion sampleRotation(const AnimationSampler& sampler, double time);
+Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time);
 
 }  // namespace glint::scene_view

@@ -25,7 +25,7 @@ Status checkStrategy(const Package& package, const std::filesystem::path& folder
     if (package.supports(demand.strategy)) {
         return okStatus();
     }
-    const std::vector<std::string> has = strategyNames(package.shape().strategies);
+    const std::vector<std::string> has = compiler::strategyNames(package.shape().strategies);
     const std::string_view wanted = package::nameOf(demand.strategy);
     return makeError(
         "package-mismatch", folder.string(), fmt::format("has {}, not {}", fmt::join(has, ", "), wanted),
@@ -37,7 +37,7 @@ Status checkTracer(const Package& package, const std::filesystem::path& folder, 
     if (!demand.tracer || (compiled & *demand.tracer) != 0) {
         return okStatus();
     }
-    const std::vector<std::string> has = tracerNames(compiled);
+    const std::vector<std::string> has = compiler::tracerNames(compiled);
     const std::string_view wanted = package::nameOf(*demand.tracer);
     return makeError(
         "package-tracer", folder.string(),
@@ -57,13 +57,13 @@ Status checkSky(const Package& package, const std::filesystem::path& folder, con
                          : "give one by --environment, or compile without --environment-map");
 }
 
-FeatureMask maskOf(const package::PrimitiveEntry& entry) {
-    return FeatureMask{entry.featureLobes} | FeatureMask{entry.featureInputs} << 32U;
+materials::FeatureMask maskOf(const package::PrimitiveEntry& entry) {
+    return materials::FeatureMask{entry.featureLobes} | materials::FeatureMask{entry.featureInputs} << 32U;
 }
 
 }  // namespace
 
-std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene) {
+std::optional<std::uint32_t> sceneIn(const Package& package, const gltf::Scene& scene) {
     if (package.sceneCount() == 1) {
         return 0;
     }
@@ -71,7 +71,7 @@ std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene)
 }
 
 Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
-                    const Scene& scene) {
+                    const gltf::Scene& scene) {
     for (const Status& status : {checkStrategy(package, folder, demand), checkTracer(package, folder, demand),
                                  checkSky(package, folder, demand)}) {
         if (!status) {
@@ -88,21 +88,21 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
         return mismatch(folder, fmt::format("has {} materials, but the scene has {}", known.materials.size(),
                                             scene.materials.size()));
     }
-    if (hasDeformedMesh(scene) && !package.shape().deforms) {
+    if (compiler::hasDeformedMesh(scene) && !package.shape().deforms) {
         return mismatch(folder,
                         "has no pass for meshes that follow joints or morph targets, as the scene has");
     }
-    const KeyOptions keys{package.alphaTested() ? AlphaPolicy::Tested : AlphaPolicy::Opaque};
-    for (const PrimitiveInputs& inputs : planningInputs(scene)) {
+    const materials::KeyOptions keys{package.alpha()};
+    for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {
         const package::PrimitiveEntry* entry = known.findPrimitive(
             static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));
         const std::string pointer = fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive);
         if (entry == nullptr) {
             return mismatch(folder, "does not know the scene's " + pointer);
         }
-        const Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
+        const materials::Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
         if (entry->materialIndex != static_cast<std::uint32_t>(inputs.material) ||
-            maskOf(*entry) != makeKey(material, inputs, keys)) {
+            maskOf(*entry) != compiler::makeKey(material, inputs, keys)) {
             return mismatch(folder, "has another material or other features for the scene's " + pointer);
         }
     }
@@ -115,18 +115,19 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
     return okStatus();
 }
 
-Result<Package> loadPackage(const CompiledPackage& compiled) {
+Result<Package> loadPackage(const compiler::CompiledPackage& compiled) {
     std::vector<package::EmbeddedFile> files;
     files.reserve(compiled.files.size());
-    for (const PackageFile& file : compiled.files) {
+    for (const compiler::PackageFile& file : compiled.files) {
         files.push_back({file.name, file.bytes});
     }
     return Package::load(files);
 }
 
-Result<Package> compileAndLoad(const Scene& scene, CompileSettings settings, ModuleCache* cache) {
+Result<Package> compileAndLoad(const gltf::Scene& scene, compiler::CompileSettings settings,
+                               compiler::ModuleCache* cache) {
     settings.emitHeader = false;
-    const Result<CompiledPackage> compiled = compilePackage(scene, settings, cache);
+    const Result<compiler::CompiledPackage> compiled = compilePackage(scene, settings, cache);
     return compiled ? loadPackage(*compiled) : compiled.error();
 }
 

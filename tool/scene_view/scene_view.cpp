@@ -11,16 +11,16 @@ namespace glint::scene_view {
 
 namespace {
 
-LightView toView(const Light& light) {
+LightView toView(const gltf::Light& light) {
     LightView view;
     switch (light.type) {
-        case LightType::Directional:
+        case gltf::LightType::Directional:
             view.type = LightView::Type::Directional;
             break;
-        case LightType::Point:
+        case gltf::LightType::Point:
             view.type = LightView::Type::Point;
             break;
-        case LightType::Spot:
+        case gltf::LightType::Spot:
             view.type = LightView::Type::Spot;
             break;
     }
@@ -35,25 +35,25 @@ LightView toView(const Light& light) {
     return view;
 }
 
-std::vector<MorphTargetView> toViews(const std::vector<MorphTarget>& targets) {
+std::vector<MorphTargetView> toViews(const std::vector<gltf::MorphTarget>& targets) {
     std::vector<MorphTargetView> views;
     views.reserve(targets.size());
-    for (const MorphTarget& target : targets) {
+    for (const gltf::MorphTarget& target : targets) {
         views.push_back({target.positions, target.normals, target.tangents});
     }
     return views;
 }
 
-std::vector<AttributeView> toViews(const std::vector<VertexValues>& attributes) {
+std::vector<AttributeView> toViews(const std::vector<gltf::VertexValues>& attributes) {
     std::vector<AttributeView> views;
     views.reserve(attributes.size());
-    for (const VertexValues& attribute : attributes) {
+    for (const gltf::VertexValues& attribute : attributes) {
         views.push_back({attribute.name, attribute.channels, attribute.values});
     }
     return views;
 }
 
-PrimitiveView toView(const Primitive& primitive, std::size_t mesh, std::size_t index) {
+PrimitiveView toView(const gltf::Primitive& primitive, std::size_t mesh, std::size_t index) {
     PrimitiveView view;
     view.mesh = static_cast<std::uint32_t>(mesh);
     view.primitive = static_cast<std::uint32_t>(index);
@@ -69,14 +69,14 @@ PrimitiveView toView(const Primitive& primitive, std::size_t mesh, std::size_t i
     return view;
 }
 
-bool hasTriangles(const Primitive& primitive) {
+bool hasTriangles(const gltf::Primitive& primitive) {
     return primitive.indices.size() >= 3;
 }
 
 // For each mesh, whether a node that is shown at some time places it.
-std::vector<bool> placedMeshes(const Scene& scene) {
+std::vector<bool> placedMeshes(const gltf::Scene& scene) {
     std::vector<bool> placed(scene.meshes.size(), false);
-    for (const Node& node : scene.nodes) {
+    for (const gltf::Node& node : scene.nodes) {
         if (node.mesh >= 0 && node.canShow) {
             placed[static_cast<std::size_t>(node.mesh)] = true;
         }
@@ -85,33 +85,34 @@ std::vector<bool> placedMeshes(const Scene& scene) {
 }
 
 // Returns the determinant of the linear part.
-double determinantOf(const Matrix4& m) {
-    return dot({m[0], m[1], m[2]}, cross({m[4], m[5], m[6]}, {m[8], m[9], m[10]}));
+double determinantOf(const gltf::Matrix4& m) {
+    return base::dot({m[0], m[1], m[2]}, base::cross({m[4], m[5], m[6]}, {m[8], m[9], m[10]}));
 }
 
 // Returns whether the node's mesh follows its skin. The node's own transform then has no effect (glTF 2.0,
 // section 3.7.3.2).
-bool isSkinned(const Scene& scene, const Node& node) {
-    const std::vector<Primitive>& primitives = scene.meshes[static_cast<std::size_t>(node.mesh)].primitives;
-    return node.skin >= 0 && std::ranges::any_of(primitives, [](const Primitive& primitive) {
+bool isSkinned(const gltf::Scene& scene, const gltf::Node& node) {
+    const std::vector<gltf::Primitive>& primitives =
+        scene.meshes[static_cast<std::size_t>(node.mesh)].primitives;
+    return node.skin >= 0 && std::ranges::any_of(primitives, [](const gltf::Primitive& primitive) {
                return primitive.influences.count > 0;
            });
 }
 
 // How often the node draws its mesh.
-std::size_t placementsOf(const Scene& scene, const Node& node) {
+std::size_t placementsOf(const gltf::Scene& scene, const gltf::Node& node) {
     return node.instancing < 0 ? 1 : scene.instancings[static_cast<std::size_t>(node.instancing)].count;
 }
 
-Matrix4 worldOf(const Scene& scene, const Node& node, std::size_t placement) {
+gltf::Matrix4 worldOf(const gltf::Scene& scene, const gltf::Node& node, std::size_t placement) {
     if (node.instancing < 0) {
         return node.world;
     }
-    const Instancing& instancing = scene.instancings[static_cast<std::size_t>(node.instancing)];
+    const gltf::Instancing& instancing = scene.instancings[static_cast<std::size_t>(node.instancing)];
     return gltf::multiply(node.world, gltf::instanceTransform(instancing, placement));
 }
 
-void poseMaterials(const Scene& scene, SceneViewData& data) {
+void poseMaterials(const gltf::Scene& scene, SceneViewData& data) {
     if (data.materialLayout.fields.empty()) {
         return;
     }
@@ -124,16 +125,17 @@ void poseMaterials(const Scene& scene, SceneViewData& data) {
 
 }  // namespace
 
-void useLayoutOf(const Package& package, const Scene& scene, SceneViewData& data) {
-    FeatureMask used = 0;
+void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data) {
+    materials::FeatureMask used = 0;
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         for (const package::PrimitiveEntry& entry : package.scene(i).primitives) {
-            used |= FeatureMask{entry.featureLobes} | FeatureMask{entry.featureInputs} << 32U;
+            used |= materials::FeatureMask{entry.featureLobes} | materials::FeatureMask{entry.featureInputs}
+                                                                     << 32U;
         }
     }
-    const MaterialModel& model =
-        scene.materials.empty() ? builtinMaterialModel() : scene.materials.front().model();
-    data.materialLayout = makeMaterialLayout(model, used);
+    const materials::MaterialModel& model =
+        scene.materials.empty() ? materials::builtinMaterialModel() : scene.materials.front().model();
+    data.materialLayout = compiler::makeMaterialLayout(model, used);
     poseMaterials(scene, data);
 }
 
@@ -145,7 +147,7 @@ MotionView SceneViewData::motion() const {
     return {instances, lights, MotionView::Builds::ByRule, materials};
 }
 
-std::array<float, 12> toRows(const Matrix4& matrix) {
+std::array<float, 12> toRows(const gltf::Matrix4& matrix) {
     std::array<float, 12> rows{};
     for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t column = 0; column < 4; ++column) {
@@ -155,12 +157,12 @@ std::array<float, 12> toRows(const Matrix4& matrix) {
     return rows;
 }
 
-SceneViewData makeSceneView(const Scene& scene) {
+SceneViewData makeSceneView(const gltf::Scene& scene) {
     SceneViewData data;
     const std::vector<bool> placed = placedMeshes(scene);
     std::vector<bool> visible(scene.meshes.size(), false);
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-        const std::vector<Primitive>& primitives = scene.meshes[mesh].primitives;
+        const std::vector<gltf::Primitive>& primitives = scene.meshes[mesh].primitives;
         for (std::size_t index = 0; placed[mesh] && index < primitives.size(); ++index) {
             if (hasTriangles(primitives[index])) {
                 data.primitives.push_back(toView(primitives[index], mesh, index));
@@ -173,7 +175,7 @@ SceneViewData makeSceneView(const Scene& scene) {
         }
     }
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        const Node& node = scene.nodes[i];
+        const gltf::Node& node = scene.nodes[i];
         if (node.mesh < 0 || !node.canShow || !visible[static_cast<std::size_t>(node.mesh)]) {
             continue;
         }
@@ -185,15 +187,15 @@ SceneViewData makeSceneView(const Scene& scene) {
     }
     data.joints.resize(data.instances.size());
     data.weights.resize(data.instances.size());
-    for (const AnimatedMaterial& animated : scene.animatedMaterials) {
+    for (const gltf::AnimatedMaterial& animated : scene.animatedMaterials) {
         data.materials.push_back({static_cast<std::uint32_t>(animated.material), {}});
     }
     std::ranges::sort(data.materials, {}, &MaterialView::material);
     data.materialRecords.resize(data.materials.size());
-    for (const Image& image : scene.images) {
+    for (const gltf::Image& image : scene.images) {
         data.images.push_back(
             {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels,
-             image.format == PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8,
+             image.format == gltf::PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8,
              static_cast<std::uint32_t>(image.levels)});
     }
     data.lights.resize(scene.lights.size());
@@ -201,9 +203,9 @@ SceneViewData makeSceneView(const Scene& scene) {
     return data;
 }
 
-void poseSceneView(const Scene& scene, SceneViewData& data) {
+void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
     for (std::size_t i = 0; i < data.instances.size(); ++i) {
-        const Node& node = scene.nodes[data.sources[i].node];
+        const gltf::Node& node = scene.nodes[data.sources[i].node];
         InstanceView& instance = data.instances[i];
         instance.visible = node.shown;
         const bool skinned = isSkinned(scene, node);
@@ -216,7 +218,7 @@ void poseSceneView(const Scene& scene, SceneViewData& data) {
         data.joints[i].clear();
         if (skinned) {
             instance.objectToWorld[0] = mirror;
-            for (const Matrix4& joint :
+            for (const gltf::Matrix4& joint :
                  jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])) {
                 std::array<float, 12>& rows = data.joints[i].emplace_back(toRows(joint));
                 std::transform(rows.begin(), rows.begin() + 4, rows.begin(),

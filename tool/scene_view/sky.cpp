@@ -15,65 +15,65 @@ namespace glint::scene_view {
 
 namespace {
 
-using Corners = std::array<Double3, 3>;
+using Corners = std::array<base::Double3, 3>;
 
 // Returns 1, or -1 if the transform mirrors, which swaps the sides of a triangle.
 double handedness(const std::array<float, 12>& rows) {
-    const Double3 x{rows[0], rows[1], rows[2]};
-    const Double3 y{rows[4], rows[5], rows[6]};
-    const Double3 z{rows[8], rows[9], rows[10]};
-    return dot(cross(x, y), z) < 0.0 ? -1.0 : 1.0;
+    const base::Double3 x{rows[0], rows[1], rows[2]};
+    const base::Double3 y{rows[4], rows[5], rows[6]};
+    const base::Double3 z{rows[8], rows[9], rows[10]};
+    return base::dot(base::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
 }
 
 // Returns the positions of a primitive of an instance in world space.
-std::vector<Double3> worldPositions(const Scene& scene, const Node& node, const InstanceView& instance,
-                                    const Primitive& primitive) {
-    std::vector<Double3> positions;
+std::vector<base::Double3> worldPositions(const gltf::Scene& scene, const gltf::Node& node,
+                                          const InstanceView& instance, const gltf::Primitive& primitive) {
+    std::vector<base::Double3> positions;
     const bool skinned = !instance.joints.empty();
-    if (isDeformed(scene, node)) {
-        const std::vector<Matrix4> joints =
+    if (compiler::isDeformed(scene, node)) {
+        const std::vector<gltf::Matrix4> joints =
             skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
-                    : std::vector<Matrix4>();
+                    : std::vector<gltf::Matrix4>();
         positions = deformedPositions(primitive, node.weights, joints);
     } else {
         positions.reserve(primitive.positions.size());
-        for (const Float3& position : primitive.positions) {
-            positions.push_back(toDouble3(position));
+        for (const gltf::Float3& position : primitive.positions) {
+            positions.push_back(base::toDouble3(position));
         }
     }
     // Skinned vertices are in the world already.
-    for (Double3& position : positions) {
-        position = skinned ? position : transformed(instance.objectToWorld, position);
+    for (base::Double3& position : positions) {
+        position = skinned ? position : base::transformed(instance.objectToWorld, position);
     }
     return positions;
 }
 
 // Returns a vector along the normal of the triangle's front; its length is twice the area.
-Double3 areaVector(const Corners& corners) {
-    return cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
+base::Double3 areaVector(const Corners& corners) {
+    return base::cross(base::difference(corners[1], corners[0]), base::difference(corners[2], corners[0]));
 }
 
 // Calls `visit` for each triangle of all visible instances that has an area, in a fixed order. The corners
 // are counter-clockwise as seen from the front.
-void visitTriangles(const Scene& scene, const SceneViewData& view,
+void visitTriangles(const gltf::Scene& scene, const SceneViewData& view,
                     const std::function<void(const Corners&, double area)>& visit) {
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
         const InstanceView& instance = view.instances[i];
         if (!instance.visible) {
             continue;
         }
-        const Node& node = scene.nodes[view.sources[i].node];
+        const gltf::Node& node = scene.nodes[view.sources[i].node];
         const bool mirrored = handedness(instance.objectToWorld) < 0.0;
-        for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            const std::vector<Double3> positions = worldPositions(scene, node, instance, primitive);
+        for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+            const std::vector<base::Double3> positions = worldPositions(scene, node, instance, primitive);
             for (std::size_t first = 0; first + 2 < primitive.indices.size(); first += 3) {
                 Corners corners{positions[primitive.indices[first]], positions[primitive.indices[first + 1]],
                                 positions[primitive.indices[first + 2]]};
                 if (mirrored) {
                     std::swap(corners[1], corners[2]);
                 }
-                const Double3 twice = areaVector(corners);
-                const double area = 0.5 * length(twice);
+                const base::Double3 twice = areaVector(corners);
+                const double area = 0.5 * base::length(twice);
                 if (std::isfinite(area) && area > 0.0) {
                     visit(corners, area);
                 }
@@ -88,24 +88,24 @@ SurfacePoint centreOf(const Corners& corners) {
     for (std::size_t i = 0; i < 3; ++i) {
         point.position[i] = (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0;
     }
-    const Double3 normal = areaVector(corners);
-    point.normal = scaled(normal, 1.0 / length(normal));
+    const base::Double3 normal = areaVector(corners);
+    point.normal = base::scaled(normal, 1.0 / base::length(normal));
     return point;
 }
 
-Double3 between(const Double3& a, const Double3& b) {
+base::Double3 between(const base::Double3& a, const base::Double3& b) {
     return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
 }
 
 // Returns whether a light is so near that its illuminance varies over the triangle.
-bool varies(const Corners& corners, const Double3& centre, std::span<const LightView> lights) {
+bool varies(const Corners& corners, const base::Double3& centre, std::span<const LightView> lights) {
     double radius = 0.0;
-    for (const Double3& corner : corners) {
-        radius = std::max(radius, length(difference(corner, centre)));
+    for (const base::Double3& corner : corners) {
+        radius = std::max(radius, base::length(base::difference(corner, centre)));
     }
     return std::ranges::any_of(lights, [&](const LightView& light) {
         return light.type != LightView::Type::Directional &&
-               length(difference(toDouble3(light.position), centre)) < 4.0 * radius;
+               base::length(base::difference(base::toDouble3(light.position), centre)) < 4.0 * radius;
     });
 }
 
@@ -117,9 +117,9 @@ void addPatches(const Corners& corners, double area, std::span<const LightView> 
     constexpr std::size_t kMostEvaluations = 1U << 20U;
     if (divisions > 0 && patches.size() * lights.size() < kMostEvaluations &&
         varies(corners, centre.position, lights)) {
-        const Double3 ab = between(corners[0], corners[1]);
-        const Double3 bc = between(corners[1], corners[2]);
-        const Double3 ca = between(corners[2], corners[0]);
+        const base::Double3 ab = between(corners[0], corners[1]);
+        const base::Double3 bc = between(corners[1], corners[2]);
+        const base::Double3 ca = between(corners[2], corners[0]);
         for (const Corners& quarter : {Corners{corners[0], ab, ca}, Corners{ab, corners[1], bc},
                                        Corners{ca, bc, corners[2]}, Corners{ab, bc, ca}}) {
             addPatches(quarter, 0.25 * area, lights, divisions - 1, patches);
@@ -134,12 +134,12 @@ void addPatches(const Corners& corners, double area, std::span<const LightView> 
 }
 
 double luminanceOf(const std::array<float, 3>& color) {
-    return luminance({color[0], color[1], color[2]});
+    return image::luminance({color[0], color[1], color[2]});
 }
 
 }  // namespace
 
-std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
+std::vector<LitPatch> litPatches(const gltf::Scene& scene, const SceneViewData& view,
                                  std::span<const LightView> lights) {
     constexpr double kParts = 8192.0;
     constexpr int kDivisions = 20;  // enough to divide a plane of a hundred kilometres into tenths of a metre
@@ -169,19 +169,20 @@ std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
 
 double illuminanceAt(const LightView& light, const SurfacePoint& point) {
     const double intensity = luminanceOf(light.intensity);
-    const Double3 way = toDouble3(light.direction);
+    const base::Double3 way = base::toDouble3(light.direction);
     if (light.type == LightView::Type::Directional) {
-        return intensity * std::max(-dot(way, point.normal), 0.0);
+        return intensity * std::max(-base::dot(way, point.normal), 0.0);
     }
     constexpr double kLeastSquaredDistance = 1e-6;
-    const Double3 toLight = difference(toDouble3(light.position), point.position);
-    const double squared = dot(toLight, toLight);
+    const base::Double3 toLight = base::difference(base::toDouble3(light.position), point.position);
+    const double squared = base::dot(toLight, toLight);
     if (!(squared > 0.0)) {
         return 0.0;
     }
     const double distance = std::sqrt(squared);
-    const Double3 direction = scaled(toLight, 1.0 / distance);
-    double share = std::max(dot(direction, point.normal), 0.0) / std::max(squared, kLeastSquaredDistance);
+    const base::Double3 direction = base::scaled(toLight, 1.0 / distance);
+    double share =
+        std::max(base::dot(direction, point.normal), 0.0) / std::max(squared, kLeastSquaredDistance);
     if (light.range > 0.0F) {
         const double ratio = distance / light.range;
         share *= std::clamp(1.0 - ratio * ratio * ratio * ratio, 0.0, 1.0);
@@ -189,7 +190,7 @@ double illuminanceAt(const LightView& light, const SurfacePoint& point) {
     if (light.type == LightView::Type::Spot) {
         const double outer = std::cos(light.outerConeAngle);
         const double width = std::max(0.001, std::cos(light.innerConeAngle) - outer);
-        const double cone = std::clamp((-dot(way, direction) - outer) / width, 0.0, 1.0);
+        const double cone = std::clamp((-base::dot(way, direction) - outer) / width, 0.0, 1.0);
         share *= cone * cone;
     }
     return intensity * share;

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::compiler {
 
 std::vector<SettingWord> wordsOf(const Descriptor& row) {
     std::vector<SettingWord> words =
@@ -19,7 +19,7 @@ std::vector<SettingWord> wordsOf(const Descriptor& row) {
 
 std::string withoutEffect(const Descriptor& row, const BenchFacts& facts) {
     std::string reason;
-    for (const EffectDeclaration& effect : builtinMaterialModel().effects) {
+    for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
         if (std::ranges::find(effect.settings, row.name) == effect.settings.end()) {
             continue;
         }
@@ -71,11 +71,11 @@ std::string complaintAbout(const Descriptor& row, std::string_view text) {
         default:
             if (!values.further.empty()) {
                 return fmt::format("\"{}\" is none of {}, {}{}", text, fmt::join(names, ", "), values.further,
-                                   suggestion(text, names));
+                                   base::suggestion(text, names));
             }
             return fmt::format("\"{}\" is none of {}{}", text, fmt::join(names, ", "),
-                               suggestion(text, names));
+                               base::suggestion(text, names));
     }
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -14,7 +14,7 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::compiler {
 
 // How the level of a texture that hits read is chosen.
 enum class TextureLod : std::uint8_t {
@@ -63,4 +63,7 @@ struct CompileSettings {
     std::filesystem::path modules{};
 };
 
-}  // namespace glint
+// Found by their arguments from other namespaces.
+using glint::nameOf;
+
+}  // namespace glint::compiler

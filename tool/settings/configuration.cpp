@@ -2,7 +2,7 @@
 
 #include "settings/table.h"
 
-namespace glint {
+namespace glint::compiler {
 
 std::vector<std::string> settingNames() {
     std::vector<std::string> names;
@@ -50,4 +50,4 @@ std::vector<std::string> wordsOf(const Configuration& configuration) {
     return words;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Values by the name of their setting, which is the name of the command-line option without its dashes. The
 // configuration of a point of a bench holds only what differs from the default.
@@ -17,7 +17,7 @@ using Configuration = std::map<std::string, std::string, std::less<>>;
 
 // The facts about scene and device on which the values worth trying depend.
 struct BenchFacts {
-    bool masks = false;         // some materials have an alpha mask
+    bool masks = false;         // some materials have the alpha mode MASK or BLEND
     bool furtherLobes = false;  // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool sizedLights = false;  // some light casts soft shadows
@@ -39,4 +39,4 @@ Settings withSettings(Settings settings, const Configuration& configuration);
 // Returns the words of a command line: {"--spp", "4"}. A switch that is off is left out.
 std::vector<std::string> wordsOf(const Configuration& configuration);
 
-}  // namespace glint
+}  // namespace glint::compiler

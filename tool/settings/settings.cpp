@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -25,10 +25,10 @@ Settings::Settings() {
     renderer.height = 540;
 }
 
-FeatureMask baseLobes() {
-    const MaterialModel& model = builtinMaterialModel();
-    FeatureMask mask = model.baseModels();
-    for (const Feature& feature : model.features) {
+materials::FeatureMask baseLobes() {
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    materials::FeatureMask mask = model.baseModels();
+    for (const materials::Feature& feature : model.features) {
         mask |= feature.isOfBase ? feature.mask() : 0;
     }
     return mask;
@@ -45,8 +45,9 @@ bool parseWhole(std::string_view text, std::int64_t min, std::int64_t max, std::
 bool parseSize(std::string_view text, std::uint32_t& width, std::uint32_t& height) {
     const std::size_t cross = text.find('x');
     return cross != std::string_view::npos && parseNumber(text.substr(0, cross), width) &&
-           parseNumber(text.substr(cross + 1), height) && width >= 1 && width <= kMaxImageSize &&
-           height >= 1 && height <= kMaxImageSize && std::int64_t{width} * height <= kMaxImagePixels;
+           parseNumber(text.substr(cross + 1), height) && width >= 1 && width <= base::kMaxImageSize &&
+           height >= 1 && height <= base::kMaxImageSize &&
+           std::int64_t{width} * height <= base::kMaxImagePixels;
 }
 
 std::optional<MergeChoice> parseMerge(std::string_view text) {
@@ -60,4 +61,4 @@ std::optional<MergeChoice> parseMerge(std::string_view text) {
                                                          : std::nullopt;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

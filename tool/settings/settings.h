@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Whether a picture gets a light that the scene lacks.
 enum class Sun : std::uint8_t { Auto, On, Off };
@@ -40,7 +40,7 @@ struct Settings {
     std::optional<package::Strategy> strategy = package::kStrategyVisibility;
     // A package also gets the strategy that should be fastest, besides compile.strategies.
     bool advisesStrategy = false;
-    std::optional<AlphaPolicy> alpha{};  // none: tested if the scene has masks
+    std::optional<package::AlphaPolicy> alpha{};  // none: as the scene needs
     Sun sun = Sun::Auto;
     std::optional<double> sky{};       // factor of the default sky's radiance; none: as bright as the lights
     std::uint32_t samples = 1;         // for each pixel
@@ -64,7 +64,7 @@ struct Settings {
 };
 
 // Returns the lobes that hits keep with "base": the base models, and what is declared as part of the base.
-FeatureMask baseLobes();
+materials::FeatureMask baseLobes();
 
 // Parses the whole of `text` as a number within [min, max]. NaN is outside of every range.
 bool parseReal(std::string_view text, double min, double max, double& value);
@@ -81,4 +81,7 @@ constexpr bool takesHits(MergePolicy policy) {
     return policy == MergePolicy::Auto || policy == MergePolicy::Profile;
 }
 
-}  // namespace glint
+// Found by their arguments from other namespaces.
+using glint::nameOf;
+
+}  // namespace glint::compiler

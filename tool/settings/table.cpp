@@ -2,7 +2,7 @@
 
 #include "settings/values.h"
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -255,12 +255,12 @@ constexpr Descriptor kRows[] = {
      .commands = kPlanners,
      .stage = SettingStage::Package,
      .group = kShaders,
-     .what = "alpha masks of hits",
-     .values = optional<&Settings::alpha>("tested if the scene has masks"),
-     .bench = approximates("tested", "tested opaque", {},
+     .what = "alpha of hits",
+     .values = optional<&Settings::alpha>("stochastic if the scene has BLEND, tested if it has masks"),
+     .bench = approximates("stochastic", "stochastic tested opaque", {},
                            [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(
-                                   value.empty() && !facts.masks ? "no material has an alpha mask" : "");
+                               return std::string(value.empty() && !facts.masks ? "no material has alpha"
+                                                                                : "");
                            })},
     {.name = "precision",
      .commands = kMakers,
@@ -445,4 +445,4 @@ const Descriptor* sweptSetting(std::string_view name) {
     return row == std::end(kRows) ? nullptr : row;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // When a setting is decided.
 enum class SettingStage : std::uint8_t {
@@ -111,4 +111,4 @@ std::string complaintAbout(const Descriptor& row, std::string_view text);
 // Returns a bound of a range: "0.5", "1e9".
 std::string boundText(double bound);
 
-}  // namespace glint
+}  // namespace glint::compiler

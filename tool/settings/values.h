@@ -13,7 +13,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace glint::values {
+namespace glint::compiler::values {
 
 inline constexpr std::string_view kAuto = "auto";
 inline constexpr std::string_view kNone = "none";
@@ -197,7 +197,7 @@ inline std::string effectsOf(const Settings& settings) {
     if (request.automatic) {
         words.push_back(kAuto);
     }
-    const std::vector<EffectDeclaration>& effects = builtinMaterialModel().effects;
+    const std::vector<materials::EffectDeclaration>& effects = materials::builtinMaterialModel().effects;
     for (std::size_t i = 0; i < effects.size(); ++i) {
         if ((request.named & infoOf(effects[i], i).effect) != 0) {
             words.push_back(effects[i].name);
@@ -227,7 +227,7 @@ inline void setEffects(Settings& settings, std::string_view text) {
 inline std::vector<SettingWord> effectWords() {
     std::vector<SettingWord> words{
         {std::string(kAuto), ""}, {std::string(kNone), "no effect"}, {std::string(kAll), "every effect"}};
-    for (const EffectDeclaration& effect : builtinMaterialModel().effects) {
+    for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
         std::string what = effect.about.substr(0, effect.about.size() - 1);
         what.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(what.front())));
         words.push_back({effect.name, what + (effect.refines.empty() ? "" : "; has to be named")});
@@ -236,12 +236,13 @@ inline std::vector<SettingWord> effectWords() {
 }
 
 inline std::string hitLobesOf(const Settings& settings) {
-    const FeatureMask kept = settings.compile.plan.keys.keptLobes;
-    if (kept == kLobeMask) {
+    const materials::FeatureMask kept = settings.compile.plan.keys.keptLobes;
+    if (kept == materials::kLobeMask) {
         return std::string(kAll);
     }
     const bool hasBase = (kept & baseLobes()) == baseLobes();
-    std::vector<std::string_view> words = builtinMaterialModel().names(hasBase ? kept & ~baseLobes() : kept);
+    std::vector<std::string_view> words =
+        materials::builtinMaterialModel().names(hasBase ? kept & ~baseLobes() : kept);
     if (hasBase) {
         words.insert(words.begin(), "base");
     }
@@ -250,17 +251,17 @@ inline std::string hitLobesOf(const Settings& settings) {
 }
 
 inline void setHitLobes(Settings& settings, std::string_view text) {
-    const MaterialModel& model = builtinMaterialModel();
-    FeatureMask& kept = settings.compile.plan.keys.keptLobes;
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    materials::FeatureMask& kept = settings.compile.plan.keys.keptLobes;
     kept = 0;
     settings.packLobes.clear();
     eachWord(text, [&](std::string_view word) {
-        if (word != kAll && word != "base" && (model.mask(word) & kLobeMask) == 0) {
+        if (word != kAll && word != "base" && (model.mask(word) & materials::kLobeMask) == 0) {
             settings.packLobes.emplace_back(word);
             kept |= model.baseModels();
             return;
         }
-        kept |= word == kAll     ? kLobeMask
+        kept |= word == kAll     ? materials::kLobeMask
                 : word == "base" ? baseLobes()
                                  : model.baseModels() | model.mask(word);
     });
@@ -274,10 +275,10 @@ inline bool isFeatureName(std::string_view text) {
 }
 
 inline std::vector<SettingWord> hitLobeWords() {
-    const MaterialModel& model = builtinMaterialModel();
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
     std::vector<SettingWord> words{{std::string(kAll), "as primary surfaces do"},
                                    {"base", fmt::format("{}", fmt::join(model.names(baseLobes()), ", "))}};
-    for (const std::string_view name : model.names(kLobeMask)) {
+    for (const std::string_view name : model.names(materials::kLobeMask)) {
         words.push_back({std::string(name), ""});
     }
     return words;
@@ -356,7 +357,7 @@ inline constexpr SettingValues kEffects{.form = ValueForm::List,
                                         .words = effectWords,
                                         .automatic = "those that the scenes call for",
                                         .type = "auto|none|all|LIST",
-                                        .accepts = isEffectName,
+                                        .accepts = materials::isEffectName,
                                         .further = "effects of packs (--materials)"};
 
 inline constexpr SettingValues kHitLobes{.form = ValueForm::List,
@@ -466,4 +467,4 @@ inline constexpr Named<bool> kFalloffNames[] = {
     {false, "none", "all count alike"},
     {true, "linear", "surfaces occlude less the farther away they are; needs --ao-radius"}};
 
-}  // namespace glint::values
+}  // namespace glint::compiler::values

@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -54,4 +54,4 @@ void keepApart(std::vector<std::uint32_t>& words, const std::vector<SpirvFunctio
     }
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct SpirvFunction {
     std::uint32_t id = 0;
@@ -23,4 +23,4 @@ std::vector<SpirvFunction> findFunctions(std::span<const std::uint32_t> words);
 void keepApart(std::vector<std::uint32_t>& words, const std::vector<SpirvFunction>& functions,
                const std::set<std::uint32_t>& apart);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -15,7 +15,7 @@
 #include <mutex>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -198,4 +198,4 @@ Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

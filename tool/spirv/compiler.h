@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 enum class ShaderStage { Vertex, Fragment, Compute, RayGeneration, ClosestHit, AnyHit, Miss };
 
@@ -50,4 +50,4 @@ std::string glslangVersion();
 // Returns the text form of a module, for people.
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -11,7 +11,7 @@
 #include <span>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -127,4 +127,4 @@ void showExtractions(std::vector<std::uint32_t>& words) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

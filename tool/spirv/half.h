@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns whether anything in the module may have fewer than 32 bits, as GLSL's mediump allows.
 bool relaxesPrecision(const std::vector<std::uint32_t>& words);
@@ -17,4 +17,4 @@ bool relaxesPrecision(const std::vector<std::uint32_t>& words);
 void hideExtractions(std::vector<std::uint32_t>& words);
 void showExtractions(std::vector<std::uint32_t>& words);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -12,7 +12,7 @@
 #include <map>
 #include <set>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -190,4 +190,4 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
     return module;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Names of functions, without parameters.
 struct LinkNames {
@@ -24,4 +24,4 @@ struct LinkNames {
 Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> words, const LinkNames& names,
                                                 const std::string& shader, bool keepNames);
 
-}  // namespace glint
+}  // namespace glint::compiler

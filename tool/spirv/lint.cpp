@@ -10,7 +10,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -67,4 +67,4 @@ Result<SpirvLint> lintSpirv(std::span<const std::uint32_t> words) {
     return lint;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

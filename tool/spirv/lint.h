@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The place of an instruction in the original module, before any inlining.
 struct SpirvPlace {
@@ -45,4 +45,4 @@ Result<SpirvLint> lintSpirv(std::span<const std::uint32_t> words);
 // Returns "in main (shader.comp:12, word 214)", or an empty text for the module as a whole.
 std::string toString(const SpirvPlace& place);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -85,4 +85,4 @@ bool repeats(const FlowFunction& function, EventPlace event) {
     return repeated;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // A variable of type OpTypeRayQueryKHR, or an element of an array of them.
 struct QueryObject {
@@ -79,4 +79,4 @@ bool canAvoid(const FlowFunction& function, EventPlace start, EventPlace via);
 // Returns whether `event` can happen again before its object is initialised again.
 bool repeats(const FlowFunction& function, EventPlace event);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -251,4 +251,4 @@ FlowModule readFlow(std::span<const std::uint32_t> words) {
     return FlowReader(words).take();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

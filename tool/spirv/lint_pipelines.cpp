@@ -13,7 +13,7 @@
 #include <set>
 #include <unordered_map>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -180,4 +180,4 @@ void lintPipelines(std::span<const std::uint32_t> words, const std::map<std::siz
     judgePayloads(words, findings);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

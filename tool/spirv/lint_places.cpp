@@ -7,7 +7,7 @@
 
 #include <cassert>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -148,4 +148,4 @@ std::string toString(const SpirvPlace& place) {
     return fmt::format("{}({}{}word {})", function, source, id, place.offset);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

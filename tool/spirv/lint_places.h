@@ -8,7 +8,7 @@
 #include <map>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the offset of the first word of `instruction`, which visitSpirv() gave for `words`.
 inline std::size_t offsetOf(std::span<const std::uint32_t> words, const SpirvInstruction& instruction) {
@@ -34,4 +34,4 @@ std::vector<SpirvEntryPoint> findEntryPoints(std::span<const std::uint32_t> word
 // Returns the places of all ray queries and traces, by offset. Requires a valid module.
 std::map<std::size_t, SpirvPlace> findPlaces(std::span<const std::uint32_t> words);
 
-}  // namespace glint
+}  // namespace glint::compiler

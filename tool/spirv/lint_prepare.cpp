@@ -11,7 +11,7 @@
 #include <set>
 #include <string>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) 
     return optimizer.Run(marked.data(), marked.size(), &prepared, options) ? prepared : marked;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

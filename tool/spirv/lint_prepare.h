@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the error "spirv-invalid" with the validator's first message. It accepts any version of SPIR-V that
 // the validator knows.
@@ -19,4 +19,4 @@ Status checkSpirv(std::span<const std::uint32_t> words);
 // the original instruction in `words`. Requires a valid module.
 std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words);
 
-}  // namespace glint
+}  // namespace glint::compiler

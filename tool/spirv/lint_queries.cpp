@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -241,4 +241,4 @@ void lintQueries(std::span<const std::uint32_t> words, const std::map<std::size_
     }
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

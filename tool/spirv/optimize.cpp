@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -240,4 +240,4 @@ Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string&
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

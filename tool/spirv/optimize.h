@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Inlines functions and folds what literal constants decide, so that the branches of features that a case
 // does not have vanish. Each function named in `apart` (the shaders of an uber shader's cases) stays a
@@ -31,4 +31,4 @@ enum class SpirvUse {
 Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string& name,
                      SpirvUse use = SpirvUse::Vulkan);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::string spirvString(std::span<const std::uint32_t> operands) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

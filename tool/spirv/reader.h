@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::compiler {
 
 // Words before the first instruction.
 inline constexpr std::size_t kSpirvHeaderWords = 5;
@@ -28,4 +28,4 @@ Status visitSpirv(std::span<const std::uint32_t> words,
 // terminator is missing, the string ends with `operands`.
 std::string spirvString(std::span<const std::uint32_t> operands);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -4,7 +4,7 @@
 
 #include <glslang/SPIRV/spirv.hpp>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -56,4 +56,4 @@ Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words) {
     return statistics;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace glint {
+namespace glint::compiler {
 
 struct SpirvStatistics {
     std::uint64_t bytes = 0;
@@ -21,4 +21,4 @@ struct SpirvStatistics {
 // Error "spirv-format" if `words` is no SPIR-V module.
 Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words);
 
-}  // namespace glint
+}  // namespace glint::compiler

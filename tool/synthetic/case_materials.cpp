@@ -17,7 +17,7 @@ namespace glint::synthetic {
 
 namespace {
 
-void readTexture(Material& material, std::string_view name, CaseTexture texture) {
+void readTexture(materials::Material& material, std::string_view name, CaseTexture texture) {
     material.texture(name).texture = texture;
 }
 
@@ -87,7 +87,7 @@ std::array<float, 4> colorOf(int index) {
 
 CaseMaterial makePlain(int index) {
     CaseMaterial made;
-    Material& material = made.material;
+    materials::Material& material = made.material;
     material.name = "case " + std::to_string(index);
     std::ranges::copy(colorOf(index), material["baseColorFactor"].begin());
     material["metallicFactor"] = 0.3F;
@@ -97,7 +97,7 @@ CaseMaterial makePlain(int index) {
 
 // Adds the lobes that every expensive case has.
 void addLobes(CaseMaterial& made) {
-    Material& material = made.material;
+    materials::Material& material = made.material;
     made.normals = true;
     made.tangents = true;
     readTexture(material, "baseColorTexture", kColors);
@@ -141,7 +141,7 @@ std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count) {
 CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     constexpr float kFaint = 1e-4F;
     CaseMaterial made = like;
-    Material& material = made.material;
+    materials::Material& material = made.material;
     material.name = "floor";
     material["baseColorFactor"] = {0.9F, 0.9F, 0.9F, 1.0F};
     const bool mirror = coherence == Coherence::Coherent;
@@ -153,14 +153,14 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     for (const char* const name :
          {"clearcoatFactor", "anisotropyStrength", "iridescenceFactor", "transmissionFactor",
           "diffuseTransmissionFactor", "sheenColorFactor", "emissiveFactor"}) {
-        const ParameterValue value = material[name];
+        const materials::ParameterValue value = material[name];
         if (value > 0.0F) {
             value = kFaint;
         }
     }
     // 8 bits have no exact middle, so the normal would lean by a quarter of a degree.
     material["normalScale"] = kFaint;
-    for (TextureInfo& info : material.textures) {
+    for (materials::TextureInfo& info : material.textures) {
         if (info.texture >= 0) {
             info.texture = &info == &material.texture("normalTexture") ? kFlat : kWhite;
         }

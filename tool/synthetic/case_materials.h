@@ -9,7 +9,7 @@
 namespace glint::synthetic {
 
 struct CaseMaterial {
-    Material material;
+    materials::Material material;
     // The attributes of its primitives, besides positions and texture coordinates.
     bool normals = false;
     bool tangents = false;

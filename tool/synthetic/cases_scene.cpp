@@ -24,15 +24,16 @@ struct Square {
     bool facesUp = true;
 };
 
-Primitive makePrimitive(const CaseMaterial& attributes, int material, std::string pointer) {
-    Primitive primitive;
+gltf::Primitive makePrimitive(const CaseMaterial& attributes, int material, std::string pointer) {
+    gltf::Primitive primitive;
     primitive.pointer = std::move(pointer);
     primitive.material = material;
-    primitive.colorContent = attributes.colors ? ColorContent::Varying : ColorContent::None;
+    primitive.colorContent =
+        attributes.colors ? materials::ColorContent::Varying : materials::ColorContent::None;
     return primitive;
 }
 
-void addSquare(Primitive& primitive, const CaseMaterial& attributes, const Square& square) {
+void addSquare(gltf::Primitive& primitive, const CaseMaterial& attributes, const Square& square) {
     const auto first = static_cast<std::uint32_t>(primitive.positions.size());
     for (const auto& [u, v] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
         const double x = u == 0 ? square.x0 : square.x1;
@@ -61,18 +62,18 @@ void addSquare(Primitive& primitive, const CaseMaterial& attributes, const Squar
     }
 }
 
-Mesh makeFloor(const CaseMaterial& attributes, int material, double aspect) {
+gltf::Mesh makeFloor(const CaseMaterial& attributes, int material, double aspect) {
     constexpr double kMargin = 1.01;  // how far beyond the picture's edge
     const Extent extent = viewExtent(kCameraHeight, aspect);
-    Mesh mesh{"floor", {makePrimitive(attributes, material, "/meshes/0/primitives/0")}};
+    gltf::Mesh mesh{"floor", {makePrimitive(attributes, material, "/meshes/0/primitives/0")}};
     addSquare(mesh.primitives[0], attributes,
               {-kMargin * extent.x, -kMargin * extent.z, kMargin * extent.x, kMargin * extent.z, 0.0, true});
     return mesh;
 }
 
 // Makes one primitive for each case, from all of its tiles.
-Mesh makeTiles(const Ceiling& ceiling, const std::vector<CaseMaterial>& cases) {
-    Mesh mesh{"ceiling", {}};
+gltf::Mesh makeTiles(const Ceiling& ceiling, const std::vector<CaseMaterial>& cases) {
+    gltf::Mesh mesh{"ceiling", {}};
     for (std::size_t i = 0; i < cases.size(); ++i) {
         mesh.primitives.push_back(
             makePrimitive(cases[i], static_cast<int>(i), fmt::format("/meshes/1/primitives/{}", i)));
@@ -91,13 +92,13 @@ Mesh makeTiles(const Ceiling& ceiling, const std::vector<CaseMaterial>& cases) {
     return mesh;
 }
 
-Matrix4 identity() {
+gltf::Matrix4 identity() {
     return {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};
 }
 
 // The camera looks straight down: its -Z is the world's -Y, its +Y is the world's -Z.
-Camera makeCamera() {
-    Camera camera;
+gltf::Camera makeCamera() {
+    gltf::Camera camera;
     camera.name = "above";
     camera.yfov = kFieldOfView;
     camera.world = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0,           -1.0, 0.0,
@@ -106,12 +107,12 @@ Camera makeCamera() {
 }
 
 // Places the lights on a circle half way up. Their total flux does not depend on `count`.
-void addLights(Scene& scene, int count) {
+void addLights(gltf::Scene& scene, int count) {
     for (int i = 0; i < count; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / count;
-        Light light;
+        gltf::Light light;
         light.name = fmt::format("light {}", i);
-        light.type = LightType::Point;
+        light.type = gltf::LightType::Point;
         light.intensity = 10.0F / static_cast<float>(count);
         light.position = {static_cast<float>(std::cos(angle)), static_cast<float>(kCeilingHeight / 2.0),
                           static_cast<float>(std::sin(angle))};
@@ -119,8 +120,8 @@ void addLights(Scene& scene, int count) {
     }
 }
 
-Node placing(const std::string& name, int number) {
-    Node node;
+gltf::Node placing(const std::string& name, int number) {
+    gltf::Node node;
     node.name = name;
     node.world = identity();
     node.source = number;
@@ -141,8 +142,8 @@ std::string_view nameOf(Shares shares) {
     return shares == Shares::Uniform ? "uniform" : "zipf";
 }
 
-Scene makeCasesScene(const CasesOptions& options) {
-    Scene scene;
+gltf::Scene makeCasesScene(const CasesOptions& options) {
+    gltf::Scene scene;
     scene.path = fmt::format("{}-{}-{}-{}.synthetic", options.cases, nameOf(options.cost),
                              nameOf(options.coherence), nameOf(options.shares));
     addTextures(scene);

@@ -48,6 +48,6 @@ std::string_view nameOf(Shares shares);        // "uniform"
 
 // Returns the scene as importScene() would read it, with its images and without sources. With
 // MergePolicy::None it has exactly `cases` keys and so as many cases; the floor has the key of one of them.
-Scene makeCasesScene(const CasesOptions& options);
+gltf::Scene makeCasesScene(const CasesOptions& options);
 
 }  // namespace glint::synthetic

@@ -18,8 +18,8 @@ constexpr int kSize = 64;  // pixels a side; all textures stay in the caches, so
 
 // `pixel` is a function of u and v in [0, 1).
 template <typename Make>
-Image makeImage(const std::string& name, int size, const Make& pixel) {
-    Image image;
+gltf::Image makeImage(const std::string& name, int size, const Make& pixel) {
+    gltf::Image image;
     image.name = name;
     image.width = size;
     image.height = size;
@@ -51,7 +51,7 @@ Pixel bump(double u, double v) {
 
 }  // namespace
 
-void addTextures(Scene& scene) {
+void addTextures(gltf::Scene& scene) {
     constexpr double kMiddle = 128.0 / 255.0;
     scene.images = {
         makeImage("white", 4,
@@ -74,7 +74,7 @@ void addTextures(Scene& scene) {
                   }),
         makeImage("bumps", kSize, bump),
     };
-    scene.samplers = {Sampler{}};
+    scene.samplers = {gltf::Sampler{}};
     for (int i = 0; i < static_cast<int>(scene.images.size()); ++i) {
         scene.images[static_cast<std::size_t>(i)].pointer = "/images/" + std::to_string(i);
         scene.textures.push_back({i, 0});

@@ -15,6 +15,6 @@ enum CaseTexture : int {
 };
 
 // Adds the textures, their images and their sampler to a scene that has none.
-void addTextures(Scene& scene);
+void addTextures(gltf::Scene& scene);
 
 }  // namespace glint::synthetic

@@ -44,6 +44,13 @@ enum class ShadowPlacement : std::uint32_t {
 };
 
 // How a hit is stored between passes.
+// What rays do with the alpha of a material.
+enum class AlphaPolicy : std::uint32_t {
+    Opaque = 0,      // nothing: whatever they hit is opaque
+    Tested = 1,      // alphaMode MASK is tested, and BLEND is opaque
+    Stochastic = 2,  // as above, but a ray stops at BLEND with the probability alpha
+};
+
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
@@ -108,8 +115,8 @@ struct PackageHeader {
     // The 64-bit XXH3 hash of every byte after this header. Its seed is the hash of this header with a
     // contentHash of 0.
     std::uint64_t contentHash;
-    std::uint32_t strategies;   // Strategy bits
-    std::uint32_t alphaTested;  // 1: masked geometry must be built non-opaque
+    std::uint32_t strategies;  // Strategy bits
+    AlphaPolicy alpha;
     std::uint32_t caseCount;
     std::uint32_t interopHash;  // low 32 bits of the hash of the interop headers the shaders were built with
     std::uint32_t tracers;      // Tracer bits

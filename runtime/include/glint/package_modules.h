@@ -83,6 +83,11 @@ inline constexpr Named<ShadowPlacement> kShadowNames[] = {
     {ShadowPlacement::Inline, "inline", "by the shader that shades the hit"},
     {ShadowPlacement::Deferred, "deferred", "from a list, by a pass of their own"},
 };
+inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
+    {AlphaPolicy::Opaque, "opaque", "ignored"},
+    {AlphaPolicy::Tested, "tested", "each candidate hit is tested; BLEND is opaque"},
+    {AlphaPolicy::Stochastic, "stochastic", "tested, and a ray stops at BLEND with the probability alpha"},
+};
 inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
     {HitRecordFormat::Full, "full", "32 bytes"},
     {HitRecordFormat::Packed, "packed", "16 bytes, with less precision"},
@@ -121,6 +126,9 @@ constexpr std::span<const Named<Tracer>> namesOf(Tracer /*type*/) {
 }
 constexpr std::span<const Named<ShadowPlacement>> namesOf(ShadowPlacement /*type*/) {
     return kShadowNames;
+}
+constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
+    return kAlphaNames;
 }
 constexpr std::span<const Named<HitRecordFormat>> namesOf(HitRecordFormat /*type*/) {
     return kHitRecordNames;

@@ -4,13 +4,14 @@
 #include <iostream>
 
 int main() {
-    glint::Scene scene;
+    glint::gltf::Scene scene;
     scene.materials.emplace_back();
-    glint::Primitive triangle;
+    glint::gltf::Primitive triangle;
     triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     triangle.indices = {0, 1, 2};
     scene.meshes.push_back({"triangle", {triangle}});
-    const glint::Result<glint::CompiledPackage> package = glint::compilePackage(scene, {});
+    const glint::Result<glint::compiler::CompiledPackage> package =
+        glint::compiler::compilePackage(scene, {});
     if (!package) {
         std::cerr << glint::toString(package.error()) << '\n';
         return 1;

@@ -4,7 +4,7 @@
 #include <iostream>
 
 int main(int argc, char** argv) {
-    const glint::Result<glint::Scene> scene = glint::importScene(argc > 1 ? argv[1] : "", {});
+    const glint::Result<glint::gltf::Scene> scene = glint::gltf::importScene(argc > 1 ? argv[1] : "", {});
     if (!scene) {
         std::cerr << glint::toString(scene.error()) << '\n';
         return 1;

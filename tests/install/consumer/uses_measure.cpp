@@ -13,9 +13,10 @@ int main() {
     if (interval.median != 4.2 || interval.low != 4.0 || interval.high != 9.0) {
         return 1;
     }
-    const glint::Configuration usual = glint::configurationOf(glint::Settings());
+    const glint::compiler::Configuration usual =
+        glint::compiler::configurationOf(glint::compiler::Settings());
     const std::vector<glint::measure::Setting> settings = glint::measure::settingsFor({}, usual, true);
-    const std::vector<glint::Configuration> singles = glint::measure::singles(settings, usual);
+    const std::vector<glint::compiler::Configuration> singles = glint::measure::singles(settings, usual);
     std::cout << settings.size() << " settings, " << singles.size() << " configurations\n";
-    return settings.size() != glint::settingNames().size() || singles.empty() ? 1 : 0;
+    return settings.size() != glint::compiler::settingNames().size() || singles.empty() ? 1 : 0;
 }

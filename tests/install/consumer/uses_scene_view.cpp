@@ -10,9 +10,9 @@
 #include <iostream>
 
 int main(int argc, char** argv) {
-    glint::ImportOptions import;
+    glint::gltf::ImportOptions import;
     import.decodeImages = true;
-    const glint::Result<glint::Scene> scene = glint::importScene(argc > 1 ? argv[1] : "", import);
+    const glint::Result<glint::gltf::Scene> scene = glint::gltf::importScene(argc > 1 ? argv[1] : "", import);
     if (!scene) {
         std::cerr << glint::toString(scene.error()) << '\n';
         return 1;

@@ -19,7 +19,7 @@ glm::vec<n, double> toVec(const std::array<float, n>& v) {
     return result;
 }
 
-glm::dmat4 toMatrix(const Matrix4& m) {
+glm::dmat4 toMatrix(const gltf::Matrix4& m) {
     glm::dmat4 matrix;
     for (std::size_t i = 0; i < m.size(); ++i) {
         matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = m[i];
@@ -38,21 +38,22 @@ auto mixed(const std::vector<Value>& values, const std::array<std::uint32_t, 3>&
 }  // namespace
 
 struct SceneGeometry::Source {
-    const Primitive* primitive = nullptr;
+    const gltf::Primitive* primitive = nullptr;
     glm::dmat3 linear{1.0};
     glm::dmat3 normalMatrix{1.0};
     bool mirrored = false;
     std::array<std::uint32_t, 3> corners{};  // counter-clockwise in the world, seen from the front
 };
 
-SceneGeometry::SceneGeometry(const Scene& scene, PointIsThere isThere)
+SceneGeometry::SceneGeometry(const gltf::Scene& scene, PointIsThere isThere)
     : scene_(scene), isThere_(std::move(isThere)) {
     std::vector<Triangle> triangles;
     double size = 0.0;
-    for (const Node& node : scene.nodes) {
-        for (const Matrix4& place : gltf::placesOf(scene, node)) {
+    for (const gltf::Node& node : scene.nodes) {
+        for (const gltf::Matrix4& place : gltf::placesOf(scene, node)) {
             const glm::dmat4 world = toMatrix(place);
-            for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+            for (const gltf::Primitive& primitive :
+                 scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                 Source source{&primitive, glm::dmat3(world), {}, false, {}};
                 source.normalMatrix = glm::transpose(glm::inverse(source.linear));
                 source.mirrored = glm::determinant(source.linear) < 0.0;
@@ -92,7 +93,7 @@ std::size_t SceneGeometry::triangleCount() const {
 SurfacePoint SceneGeometry::pointOf(const TriangleHit& hit, const Ray& ray) const {
     const Triangle& triangle = triangles_->at(hit.triangle);
     const Source& source = sources_[hit.triangle];
-    const Primitive& primitive = *source.primitive;
+    const gltf::Primitive& primitive = *source.primitive;
     const auto& corners = source.corners;
     const Vec3 weights(1.0 - hit.u - hit.v, hit.u, hit.v);
     SurfacePoint point;
@@ -116,7 +117,7 @@ SurfacePoint SceneGeometry::pointOf(const TriangleHit& hit, const Ray& ray) cons
         }
     }
     for (std::size_t set = 0; set < 2; ++set) {
-        const std::vector<Float2>& all = set == 0 ? primitive.texCoords0 : primitive.texCoords1;
+        const std::vector<gltf::Float2>& all = set == 0 ? primitive.texCoords0 : primitive.texCoords1;
         if (!all.empty()) {
             point.texCoords[set] = mixed(all, corners, weights);
             point.texCoordEdges[set] = {toVec(all[corners[1]]) - toVec(all[corners[0]]),
@@ -134,7 +135,7 @@ SurfacePoint SceneGeometry::pointOf(const TriangleHit& hit, const Ray& ray) cons
 
 bool SceneGeometry::isThereAt(const TriangleHit& hit, const Ray& ray) const {
     const auto material = static_cast<std::size_t>(triangles_->at(hit.triangle).material);
-    return scene_.materials[material].alphaMode != AlphaMode::Mask || isThere_(pointOf(hit, ray));
+    return scene_.materials[material].alphaMode != materials::AlphaMode::Mask || isThere_(pointOf(hit, ray));
 }
 
 std::optional<SurfacePoint> SceneGeometry::closest(const Ray& ray) const {

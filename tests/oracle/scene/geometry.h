@@ -38,7 +38,7 @@ class SceneGeometry {
 public:
     // Takes the meshes of all nodes in their rest pose, without skins and morph targets. The scene must
     // outlive it. `isThere` is called for masked materials.
-    SceneGeometry(const Scene& scene, PointIsThere isThere);
+    SceneGeometry(const gltf::Scene& scene, PointIsThere isThere);
     ~SceneGeometry();
     SceneGeometry(const SceneGeometry&) = delete;
     SceneGeometry& operator=(const SceneGeometry&) = delete;
@@ -55,7 +55,7 @@ private:
     SurfacePoint pointOf(const TriangleHit& hit, const Ray& ray) const;
     bool isThereAt(const TriangleHit& hit, const Ray& ray) const;
 
-    const Scene& scene_;
+    const gltf::Scene& scene_;
     PointIsThere isThere_;
     std::vector<Source> sources_;
     std::unique_ptr<Triangles> triangles_;

@@ -13,22 +13,22 @@ namespace glint::oracle {
 namespace {
 
 // The sun of glint render.
-Light sun() {
+gltf::Light sun() {
     const LightView view = scene_view::sunLight();
-    Light light;
+    gltf::Light light;
     light.name = "sun";
     light.color = view.intensity;
     light.direction = view.direction;
     return light;
 }
 
-bool moves(const Scene& scene) {
-    return std::ranges::any_of(scene.nodes, [&](const Node& node) {
+bool moves(const gltf::Scene& scene) {
+    return std::ranges::any_of(scene.nodes, [&](const gltf::Node& node) {
         if (node.mesh < 0) {
             return false;
         }
-        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
-        return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
+        const gltf::Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+        return std::ranges::any_of(mesh.primitives, [&](const gltf::Primitive& primitive) {
             return !primitive.targets.empty() || (node.skin >= 0 && primitive.influences.count > 0);
         });
     });
@@ -37,10 +37,10 @@ bool moves(const Scene& scene) {
 }  // namespace
 
 Result<OracleInput> readOracleInput(const SceneChoice& choice, std::uint32_t width, std::uint32_t height) {
-    ImportOptions options;
+    gltf::ImportOptions options;
     options.decodeImages = true;
     options.variant = choice.variant;
-    Result<Scene> scene = importScene(choice.path, options);
+    Result<gltf::Scene> scene = gltf::importScene(choice.path, options);
     if (!scene) {
         return scene.error();
     }

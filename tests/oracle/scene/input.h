@@ -21,7 +21,7 @@ struct SceneChoice {
 };
 
 struct OracleInput {
-    Scene scene;  // with its pixels; and a sun where the file has no light, as glint render adds one
+    gltf::Scene scene;  // with its pixels; and a sun where the file has no light, as glint render adds one
     CameraView camera;
     View view;
 };

@@ -27,7 +27,7 @@ public:
     // Applies glTF 2.0, 3.9.4, alphaMode MASK.
     bool passesAlphaMask() const;
 
-    const Material& material() const {
+    const materials::Material& material() const {
         return material_;
     }
     const SurfacePoint& point() const {
@@ -39,7 +39,7 @@ private:
 
     const Textures& textures_;
     const SurfacePoint& point_;
-    const Material& material_;
+    const materials::Material& material_;
 };
 
 }  // namespace glint::oracle

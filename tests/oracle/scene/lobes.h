@@ -25,7 +25,7 @@ struct Base {
 
 // glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular; KHR_materials_pbrSpecularGlossiness.
 Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
-    const Material& material = inputs.material();
+    const materials::Material& material = inputs.material();
     const glm::dvec4 texel = inputs.texel("metallicRoughnessTexture");
     Base base;
     base.color = Vec3(inputs.baseColor());
@@ -72,7 +72,7 @@ struct SurfaceLobes {
         if (inputs.material().isUnlit()) {
             return;
         }
-        const Material& material = inputs.material();
+        const materials::Material& material = inputs.material();
         const Vec3 normal = side * inputs.mappedNormal("normalTexture", material["normalScale"]);
         frame = frameAbout(normal);
         bsdf.eta = Vec3(1.0);
@@ -111,7 +111,7 @@ struct SurfaceLobes {
 
     // KHR_materials_anisotropy.
     void applyAnisotropy() {
-        const Material& given = inputs.material();
+        const materials::Material& given = inputs.material();
         if (given["anisotropyStrength"] == 0.0F || !inputs.hasDirection()) {
             return;
         }
@@ -142,7 +142,7 @@ struct SurfaceLobes {
 
     // KHR_materials_iridescence, at the angle of the view.
     void applyIridescence() {
-        const Material& given = inputs.material();
+        const materials::Material& given = inputs.material();
         if (given["iridescenceFactor"] == 0.0F || given["iridescenceIor"] == 1.0F) {
             return;
         }
@@ -164,7 +164,7 @@ struct SurfaceLobes {
 
     // KHR_materials_transmission, _diffuse_transmission, _volume, _dispersion.
     void applyTransmission(const Base& base) {
-        const Material& material = inputs.material();
+        const materials::Material& material = inputs.material();
         const double dielectric = 1.0 - base.metallic;
         double passed = 0.0;
         if (material["transmissionFactor"] > 0.0F) {
@@ -188,7 +188,7 @@ struct SurfaceLobes {
     }
 
     void applyVolume() {
-        const Material& material = inputs.material();
+        const materials::Material& material = inputs.material();
         lobes |= GLINT_VOLUME;
         Vec3 iors(material["ior"]);
         if (material["dispersion"] > 0.0F && has(GLINT_TRANSMISSION)) {
@@ -213,7 +213,7 @@ struct SurfaceLobes {
     }
 
     void applySheen() {
-        const Material& given = inputs.material();
+        const materials::Material& given = inputs.material();
         if (toVec(given["sheenColorFactor"]) == Vec3(0.0)) {
             return;
         }
@@ -226,7 +226,7 @@ struct SurfaceLobes {
 
     // KHR_materials_clearcoat: the coat has the mesh's normals unless it has a texture of its own.
     void applyClearcoat() {
-        const Material& given = inputs.material();
+        const materials::Material& given = inputs.material();
         if (given["clearcoatFactor"] == 0.0F) {
             return;
         }

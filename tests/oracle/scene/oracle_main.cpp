@@ -52,12 +52,12 @@ Strata strataOf(std::uint32_t samples) {
 }
 
 Result<SrgbTable> readTexels(const std::string& path) {
-    const Result<LinearImage> picture = readImage(path);
+    const Result<LinearImage> picture = image::readImage(path);
     return picture ? texelsOf(*picture, path) : Result<SrgbTable>(picture.error());
 }
 
 Result<LinearImage> readPicture(const std::string& path, const Picture& truth) {
-    Result<LinearImage> picture = readImage(path);
+    Result<LinearImage> picture = image::readImage(path);
     if (picture && (picture->width != truth.width || picture->height != truth.height)) {
         return makeError("image-mismatch", path,
                          fmt::format("is not of {}x{} pixels", truth.width, truth.height),
@@ -117,7 +117,7 @@ Status run(const Settings& settings) {
                               ? centrePicture(renderer, input->view)
                               : meanPicture(renderer, input->view, strataOf(settings.samples));
     if (!settings.picture.empty()) {
-        if (Status status = writeImage(settings.picture, toImage(truth), 0.0); !status) {
+        if (Status status = image::writeImage(settings.picture, toImage(truth), 0.0); !status) {
             return status;
         }
     }
@@ -133,15 +133,16 @@ Status run(const Settings& settings) {
         return difference.error();
     }
     if (!settings.difference.empty()) {
-        if (Status status = writeImage(settings.difference, differenceMap(*device, toImage(truth)));
+        if (Status status =
+                image::writeImage(settings.difference, image::differenceMap(*device, toImage(truth)));
             !status) {
             return status;
         }
     }
     std::fputs(toText(*difference, settings.list).c_str(), stdout);
-    return settings.json.empty()
-               ? okStatus()
-               : writeFile(settings.json, toJson(*difference, settings.samples, settings.deviceSamples));
+    return settings.json.empty() ? okStatus()
+                                 : base::writeFile(settings.json, toJson(*difference, settings.samples,
+                                                                         settings.deviceSamples));
 }
 
 int parseAndRun(int argc, char** argv) {

@@ -62,12 +62,12 @@ public:
     }
 
 private:
-    static CompileSettings settings() {
-        CompileSettings settings;
+    static compiler::CompileSettings settings() {
+        compiler::CompileSettings settings;
         settings.effects = {false, package::kEffectShadow | package::kEffectReflection, kMirrorRoughness};
-        settings.plan.keys.alpha = AlphaPolicy::Tested;
-        settings.plan.merge = MergePolicy::All;
-        settings.textureLod = TextureLod::Mip0;
+        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+        settings.plan.merge = compiler::MergePolicy::All;
+        settings.textureLod = compiler::TextureLod::Mip0;
         return settings;
     }
 
@@ -103,7 +103,8 @@ const SrgbTable& sharedTexels() {
 // Each value is nearer to its own number than to any other, so that encoding it again gives the same number.
 TEST(RealScenes, TheDeviceDecodesTexelsWithinHalfAStep) {
     for (std::size_t i = 0; i < sharedTexels().size(); ++i) {
-        EXPECT_NEAR(255.0 * linearToSrgb(static_cast<float>(sharedTexels()[i])), static_cast<double>(i), 0.5);
+        EXPECT_NEAR(255.0 * image::linearToSrgb(static_cast<float>(sharedTexels()[i])),
+                    static_cast<double>(i), 0.5);
     }
 }
 

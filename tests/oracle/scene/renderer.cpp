@@ -34,7 +34,7 @@ struct SceneRenderer::Direct {
     bool visible = false;
 };
 
-SceneRenderer::SceneRenderer(const Scene& scene, const RendererSettings& settings)
+SceneRenderer::SceneRenderer(const gltf::Scene& scene, const RendererSettings& settings)
     : textures_(scene, settings.srgb),
       settings_(settings),
       geometry_(scene,
@@ -43,7 +43,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, const RendererSettings& setting
 std::vector<SceneRenderer::Direct> SceneRenderer::directLights(const LitSurface& surface,
                                                                const Vec3& position, Path* path) const {
     std::vector<Direct> all;
-    for (const Light& light : scene().lights) {
+    for (const gltf::Light& light : scene().lights) {
         if (!light.shown) {
             continue;
         }

@@ -41,9 +41,9 @@ class SceneRenderer {
 public:
     // Uses everything in the scene as it is; lights that a viewer adds are among the scene's. The scene must
     // outlive the object.
-    SceneRenderer(const Scene& scene, const RendererSettings& settings);
+    SceneRenderer(const gltf::Scene& scene, const RendererSettings& settings);
 
-    const Scene& scene() const {
+    const gltf::Scene& scene() const {
         return textures_.scene();
     }
     // Appends to `path` if it is not null. Several threads may call this.

@@ -38,21 +38,21 @@ constexpr float kCorners[6][5] = {{-1, -1, 0, 0, 1}, {1, -1, 0, 1, 1}, {1, 1, 0,
 }  // namespace
 
 Status writeTexelScene(const std::filesystem::path& folder) {
-    DisplayImage image{kSide, kSide, {}};
+    image::DisplayImage image{kSide, kSide, {}};
     for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
         const auto grey = static_cast<std::uint8_t>(i);
         image.pixels.push_back({grey, grey, grey});
     }
-    if (Status status = writeImage(folder / "texels.png", image); !status) {
+    if (Status status = image::writeImage(folder / "texels.png", image); !status) {
         return status;
     }
     // glTF is little-endian, and so are all machines that Glint runs on.
     std::string corners(sizeof kCorners, '\0');
     std::memcpy(corners.data(), kCorners, sizeof kCorners);
-    if (Status status = writeFile(folder / "texels.bin", corners); !status) {
+    if (Status status = base::writeFile(folder / "texels.bin", corners); !status) {
         return status;
     }
-    return writeFile(folder / "texels.gltf", std::string(kScene));
+    return base::writeFile(folder / "texels.gltf", std::string(kScene));
 }
 
 Result<SrgbTable> texelsOf(const LinearImage& picture, const std::string& where) {

@@ -14,16 +14,16 @@ double decodeSrgb(double value) {
     return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }
 
-int wrapped(std::int64_t texel, int size, Wrap wrap) {
+int wrapped(std::int64_t texel, int size, gltf::Wrap wrap) {
     const auto modulo = [](std::int64_t value, std::int64_t by) { return ((value % by) + by) % by; };
     switch (wrap) {
-        case Wrap::ClampToEdge:
+        case gltf::Wrap::ClampToEdge:
             return static_cast<int>(std::clamp<std::int64_t>(texel, 0, size - 1));
-        case Wrap::MirroredRepeat: {
+        case gltf::Wrap::MirroredRepeat: {
             const std::int64_t place = modulo(texel, 2LL * size);
             return static_cast<int>(place < size ? place : 2LL * size - 1 - place);
         }
-        case Wrap::Repeat:
+        case gltf::Wrap::Repeat:
             break;
     }
     return static_cast<int>(modulo(texel, size));
@@ -32,12 +32,12 @@ int wrapped(std::int64_t texel, int size, Wrap wrap) {
 class Texels {
 public:
     // `srgb` is null if the texels are linear.
-    Texels(const Image& image, const Sampler& sampler, const SrgbTable* srgb)
+    Texels(const gltf::Image& image, const gltf::Sampler& sampler, const SrgbTable* srgb)
         : image_(image), sampler_(sampler), srgb_(srgb) {}
 
     glm::dvec4 sample(const Vec2& uv) const {
         const Vec2 place = uv * Vec2(image_.width, image_.height);
-        if (sampler_.magnification == Filter::Nearest) {
+        if (sampler_.magnification == gltf::Filter::Nearest) {
             return at(std::floor(place.x), std::floor(place.y));
         }
         const Vec2 corner = glm::floor(place - 0.5);
@@ -61,7 +61,7 @@ private:
         return texel;
     }
     double value(std::size_t index, bool encoded) const {
-        if (image_.format == PixelFormat::Rgba16) {
+        if (image_.format == gltf::PixelFormat::Rgba16) {
             std::uint16_t bits = 0;
             std::memcpy(&bits, image_.pixels.data() + 2 * index, sizeof bits);
             return encoded ? decodeSrgb(bits / 65535.0) : bits / 65535.0;
@@ -70,21 +70,21 @@ private:
         return encoded ? (*srgb_)[bits] : bits / 255.0;
     }
 
-    const Image& image_;
-    const Sampler& sampler_;
+    const gltf::Image& image_;
+    const gltf::Sampler& sampler_;
     const SrgbTable* srgb_;
 };
 
 }  // namespace
 
-bool isSrgb(const Material& material, std::string_view slot) {
+bool isSrgb(const materials::Material& material, std::string_view slot) {
     constexpr std::string_view kColors[] = {"baseColorTexture", "emissiveTexture", "sheenColorTexture",
                                             "specularColorTexture", "diffuseTransmissionColorTexture"};
     return std::ranges::find(kColors, slot) != std::end(kColors) ||
            (slot == "metallicRoughnessTexture" && material.gives("KHR_materials_pbrSpecularGlossiness"));
 }
 
-std::optional<Vec2> textureCoordinates(const TextureInfo& info, const SurfacePoint& point) {
+std::optional<Vec2> textureCoordinates(const materials::TextureInfo& info, const SurfacePoint& point) {
     if (info.texture < 0 || info.texCoord > 1) {
         return std::nullopt;
     }
@@ -92,7 +92,7 @@ std::optional<Vec2> textureCoordinates(const TextureInfo& info, const SurfacePoi
     if (!given) {
         return std::nullopt;
     }
-    const TextureTransform& transform = info.transform;
+    const materials::TextureTransform& transform = info.transform;
     const double cosine = std::cos(static_cast<double>(transform.rotation));
     const double sine = std::sin(static_cast<double>(transform.rotation));
     const Vec2 scaled = *given * Vec2(transform.scale[0], transform.scale[1]);
@@ -108,14 +108,14 @@ SrgbTable exactSrgb() {
     return table;
 }
 
-std::optional<glm::dvec4> Textures::sample(const Material& material, std::string_view slot,
+std::optional<glm::dvec4> Textures::sample(const materials::Material& material, std::string_view slot,
                                            const SurfacePoint& point) const {
-    const TextureInfo& info = material.texture(slot);
+    const materials::TextureInfo& info = material.texture(slot);
     const std::optional<Vec2> uv = textureCoordinates(info, point);
     if (!uv) {
         return std::nullopt;
     }
-    const Texture& texture = scene_.textures[static_cast<std::size_t>(info.texture)];
+    const gltf::Texture& texture = scene_.textures[static_cast<std::size_t>(info.texture)];
     return Texels(scene_.images[static_cast<std::size_t>(texture.image)],
                   scene_.samplers[static_cast<std::size_t>(texture.sampler)],
                   isSrgb(material, slot) ? &srgb_ : nullptr)

@@ -11,11 +11,11 @@
 namespace glint::oracle {
 
 // Returns whether a slot holds colours with the sRGB transfer function: glTF 2.0 and its extensions.
-bool isSrgb(const Material& material, std::string_view slot);
+bool isSrgb(const materials::Material& material, std::string_view slot);
 
 // Returns the transformed UVs that a slot reads (KHR_texture_transform), or nothing if it has no texture or
 // the surface lacks that set.
-std::optional<Vec2> textureCoordinates(const TextureInfo& info, const SurfacePoint& point);
+std::optional<Vec2> textureCoordinates(const materials::TextureInfo& info, const SurfacePoint& point);
 
 // The linear values of 8-bit sRGB texels.
 using SrgbTable = std::array<double, 256>;
@@ -25,18 +25,18 @@ SrgbTable exactSrgb();
 class Textures {
 public:
     // The images must be decoded. The scene must outlive the object.
-    Textures(const Scene& scene, const SrgbTable& srgb) : scene_(scene), srgb_(srgb) {}
+    Textures(const gltf::Scene& scene, const SrgbTable& srgb) : scene_(scene), srgb_(srgb) {}
 
-    const Scene& scene() const {
+    const gltf::Scene& scene() const {
         return scene_;
     }
     // Returns RGBA in [0, 1] with linear colours: texels are first decoded, then filtered. Returns nothing if
     // there is nothing to read.
-    std::optional<glm::dvec4> sample(const Material& material, std::string_view slot,
+    std::optional<glm::dvec4> sample(const materials::Material& material, std::string_view slot,
                                      const SurfacePoint& point) const;
 
 private:
-    const Scene& scene_;
+    const gltf::Scene& scene_;
     SrgbTable srgb_;
 };
 

@@ -105,7 +105,7 @@ void addLights(test::GltfBuilder& file) {
 
 // Returns the file as Glint imports it. The pixels of textures are put in afterwards, because no file format
 // has to be read to compare what they mean.
-Result<Scene> sceneOf(const Rows& rows) {
+Result<gltf::Scene> sceneOf(const Rows& rows) {
     test::GltfBuilder file;
     file.root["extensionsUsed"] = Json::array();
     const int positions = file.addAccessor<float>({-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0}, 3);
@@ -139,10 +139,10 @@ Result<Scene> sceneOf(const Rows& rows) {
         file.root["nodes"].back()["matrix"] = matrixOf(plane.frame, plane.center);
     }
     addLights(file);
-    Result<Scene> scene = test::import(file);
+    Result<gltf::Scene> scene = test::import(file);
     if (scene) {
         // Images that no material uses are left out.
-        for (Image& image : scene->images) {
+        for (gltf::Image& image : scene->images) {
             const Texel& texel = rows.texels.at(std::stoul(image.name));
             image.width = image.height = 1;
             image.pixels.assign(texel.begin(), texel.end());
@@ -169,7 +169,7 @@ Measured average(const LinearImage& image) {
 
 Device::Device(const Rows& rows, const DeviceOptions& options)
     : options_(options), rowCount_(rows.rows.size()) {
-    const Result<Scene> scene = sceneOf(rows);
+    const Result<gltf::Scene> scene = sceneOf(rows);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
         return;
@@ -177,9 +177,9 @@ Device::Device(const Rows& rows, const DeviceOptions& options)
     for (const Diagnostic& warning : scene->warnings) {
         ADD_FAILURE() << toString(warning);
     }
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.merge = MergePolicy::All;
+    settings.plan.merge = compiler::MergePolicy::All;
     settings.environmentMap = true;
     settings.energyCompensation = options.compensation;
     settings.effects = {

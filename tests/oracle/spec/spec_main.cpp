@@ -90,7 +90,7 @@ int compareAll(const Rows& rows, Settings settings, std::vector<Comparison>& tab
 }
 
 Status write(const std::string& path, const std::string& text) {
-    return path.empty() ? okStatus() : writeFile(path, text);
+    return path.empty() ? okStatus() : base::writeFile(path, text);
 }
 
 int parseAndRun(int argc, char** argv) {

@@ -86,7 +86,7 @@ Status TraceKernel::createPipeline(VkDescriptorSetLayout layout) {
     }
     layout_ = UniquePipelineLayout(context_, handle);
     const Result<std::vector<std::uint32_t>> words =
-        compileShader({"trace", ShaderStage::Compute, kShader}, {});
+        compiler::compileShader({"trace", compiler::ShaderStage::Compute, kShader}, {});
     if (!words) {
         return words.error();
     }

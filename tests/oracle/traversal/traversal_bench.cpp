@@ -178,10 +178,10 @@ double costOf(const scene_view::SceneViewData& data, const Variant& variant) {
 }
 
 // Compiles as little as possible, because the scene is only uploaded.
-Result<Package> packageOf(const Scene& scene) {
-    CompileSettings settings;
+Result<Package> packageOf(const gltf::Scene& scene) {
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.merge = MergePolicy::All;
+    settings.plan.merge = compiler::MergePolicy::All;
     settings.plan.maxShaders = 1;
     return scene_view::compileAndLoad(scene, settings);
 }
@@ -192,9 +192,9 @@ public:
 
     // Returns nothing if the scene has no triangles that a ray could meet.
     Result<std::optional<Measured>> run(const std::filesystem::path& file) {
-        ImportOptions import;
+        gltf::ImportOptions import;
         import.decodeImages = true;
-        const Result<Scene> scene = importScene(file, import);
+        const Result<gltf::Scene> scene = gltf::importScene(file, import);
         if (!scene) {
             return scene.error();
         }
@@ -233,7 +233,7 @@ public:
     }
 
 private:
-    Status upload(const Scene& scene, scene_view::SceneViewData& data, Measured& measured) {
+    Status upload(const gltf::Scene& scene, scene_view::SceneViewData& data, Measured& measured) {
         const Result<Package> package = packageOf(scene);
         if (!package) {
             return package.error();

@@ -17,35 +17,36 @@ namespace {
 class Modules : public ::testing::Test {
 protected:
     // Returns the number of modules that were compiled; -1 after an error.
-    int compile(std::vector<ModuleSource> sources, ModuleCache* cache, bool debugInfo = false) {
-        Result<std::vector<CompiledModule>> compiled =
+    int compile(std::vector<compiler::ModuleSource> sources, compiler::ModuleCache* cache,
+                bool debugInfo = false) {
+        Result<std::vector<compiler::CompiledModule>> compiled =
             compileModules(std::move(sources), 2, debugInfo, cache);
         EXPECT_TRUE(compiled) << toString(compiled.error());
         if (!compiled) {
             return -1;
         }
         modules_ = std::move(*compiled);
-        return static_cast<int>(std::ranges::count_if(modules_, &CompiledModule::compiled));
+        return static_cast<int>(std::ranges::count_if(modules_, &compiler::CompiledModule::compiled));
     }
-    CacheStore& store() {
+    compiler::CacheStore& store() {
         return store_;
     }
 
-    std::vector<CompiledModule> modules_;
+    std::vector<compiler::CompiledModule> modules_;
 
 private:
     test::TemporaryFolder folder_;
-    CacheStore store_{StoreOptions{folder_.path(), 1ULL << 24, {}}};
+    compiler::CacheStore store_{compiler::StoreOptions{folder_.path(), 1ULL << 24, {}}};
 };
 
 TEST_F(Modules, ComeFromTheCacheAsTheyWereCompiled) {
-    ModuleCache cache(store(), "compiler");
+    compiler::ModuleCache cache(store(), "compiler");
     const auto sources = [] {
         return std::vector{testing::makeTinyModule(0, "data.x = 1u;"),
                            testing::makeTinyModule(1, "data.x = 2u;")};
     };
     EXPECT_EQ(compile(sources(), &cache), 2);
-    const std::vector<CompiledModule> first = modules_;
+    const std::vector<compiler::CompiledModule> first = modules_;
     EXPECT_EQ(compile(sources(), &cache), 0);
     for (std::size_t i = 0; i < first.size(); ++i) {
         EXPECT_EQ(modules_[i].spirv, first[i].spirv);
@@ -58,7 +59,7 @@ TEST_F(Modules, ComeFromTheCacheAsTheyWereCompiled) {
 }
 
 TEST_F(Modules, CommentsPlacesAndNamesDoNotCountWithoutDebugInfo) {
-    ModuleCache cache(store(), "compiler");
+    compiler::ModuleCache cache(store(), "compiler");
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
     const std::vector<std::uint32_t> words = modules_[0].spirv;
     EXPECT_EQ(
@@ -73,11 +74,11 @@ TEST_F(Modules, CommentsPlacesAndNamesDoNotCountWithoutDebugInfo) {
 }
 
 TEST_F(Modules, WhatDecidesAboutTheWordsCounts) {
-    ModuleCache cache(store(), "compiler");
-    ModuleCache other(store(), "another compiler");
+    compiler::ModuleCache cache(store(), "compiler");
+    compiler::ModuleCache other(store(), "another compiler");
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &other), 1);
-    ModuleSource apart = testing::makeTinyModule(0, "data.x = 1u;");
+    compiler::ModuleSource apart = testing::makeTinyModule(0, "data.x = 1u;");
     apart.functionsApart = {"other"};
     EXPECT_EQ(compile({apart}, &cache), 1);
 }
@@ -93,8 +94,9 @@ TEST_F(Modules, EqualTextsAreCompiledOnce) {
 
 TEST_F(Modules, CollisionsAreCompiled) {
     test::TemporaryFolder folder;
-    CacheStore colliding({folder.path(), 1ULL << 24, [](std::string_view) { return std::uint64_t{1}; }});
-    ModuleCache cache(colliding, "compiler");
+    compiler::CacheStore colliding(
+        {folder.path(), 1ULL << 24, [](std::string_view) { return std::uint64_t{1}; }});
+    compiler::ModuleCache cache(colliding, "compiler");
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
     const std::vector<std::uint32_t> words = modules_[0].spirv;
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 2u;")}, &cache), 1);
@@ -102,10 +104,10 @@ TEST_F(Modules, CollisionsAreCompiled) {
 }
 
 TEST(CompilerIdentity, NamesItsParts) {
-    const std::string identity = compilerIdentity();
+    const std::string identity = compiler::compilerIdentity();
     EXPECT_NE(identity.find("glslang"), std::string::npos) << identity;
     EXPECT_NE(identity.find("SPIRV-Tools"), std::string::npos) << identity;
-    EXPECT_EQ(identity, compilerIdentity());
+    EXPECT_EQ(identity, compiler::compilerIdentity());
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ std::vector<fs::path> entriesOf(const fs::path& folder) {
 
 class Store : public ::testing::Test {
 protected:
-    StoreOptions options() const {
+    compiler::StoreOptions options() const {
         return {folder_.path() / "cache", 1ULL << 20, {}};
     }
     fs::path folder() const {
@@ -40,7 +40,7 @@ private:
 };
 
 TEST_F(Store, GivesBackWhatWasPut) {
-    CacheStore store(options());
+    compiler::CacheStore store(options());
     EXPECT_FALSE(store.find("module", "key"));
     store.put("module", "key", std::string("a\0b", 3));
     store.put("module", "", "");
@@ -48,14 +48,14 @@ TEST_F(Store, GivesBackWhatWasPut) {
     EXPECT_EQ(store.find("module", ""), "");
     EXPECT_FALSE(store.find("module", "key2"));
     EXPECT_FALSE(store.find("action", "key"));
-    EXPECT_EQ(CacheStore(options()).find("module", "key"), std::string("a\0b", 3));
+    EXPECT_EQ(compiler::CacheStore(options()).find("module", "key"), std::string("a\0b", 3));
     EXPECT_FALSE(store.trouble());
 }
 
 TEST_F(Store, ComparesTheWholeKey) {
-    StoreOptions colliding = options();
+    compiler::StoreOptions colliding = options();
     colliding.hash = [](std::string_view) { return std::uint64_t{7}; };
-    CacheStore store(colliding);
+    compiler::CacheStore store(colliding);
     store.put("module", "first", "1");
     EXPECT_FALSE(store.find("module", "other"));
     store.put("module", "other", "2");
@@ -65,32 +65,32 @@ TEST_F(Store, ComparesTheWholeKey) {
 }
 
 TEST_F(Store, TakesNoDamagedEntryAndReplacesIt) {
-    CacheStore store(options());
+    compiler::CacheStore store(options());
     store.put("module", "key", "the value");
     const fs::path file = entriesOf(folder()).at(0);
-    const Result<Bytes> whole = readFile(file);
+    const Result<base::Bytes> whole = base::readFile(file);
     ASSERT_TRUE(whole);
     // Changes every byte, and cuts at every length.
     for (std::size_t i = 0; i < whole->size(); ++i) {
-        Bytes damaged = *whole;
+        base::Bytes damaged = *whole;
         damaged[i] ^= 0x10U;
-        ASSERT_TRUE(writeFile(file, damaged));
+        ASSERT_TRUE(base::writeFile(file, damaged));
         EXPECT_FALSE(store.find("module", "key")) << "byte " << i;
-        ASSERT_TRUE(writeFile(file, std::span(*whole).first(i)));
+        ASSERT_TRUE(base::writeFile(file, std::span(*whole).first(i)));
         EXPECT_FALSE(store.find("module", "key")) << "cut at " << i;
     }
-    Bytes longer = *whole;
+    base::Bytes longer = *whole;
     longer.push_back(0);
-    ASSERT_TRUE(writeFile(file, longer));
+    ASSERT_TRUE(base::writeFile(file, longer));
     EXPECT_FALSE(store.find("module", "key"));
     store.put("module", "key", "the value");
     EXPECT_EQ(store.find("module", "key"), "the value");
 }
 
 TEST_F(Store, RemovesWhatWasNotUsedForLongest) {
-    StoreOptions small = options();
+    compiler::StoreOptions small = options();
     small.maxBytes = 5000;
-    CacheStore store(small);
+    compiler::CacheStore store(small);
     const std::string value(1000, 'x');
     for (const char* const key : {"a", "b", "c", "d"}) {
         store.put("module", key, value);
@@ -114,13 +114,13 @@ TEST_F(Store, RemovesWhatWasNotUsedForLongest) {
 }
 
 TEST_F(Store, RemovesWhatKilledWritersLeft) {
-    CacheStore store(options());
+    compiler::CacheStore store(options());
     store.put("module", "key", "value");
     const fs::path file = entriesOf(folder()).at(0);
     const fs::path left = file.string() + ".tmp1-1";
     const fs::path young = file.string() + ".tmp2-1";
-    ASSERT_TRUE(writeFile(left, std::string_view("half")));
-    ASSERT_TRUE(writeFile(young, std::string_view("half")));
+    ASSERT_TRUE(base::writeFile(left, std::string_view("half")));
+    ASSERT_TRUE(base::writeFile(young, std::string_view("half")));
     fs::last_write_time(left, fs::file_time_type::clock::now() - std::chrono::hours(2));
     store.trim();
     EXPECT_FALSE(fs::exists(left));
@@ -129,15 +129,15 @@ TEST_F(Store, RemovesWhatKilledWritersLeft) {
 }
 
 TEST_F(Store, NotesAFolderThatCantBeWritten) {
-    ASSERT_TRUE(writeFile(folder(), std::string_view("a file")));
-    CacheStore store(options());
+    ASSERT_TRUE(base::writeFile(folder(), std::string_view("a file")));
+    compiler::CacheStore store(options());
     EXPECT_FALSE(store.find("module", "key"));
     store.put("module", "key", "value");
     store.trim();
     ASSERT_TRUE(store.trouble());
     EXPECT_EQ(store.trouble()->id, "cache-write");
     EXPECT_EQ(store.trouble()->severity, Severity::Note);
-    const Result<Bytes> file = readFile(folder());
+    const Result<base::Bytes> file = base::readFile(folder());
     ASSERT_TRUE(file);
     EXPECT_EQ(file->size(), 6U);
 }
@@ -153,8 +153,8 @@ std::string valueOf(const std::string& key) {
 
 // Writes and reads the same few keys again and again in a folder that is too small for them. Returns how
 // often a value was found, or -1 after a wrong one.
-int hammer(const StoreOptions& options, int rounds) {
-    CacheStore store(options);
+int hammer(const compiler::StoreOptions& options, int rounds) {
+    compiler::CacheStore store(options);
     int found = 0;
     for (int i = 0; i < rounds; ++i) {
         const std::string key = "key " + std::to_string(i % 16);
@@ -173,7 +173,7 @@ int hammer(const StoreOptions& options, int rounds) {
 }
 
 TEST_F(Store, ManyProcessesAndThreadsMayWriteAtOnce) {
-    StoreOptions small = options();
+    compiler::StoreOptions small = options();
     small.maxBytes = 100'000;
     constexpr int kRounds = 300;
     std::vector<pid_t> children;

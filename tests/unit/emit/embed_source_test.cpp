@@ -36,18 +36,18 @@ class EmbedSource : public ::testing::Test {
 protected:
     EmbedSource() : scene_(makeSampleScene()) {
         scene_.path = "folder/sample.gltf";
-        CompileSettings settings;
+        compiler::CompileSettings settings;
         settings.strategies = package::kStrategyVisibility;
         settings.emitGlsl = true;
         package_ = compileSample(settings);
     }
     Status write(const fs::path& source) const {
-        return writeEmbeddedSource(SceneList(std::span(&scene_, 1)), package_, source);
+        return writeEmbeddedSource(gltf::SceneList(std::span(&scene_, 1)), package_, source);
     }
 
     TemporaryFolder folder_;
-    Scene scene_;
-    CompiledPackage package_;
+    gltf::Scene scene_;
+    compiler::CompiledPackage package_;
 };
 
 int runCommand(const std::string& command) {
@@ -78,10 +78,10 @@ TEST_F(EmbedSource, HoldsTheFilesThatTheRuntimeReads) {
     ASSERT_EQ(runCommand("\"" + (code / "dump").string() + "\" \"" + dumped.string() + "\""), 0);
 
     std::vector<std::string> expected;
-    for (const PackageFile& file : package_.files) {
+    for (const compiler::PackageFile& file : package_.files) {
         if (file.name == "tables.bin" || file.name.ends_with(".spv")) {
             expected.push_back(file.name);
-            const Result<Bytes> bytes = readFile(dumped / file.name);
+            const Result<base::Bytes> bytes = base::readFile(dumped / file.name);
             ASSERT_TRUE(bytes) << toString(bytes.error());
             EXPECT_EQ(*bytes, file.bytes) << file.name;
         }
@@ -100,7 +100,8 @@ TEST_F(EmbedSource, FilesThatStayTheSameKeepTheirTime) {
     EXPECT_EQ(fs::last_write_time(source), early);
 
     // The tables change, but the declaration stays.
-    Bytes& tables = std::ranges::find(package_.files, "tables.bin", &PackageFile::name)->bytes;
+    base::Bytes& tables =
+        std::ranges::find(package_.files, "tables.bin", &compiler::PackageFile::name)->bytes;
     tables.back() ^= 1;
     ASSERT_TRUE(write(source));
     EXPECT_NE(fs::last_write_time(source), early);
@@ -115,7 +116,7 @@ TEST_F(EmbedSource, AFailureLeavesTheEarlierSource) {
     const Status written = write(source);
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().id, "output-write");
-    const Result<Bytes> kept = readFile(source);
+    const Result<base::Bytes> kept = base::readFile(source);
     ASSERT_TRUE(kept);
     EXPECT_EQ(std::string(kept->begin(), kept->end()), "earlier");
     EXPECT_EQ(filesOf(folder_.path()), (std::vector<std::string>{"a.cpp", "a.h"}));
@@ -124,8 +125,8 @@ TEST_F(EmbedSource, AFailureLeavesTheEarlierSource) {
 // Names are written into comments and literals of the code.
 TEST_F(EmbedSource, NamesOfFilesEndNoComment) {
     scene_.path = "line\\\nbreak.gltf";
-    const EmbeddedSource made =
-        makeEmbeddedSource(SceneList(std::span(&scene_, 1)), package_, "sample_package.h");
+    const compiler::EmbeddedSource made =
+        makeEmbeddedSource(gltf::SceneList(std::span(&scene_, 1)), package_, "sample_package.h");
     EXPECT_EQ(made.header.find("\\\n"), std::string::npos);
     EXPECT_NE(made.header.find("namespace glint::scene_line_break {"), std::string::npos) << made.header;
 }

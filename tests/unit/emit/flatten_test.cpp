@@ -11,12 +11,12 @@ namespace {
 using Files = std::map<std::string, std::string, std::less<>>;
 
 Result<std::string> flattenRoot(const Files& files, const std::string& text,
-                                FlattenSide side = FlattenSide::Glsl) {
-    const SourceLookup lookup = [&](std::string_view name) -> std::optional<std::string_view> {
+                                compiler::FlattenSide side = compiler::FlattenSide::Glsl) {
+    const compiler::SourceLookup lookup = [&](std::string_view name) -> std::optional<std::string_view> {
         const auto place = files.find(name);
         return place == files.end() ? std::nullopt : std::optional<std::string_view>(place->second);
     };
-    const Result<GlslUnit> unit = flatten("root.comp", text, lookup, side);
+    const Result<compiler::GlslUnit> unit = flatten("root.comp", text, lookup, side);
     return unit ? Result<std::string>(unit->withPlaces()) : unit.error();
 }
 
@@ -63,7 +63,7 @@ TEST(Flatten, KeepsTheGlslSide) {
 }
 
 TEST(Flatten, KeepsTheCppSideAndItsGuard) {
-    const auto text = flattenRoot({{"s.h", kShared}}, "#include \"s.h\"\n", FlattenSide::Cpp);
+    const auto text = flattenRoot({{"s.h", kShared}}, "#include \"s.h\"\n", compiler::FlattenSide::Cpp);
     ASSERT_TRUE(text) << toString(text.error());
     EXPECT_EQ(
         *text,

@@ -37,11 +37,11 @@ int compileWith(const std::filesystem::path& folder, const std::string& before, 
 }
 
 TEST(Header, CompilesOnItsOwnAndBesideTheInteropHeaders) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.merge = MergePolicy::None;
-    const CompiledPackage package = compileSample(settings);
-    const PackageFile* const header = findFile(package, "glint_tables.h");
+    settings.plan.merge = compiler::MergePolicy::None;
+    const compiler::CompiledPackage package = compileSample(settings);
+    const compiler::PackageFile* const header = findFile(package, "glint_tables.h");
     ASSERT_NE(header, nullptr);
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "glint_tables.h") << textOf(header);
@@ -54,9 +54,9 @@ TEST(Header, CompilesOnItsOwnAndBesideTheInteropHeaders) {
 }
 
 TEST(Header, CompilesForASceneWithoutPrimitives) {
-    Scene scene;
+    gltf::Scene scene;
     scene.path = "9 empty.gltf";
-    const Result<CompiledPackage> package = compilePackage(scene, {});
+    const Result<compiler::CompiledPackage> package = compiler::compilePackage(scene, {});
     ASSERT_TRUE(package) << toString(package.error());
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "glint_tables.h") << textOf(findFile(*package, "glint_tables.h"));
@@ -68,10 +68,10 @@ TEST(Header, CompilesForASceneWithoutPrimitives) {
 }
 
 TEST(HeaderNamespace, IsAnIdentifier) {
-    EXPECT_EQ(headerNamespace("a/b/Duck.gltf"), "scene_Duck");
-    EXPECT_EQ(headerNamespace("2-Cylinder  Engine.glb"), "scene_2_Cylinder_Engine");
-    EXPECT_EQ(headerNamespace("__.gltf"), "scene_");
-    EXPECT_EQ(headerNamespace("default.gltf"), "scene_default");
+    EXPECT_EQ(compiler::headerNamespace("a/b/Duck.gltf"), "scene_Duck");
+    EXPECT_EQ(compiler::headerNamespace("2-Cylinder  Engine.glb"), "scene_2_Cylinder_Engine");
+    EXPECT_EQ(compiler::headerNamespace("__.gltf"), "scene_");
+    EXPECT_EQ(compiler::headerNamespace("default.gltf"), "scene_default");
 }
 
 }  // namespace

@@ -34,9 +34,9 @@ protected:
     void TearDown() override {
         fs::current_path(before_);
     }
-    const CompiledPackage first_ =
+    const compiler::CompiledPackage first_ =
         makePackage({{"tables.bin", "one"}, {"same.spv", "same"}, {"old.spv", "x"}, {"glsl/a.comp", "a"}});
-    const CompiledPackage second_ =
+    const compiler::CompiledPackage second_ =
         makePackage({{"tables.bin", "two"}, {"same.spv", "same"}, {"new/b.spv", "y"}});
     const fs::path before_ = fs::current_path();
     TemporaryFolder temporary_;
@@ -109,9 +109,9 @@ TEST_F(WriteInPlace, ManifestCannotNameFilesElsewhere) {
     const Status status = writePackage(second_, ".");
     ASSERT_TRUE(status) << toString(status.error());
     EXPECT_TRUE(fs::exists(precious));
-    EXPECT_EQ(
-        manifestFiles(R"({"format":"glint-package","files":[{"file":"../a"},{"file":"/b"},{"file":"c/d"}]})"),
-        (std::set<std::string, std::less<>>{"c/d", "manifest.json", "tables.bin"}));
+    EXPECT_EQ(compiler::manifestFiles(
+                  R"({"format":"glint-package","files":[{"file":"../a"},{"file":"/b"},{"file":"c/d"}]})"),
+              (std::set<std::string, std::less<>>{"c/d", "manifest.json", "tables.bin"}));
 }
 
 // Each file says which writer made it, so that a mixture is detected.

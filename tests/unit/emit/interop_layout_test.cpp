@@ -30,14 +30,14 @@ std::map<std::uint32_t, ReflectedStruct> reflect(const std::vector<std::uint32_t
     std::map<std::uint32_t, ReflectedStruct> structs;
     std::map<std::uint32_t, std::uint32_t> strideOf;
     std::map<std::uint32_t, std::uint32_t> elementOf;
-    const Status status = visitSpirv(words, [&](const SpirvInstruction& instruction) {
+    const Status status = compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& instruction) {
         const auto& operands = instruction.operands;
         switch (instruction.opcode) {
             case spv::OpName:
-                structs[operands[0]].name = spirvString(operands.subspan(1));
+                structs[operands[0]].name = compiler::spirvString(operands.subspan(1));
                 break;
             case spv::OpMemberName:
-                structs[operands[0]].memberNames[operands[1]] = spirvString(operands.subspan(2));
+                structs[operands[0]].memberNames[operands[1]] = compiler::spirvString(operands.subspan(2));
                 break;
             case spv::OpMemberDecorate:
                 if (operands[2] == spv::DecorationOffset) {
@@ -67,7 +67,8 @@ std::map<std::uint32_t, ReflectedStruct> reflect(const std::vector<std::uint32_t
     return structs;
 }
 
-void expectEqual(const StructLayout& layout, const ReflectedStruct& reflected, const std::string& module) {
+void expectEqual(const compiler::StructLayout& layout, const ReflectedStruct& reflected,
+                 const std::string& module) {
     SCOPED_TRACE(module + ", " + std::string(layout.name));
     ASSERT_EQ(reflected.memberCount, layout.members.size());
     for (std::uint32_t i = 0; i < reflected.memberCount; ++i) {
@@ -82,11 +83,12 @@ void expectEqual(const StructLayout& layout, const ReflectedStruct& reflected, c
 }
 
 // Compares the layouts in every module that has them; each must occur in at least one.
-void expectInModules(const CompiledPackage& package, std::span<const StructLayout> layouts) {
+void expectInModules(const compiler::CompiledPackage& package,
+                     std::span<const compiler::StructLayout> layouts) {
     std::set<std::string_view> seen;
-    for (const CompiledModule& module : package.modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         const auto structs = reflect(module.spirv);
-        for (const StructLayout& layout : layouts) {
+        for (const compiler::StructLayout& layout : layouts) {
             for (const auto& [id, reflected] : structs) {
                 // The same structure in registers has no offsets.
                 if (reflected.name == layout.name && !reflected.offsets.empty()) {
@@ -96,44 +98,44 @@ void expectInModules(const CompiledPackage& package, std::span<const StructLayou
             }
         }
     }
-    for (const StructLayout& layout : layouts) {
+    for (const compiler::StructLayout& layout : layouts) {
         EXPECT_TRUE(seen.contains(layout.name)) << layout.name << " is in no module";
     }
 }
 
 TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.debugInfo = true;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
-    expectInModules(compileSample(settings), interopLayouts());
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    expectInModules(compileSample(settings), compiler::interopLayouts());
 }
 
 // The record of a material is declared, so its layout is made and not compiled.
 TEST(InteropLayout, OfMaterialsIsThatOfThePackage) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.debugInfo = true;
-    const CompiledPackage package = compileSample(settings);
-    const MaterialLayout layout = materialLayoutOf(package.plan);
-    std::vector<MemberLayout> members;
-    for (const RecordField& field : layout.fields) {
+    const compiler::CompiledPackage package = compileSample(settings);
+    const compiler::MaterialLayout layout = materialLayoutOf(package.plan);
+    std::vector<compiler::MemberLayout> members;
+    for (const compiler::RecordField& field : layout.fields) {
         members.push_back({field.name, field.offset});
     }
     members.push_back({"textures", layout.textureOffset});
-    const StructLayout record{"MaterialRecord", layout.bytes, members};
+    const compiler::StructLayout record{"MaterialRecord", layout.bytes, members};
     expectInModules(package, {&record, 1});
 }
 
 TEST(InteropLayout, OfThePassThatDeformsLikewise) {
-    Scene scene = makeSampleScene();
+    gltf::Scene scene = makeSampleScene();
     scene.meshes[0].primitives[0].targets.resize(1);
-    Node node;
+    gltf::Node node;
     node.mesh = 0;
     scene.nodes.push_back(node);
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.debugInfo = true;
-    const Result<CompiledPackage> package = compilePackage(scene, settings);
+    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings);
     ASSERT_TRUE(package) << toString(package.error());
-    expectInModules(*package, deformLayouts());
+    expectInModules(*package, compiler::deformLayouts());
 }
 
 }  // namespace

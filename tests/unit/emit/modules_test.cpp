@@ -11,7 +11,7 @@ namespace glint {
 namespace {
 
 TEST(CompileModules, SharesTheFileOfEqualSpirv) {
-    const auto modules = compileModules(
+    const auto modules = compiler::compileModules(
         {testing::makeTinyModule(0, "data.x = 1u + 1u;"), testing::makeTinyModule(1, "data.x = 3u;"),
          testing::makeTinyModule(2, "data.x = 2u;  // the same in the end")},
         2, false);
@@ -25,7 +25,7 @@ TEST(CompileModules, SharesTheFileOfEqualSpirv) {
 
 TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
     for (const int jobs : {1, 2, 8}) {
-        std::vector<ModuleSource> sources;
+        std::vector<compiler::ModuleSource> sources;
         sources.reserve(12);
         for (int i = 0; i < 12; ++i) {
             sources.push_back(
@@ -40,13 +40,13 @@ TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
 }
 
 TEST(CompileModules, TakesNoModules) {
-    const auto modules = compileModules({}, 4, false);
+    const auto modules = compiler::compileModules({}, 4, false);
     ASSERT_TRUE(modules);
     EXPECT_TRUE(modules->empty());
 }
 
 TEST(RenderTemplate, ReportsMissingAndMalformedTemplates) {
-    SourceSet sources;
+    compiler::SourceSet sources;
     sources.add("open.mustache", "{{#cases}} never closed");
     for (const char* const name : {"none.mustache", "open.mustache"}) {
         const auto text = renderTemplate(sources, name, {});
@@ -57,7 +57,7 @@ TEST(RenderTemplate, ReportsMissingAndMalformedTemplates) {
 }
 
 TEST(RenderTemplate, EscapesNothing) {
-    SourceSet sources;
+    compiler::SourceSet sources;
     sources.add("a.mustache", "{{name}}");
     const auto text = renderTemplate(sources, "a.mustache", {"name", std::string("a<b> & \"c\"")});
     ASSERT_TRUE(text);
@@ -65,9 +65,9 @@ TEST(RenderTemplate, EscapesNothing) {
 }
 
 TEST(CommentText, CannotLeaveItsComment) {
-    EXPECT_EQ(commentText("plain"), "plain");
-    EXPECT_EQ(commentText("a\nb*/c\\"), "a?b__c_");
-    EXPECT_EQ(commentText(std::string(100, 'x')), std::string(64, 'x') + "...");
+    EXPECT_EQ(compiler::commentText("plain"), "plain");
+    EXPECT_EQ(compiler::commentText("a\nb*/c\\"), "a?b__c_");
+    EXPECT_EQ(compiler::commentText(std::string(100, 'x')), std::string(64, 'x') + "...");
 }
 
 }  // namespace

@@ -19,21 +19,21 @@ namespace {
 using namespace glint::testing;
 using package::ModuleRole;
 
-nlohmann::json manifestOf(const CompiledPackage& package) {
+nlohmann::json manifestOf(const compiler::CompiledPackage& package) {
     return nlohmann::json::parse(textOf(findFile(package, package::kManifestFile)));
 }
 
-std::map<ModuleRole, int> countRoles(const CompiledPackage& package) {
+std::map<ModuleRole, int> countRoles(const compiler::CompiledPackage& package) {
     std::map<ModuleRole, int> counts;
-    for (const CompiledModule& module : package.modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         ++counts[module.key.role];
     }
     return counts;
 }
 
 TEST(CompilePackage, HasTheModulesOfItsStrategies) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.strategies = package::kStrategyUber;
     auto uber = countRoles(compileSample(settings));
     EXPECT_EQ(uber.size(), 7U);
@@ -54,7 +54,7 @@ TEST(CompilePackage, HasTheModulesOfItsStrategies) {
 }
 
 TEST(CompilePackage, RefusesNoStrategy) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = 0;
     const auto package = compilePackage(makeSampleScene(), settings);
     ASSERT_FALSE(package);
@@ -62,15 +62,15 @@ TEST(CompilePackage, RefusesNoStrategy) {
 }
 
 TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
-    const CompiledPackage package = compileSample(settings);
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
+    const compiler::CompiledPackage package = compileSample(settings);
     int casesSeen = 0;
-    for (const CompiledModule& module : package.modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         if (module.key.role != ModuleRole::ShadeCase) {
             continue;
         }
-        const Case& shaderCase = package.plan.cases[module.key.index];
+        const compiler::Case& shaderCase = package.plan.cases[module.key.index];
         std::uint32_t expected = 0;
         for (const char* const feature : {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",
                                           "occlusionTexture", "emissiveTexture"}) {
@@ -83,38 +83,39 @@ TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
 }
 
 TEST(CompilePackage, IsTheSameToTheByteWhateverTheJobs) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.emitGlsl = true;
     settings.jobs = 1;
-    const CompiledPackage one = compileSample(settings);
+    const compiler::CompiledPackage one = compileSample(settings);
     settings.jobs = 2;
-    const CompiledPackage two = compileSample(settings);
+    const compiler::CompiledPackage two = compileSample(settings);
     ASSERT_EQ(one.files.size(), two.files.size());
     ASSERT_FALSE(one.files.empty());
     for (std::size_t i = 0; i < one.files.size(); ++i) {
         EXPECT_EQ(one.files[i].name, two.files[i].name);
         EXPECT_EQ(one.files[i].bytes, two.files[i].bytes) << one.files[i].name;
     }
-    EXPECT_TRUE(std::ranges::is_sorted(one.files, {}, &PackageFile::name));
+    EXPECT_TRUE(std::ranges::is_sorted(one.files, {}, &compiler::PackageFile::name));
 }
 
 TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.emitGlsl = true;
     settings.emitHeader = false;
-    const CompiledPackage package = compileSample(settings);
+    const compiler::CompiledPackage package = compileSample(settings);
     EXPECT_EQ(findFile(package, "glint_tables.h"), nullptr);
-    for (const CompiledModule& module : package.modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         const std::string readable(textOf(findFile(package, "glsl/" + module.name)));
         EXPECT_EQ(readable.find("#include"), std::string::npos);
         EXPECT_EQ(readable.find("#line"), std::string::npos);
-        const ShaderStage stage = module.key.role == ModuleRole::GBufferVertex     ? ShaderStage::Vertex
-                                  : module.key.role == ModuleRole::GBufferFragment ? ShaderStage::Fragment
-                                                                                   : ShaderStage::Compute;
-        ShaderSource source{module.name, stage, readable};
+        const compiler::ShaderStage stage =
+            module.key.role == ModuleRole::GBufferVertex     ? compiler::ShaderStage::Vertex
+            : module.key.role == ModuleRole::GBufferFragment ? compiler::ShaderStage::Fragment
+                                                             : compiler::ShaderStage::Compute;
+        compiler::ShaderSource source{module.name, stage, readable};
         if (module.key.role == ModuleRole::UberShade) {
-            for (const Case& shaderCase : package.plan.cases) {
+            for (const compiler::Case& shaderCase : package.plan.cases) {
                 source.functionsApart.push_back("shade" + shaderCase.name);
             }
         }
@@ -125,8 +126,8 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
 }
 
 TEST(CompilePackage, RefusesMoreCasesThanAllowed) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.maxShaders = 3;
     const auto package = compilePackage(makeSampleScene(), settings);
     ASSERT_FALSE(package);
@@ -137,9 +138,9 @@ TEST(CompilePackage, RefusesMoreCasesThanAllowed) {
 }
 
 TEST(Manifest, DescribesThePackage) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
-    const CompiledPackage package = compileSample(settings);
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
+    const compiler::CompiledPackage package = compileSample(settings);
     const nlohmann::json manifest = manifestOf(package);
     EXPECT_EQ(manifest["format"], "glint-package");
     EXPECT_EQ(manifest["version"], package::kVersion);
@@ -150,11 +151,11 @@ TEST(Manifest, DescribesThePackage) {
     EXPECT_TRUE(manifest["counts"]["keysPossible"].is_number_integer());
     EXPECT_EQ(manifest["counts"]["uniqueSpirv"], package.uniqueSpirv);
     EXPECT_EQ(manifest["buckets"], 5);
-    ASSERT_EQ(manifest["effects"].size(), builtinMaterialModel().effects.size());
+    ASSERT_EQ(manifest["effects"].size(), materials::builtinMaterialModel().effects.size());
     EXPECT_EQ(manifest["effects"][2]["name"], "reflection");
     EXPECT_EQ(manifest["effects"][2]["chosen"], true);
     EXPECT_EQ(manifest["effects"][3]["chosen"], false);
-    EXPECT_EQ(manifest["features"].size(), builtinMaterialModel().features.size());
+    EXPECT_EQ(manifest["features"].size(), materials::builtinMaterialModel().features.size());
     ASSERT_EQ(manifest["shaders"].size(), 4U);
     std::set<int> materials;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -172,28 +173,29 @@ TEST(Manifest, DescribesThePackage) {
     // The manifest lists all files except itself.
     ASSERT_EQ(manifest["files"].size() + 1, package.files.size());
     for (const nlohmann::json& file : manifest["files"]) {
-        const PackageFile* const found = findFile(package, file["file"].get<std::string>());
+        const compiler::PackageFile* const found = findFile(package, file["file"].get<std::string>());
         ASSERT_NE(found, nullptr);
-        EXPECT_EQ(file["hash"], hexHash(hashBytes(found->bytes)));
+        EXPECT_EQ(file["hash"], base::hexHash(base::hashBytes(found->bytes)));
     }
 }
 
 TEST(Manifest, HoldsTheSettingsAndTheVariant) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     const nlohmann::json usual = manifestOf(compileSample(settings));
-    EXPECT_EQ(usual["settings"]["hitLobes"].size(), builtinMaterialModel().names(kLobeMask).size());
+    EXPECT_EQ(usual["settings"]["hitLobes"].size(),
+              materials::builtinMaterialModel().names(materials::kLobeMask).size());
     EXPECT_EQ(usual["settings"]["energyCompensation"], true);
     EXPECT_EQ(usual["settings"]["textureLod"], "cones");
     EXPECT_EQ(usual["settings"]["precision"], 32);
     EXPECT_TRUE(usual["scenes"][0]["variant"].is_null());
 
-    Scene scene = makeSampleScene();
+    gltf::Scene scene = makeSampleScene();
     scene.variant = "Night";
     scene.materials[0]["sheenColorFactor"] = {1.0F, 1.0F, 1.0F};
     settings.plan.keys.keptLobes = bit("unlit") | bit("ior");
     settings.energyCompensation = false;
-    settings.textureLod = TextureLod::Mip0;
+    settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;
     const auto package = compilePackage(scene, settings);
     ASSERT_TRUE(package) << toString(package.error());
@@ -209,9 +211,9 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
 }
 
 TEST(Manifest, TakesNamesThatAreNotUtf8) {
-    Scene scene = makeSampleScene();
+    gltf::Scene scene = makeSampleScene();
     scene.materials[0].name = "\xFF\xC0";
-    const auto package = compilePackage(scene, {});
+    const auto package = compiler::compilePackage(scene, {});
     ASSERT_TRUE(package) << toString(package.error());
     EXPECT_FALSE(manifestOf(*package).empty());
 }
@@ -223,10 +225,11 @@ TEST(CompilePackage, CompilesScenesByOthers) {
     if (!std::filesystem::exists(path)) {
         GTEST_SKIP() << test::noModels(path);
     }
-    const auto scene = importScene(path);
+    const auto scene = gltf::importScene(path);
     ASSERT_TRUE(scene) << toString(scene.error());
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
-        CompileSettings settings;
+    for (const compiler::MergePolicy merge :
+         {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::All}) {
+        compiler::CompileSettings settings;
         settings.plan.merge = merge;
         const auto package = compilePackage(*scene, settings);
         ASSERT_TRUE(package) << toString(package.error());

@@ -14,7 +14,7 @@ namespace {
 const std::string kStart = "#version 460\n";
 
 std::string dropUnused(const std::string& text) {
-    return glint::dropUnused(testing::makeUnit(text, "a.glsl")).text();
+    return glint::compiler::dropUnused(testing::makeUnit(text, "a.glsl")).text();
 }
 
 bool has(const std::string& text, std::string_view part) {
@@ -50,7 +50,7 @@ TEST(DropUnused, DropsWhatNothingReaches) {
 }
 
 TEST(DropUnused, KeepsThePlacesOfLines) {
-    GlslUnit unit;
+    compiler::GlslUnit unit;
     unit.add("#version 460", "main.comp", 1);
     unit.add("int unused() { return 1; }", "a.glsl", 7);
     unit.add("int used() {", "a.glsl", 8);
@@ -59,7 +59,7 @@ TEST(DropUnused, KeepsThePlacesOfLines) {
     unit.add("", "a.glsl", 11);
     unit.add("int last = used();", "a.glsl", 12);
     unit.add("void main() {}", "main.comp", 3);
-    EXPECT_EQ(glint::dropUnused(unit).withPlaces(),
+    EXPECT_EQ(glint::compiler::dropUnused(unit).withPlaces(),
               "#version 460\n"
               "#extension GL_GOOGLE_cpp_style_line_directive : require\n"
               "#line 8 \"a.glsl\"\n"
@@ -123,28 +123,30 @@ TEST(DropUnused, ReadsContinuedMacrosAndCommentsAsWhatTheyAre) {
 }
 
 TEST(DropUnused, ChangesNothingTheSecondTime) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.emitGlsl = true;
     settings.strategies = package::kAllStrategies;
-    const CompiledPackage package = testing::compileSample(settings);
+    const compiler::CompiledPackage package = testing::compileSample(settings);
     ASSERT_FALSE(package.modules.empty());
-    for (const CompiledModule& module : package.modules) {
-        EXPECT_EQ(glint::dropUnused(module.glsl).withPlaces(), module.glsl.withPlaces()) << module.name;
+    for (const compiler::CompiledModule& module : package.modules) {
+        EXPECT_EQ(glint::compiler::dropUnused(module.glsl).withPlaces(), module.glsl.withPlaces())
+            << module.name;
     }
 }
 
 TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
-    EXPECT_EQ(essentialText("#version 460\n// why\n\n  int a; // b\n\tint /* c\nd */ e = 1 / 2;\r\n"),
-              "#version 460\nint a;\nint e = 1 / 2;\n");
+    EXPECT_EQ(
+        compiler::essentialText("#version 460\n// why\n\n  int a; // b\n\tint /* c\nd */ e = 1 / 2;\r\n"),
+        "#version 460\nint a;\nint e = 1 / 2;\n");
 }
 
 // One case more changes only those modules that contain the number of cases, or all cases.
 TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
-    CompileSettings settings;
-    settings.plan.merge = MergePolicy::None;
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::None;
     settings.strategies = package::kStrategyVisibility;
-    const CompiledPackage package = testing::compileSample(settings);
-    for (const CompiledModule& module : package.modules) {
+    const compiler::CompiledPackage package = testing::compileSample(settings);
+    for (const compiler::CompiledModule& module : package.modules) {
         const bool isCase = module.key.role == package::ModuleRole::ShadeCase;
         EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_CASE_COUNT")) << module.name;
         EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_HIT_ALWAYS_LOBES")) << module.name;

@@ -10,8 +10,8 @@ namespace glint::testing {
 
 namespace {
 
-Primitive makeTriangle(int index) {
-    Primitive primitive;
+gltf::Primitive makeTriangle(int index) {
+    gltf::Primitive primitive;
     primitive.pointer = "/meshes/0/primitives/" + std::to_string(index);
     primitive.material = index;
     primitive.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -23,12 +23,12 @@ Primitive makeTriangle(int index) {
 
 }  // namespace
 
-Scene makeSampleScene() {
-    Scene scene;
+gltf::Scene makeSampleScene() {
+    gltf::Scene scene;
     scene.path = "models/sample scene.gltf";
     scene.images.resize(2);
     scene.samplers.resize(2);
-    scene.samplers[1].wrapU = Wrap::MirroredRepeat;
+    scene.samplers[1].wrapU = gltf::Wrap::MirroredRepeat;
     scene.samplers[1].mipmapped = false;
     scene.textures = {{0, 0}, {1, 1}};
     scene.files = {{"models/sample scene.gltf", 100, 1}, {"models/data/sample.bin", 200, 2}};
@@ -44,10 +44,10 @@ Scene makeSampleScene() {
     scene.materials[2].texture("occlusionTexture").transform = {{0.25F, 0.5F}, 1.5707964F, {2, 3}};
     scene.materials[3].name = "";
     scene.materials[3].give("KHR_materials_unlit");
-    scene.materials[3].alphaMode = AlphaMode::Mask;
+    scene.materials[3].alphaMode = materials::AlphaMode::Mask;
     scene.materials[3].texture("baseColorTexture").texture = 0;
 
-    Mesh mesh;
+    gltf::Mesh mesh;
     for (int i = 0; i < 4; ++i) {
         mesh.primitives.push_back(makeTriangle(i));
     }
@@ -55,18 +55,18 @@ Scene makeSampleScene() {
     return scene;
 }
 
-CompiledPackage compileSample(const CompileSettings& settings) {
-    Result<CompiledPackage> package = compilePackage(makeSampleScene(), settings);
+compiler::CompiledPackage compileSample(const compiler::CompileSettings& settings) {
+    Result<compiler::CompiledPackage> package = compilePackage(makeSampleScene(), settings);
     EXPECT_TRUE(package) << toString(package.error());
-    return package ? std::move(*package) : CompiledPackage{};
+    return package ? std::move(*package) : compiler::CompiledPackage{};
 }
 
-const PackageFile* findFile(const CompiledPackage& package, std::string_view name) {
-    const auto place = std::ranges::find(package.files, name, &PackageFile::name);
+const compiler::PackageFile* findFile(const compiler::CompiledPackage& package, std::string_view name) {
+    const auto place = std::ranges::find(package.files, name, &compiler::PackageFile::name);
     return place == package.files.end() ? nullptr : &*place;
 }
 
-std::string_view textOf(const PackageFile* file) {
+std::string_view textOf(const compiler::PackageFile* file) {
     if (file == nullptr) {
         return {};
     }

@@ -11,13 +11,13 @@ namespace glint::testing {
 
 // Returns a scene of four materials on one mesh of four triangles: plain; base colour texture; the same image
 // as base colour and occlusion with a transform; unlit and masked.
-Scene makeSampleScene();
+gltf::Scene makeSampleScene();
 
 // Compiles with small settings. Fails the test if that fails.
-CompiledPackage compileSample(const CompileSettings& settings = {});
+compiler::CompiledPackage compileSample(const compiler::CompileSettings& settings = {});
 
-const PackageFile* findFile(const CompiledPackage& package, std::string_view name);
-std::string_view textOf(const PackageFile* file);
+const compiler::PackageFile* findFile(const compiler::CompiledPackage& package, std::string_view name);
+std::string_view textOf(const compiler::PackageFile* file);
 
 using test::TemporaryFolder;
 

@@ -13,9 +13,9 @@ namespace {
 
 using namespace glint::testing;
 
-std::string sceneSource(const Plan& plan, const CompileSettings& settings) {
-    const Scene scene = makeSampleScene();
-    const Result<SourceSet> sources = makeSourceSet(SceneList({&scene, 1}), plan, settings);
+std::string sceneSource(const compiler::Plan& plan, const compiler::CompileSettings& settings) {
+    const gltf::Scene scene = makeSampleScene();
+    const Result<compiler::SourceSet> sources = makeSourceSet(gltf::SceneList({&scene, 1}), plan, settings);
     return sources ? std::string(sources->find("generated/scene.glsl").value_or("")) : std::string();
 }
 
@@ -24,7 +24,7 @@ bool defines(const std::string& text, const std::string& macro, const std::strin
 }
 
 TEST(SceneSource, TellsHitsFromPrimarySurfaces) {
-    Plan plan;
+    compiler::Plan plan;
     plan.primaryAlways = 0x0000000100000004;
     plan.primarySometimes = 0x0000000200000030;
     plan.always = 0x0000000100000000;
@@ -42,19 +42,19 @@ TEST(SceneSource, TellsHitsFromPrimarySurfaces) {
 
 // Other features of a scene do not change modules that test alpha.
 TEST(SceneSource, AlphaHasWhatItReadsAlone) {
-    Plan plan;
+    compiler::Plan plan;
     plan.always = bit("texCoord0") | bit("normals") | bit("sheen");
     plan.sometimes = bit("baseColorTexture") | bit("normalTexture");
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS_INPUTS", "0x0u"));
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const std::string text = sceneSource(plan, settings);
     EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS_INPUTS", fmt::format("{:#x}u", bit("texCoord0") >> 32U)));
     EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES_INPUTS", "0x1u"));
 }
 
 TEST(SceneSource, HoldsTheSettings) {
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     const std::string usual = sceneSource({}, settings);
     EXPECT_TRUE(defines(usual, "GLINT_ENERGY_COMPENSATION", "1"));
     EXPECT_TRUE(defines(usual, "GLINT_TEXTURE_LOD_CONES", "1"));
@@ -63,9 +63,9 @@ TEST(SceneSource, HoldsTheSettings) {
     EXPECT_TRUE(defines(usual, "GLINT_ALPHA_TESTED", "0"));
     EXPECT_TRUE(defines(usual, "GLINT_HAS_MASKED", "1"));
     settings.energyCompensation = false;
-    settings.textureLod = TextureLod::Mip0;
+    settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const std::string other = sceneSource({}, settings);
     EXPECT_TRUE(defines(other, "GLINT_ENERGY_COMPENSATION", "0"));
     EXPECT_TRUE(defines(other, "GLINT_TEXTURE_LOD_CONES", "0"));

@@ -27,7 +27,7 @@ using package::SectionKind;
 // Reads tables.bin by its own description.
 class TableReader {
 public:
-    explicit TableReader(const Bytes& bytes) : bytes_(bytes) {
+    explicit TableReader(const base::Bytes& bytes) : bytes_(bytes) {
         std::memcpy(&header, bytes.data(), sizeof header);
         for (std::uint32_t i = 0; i < header.sectionCount; ++i) {
             package::PackageSection section{};
@@ -53,13 +53,14 @@ public:
     package::PackageHeader header{};
 
 private:
-    const Bytes& bytes_;
+    const base::Bytes& bytes_;
     std::map<SectionKind, package::PackageSection> sections_;
 };
 
 // A layout with every field and texture.
-const MaterialLayout& wholeLayout() {
-    static const MaterialLayout kLayout = makeMaterialLayout(builtinMaterialModel(), ~FeatureMask{0});
+const compiler::MaterialLayout& wholeLayout() {
+    static const compiler::MaterialLayout kLayout =
+        compiler::makeMaterialLayout(materials::builtinMaterialModel(), ~materials::FeatureMask{0});
     return kLayout;
 }
 
@@ -70,7 +71,7 @@ public:
 
     float value(std::size_t material, std::string_view field, std::uint32_t channel = 0) const {
         const auto& fields = wholeLayout().fields;
-        const auto found = std::ranges::find(fields, field, &RecordField::name);
+        const auto found = std::ranges::find(fields, field, &compiler::RecordField::name);
         EXPECT_NE(found, fields.end()) << field;
         float number = 0.0F;
         std::memcpy(&number, &bytes_.at(material * wholeLayout().bytes + found->offset + 4 * channel),
@@ -78,7 +79,7 @@ public:
         return number;
     }
     gpu::TextureRecord texture(std::size_t material, std::string_view name) const {
-        const int slot = wholeLayout().slotOf(builtinMaterialModel().findTexture(name));
+        const int slot = wholeLayout().slotOf(materials::builtinMaterialModel().findTexture(name));
         EXPECT_GE(slot, 0) << name;
         gpu::TextureRecord record{};
         std::memcpy(&record,
@@ -93,17 +94,17 @@ private:
 };
 
 TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
-    const MaterialModel& model = builtinMaterialModel();
-    const auto has = [](const MaterialLayout& layout, std::string_view field) {
-        return std::ranges::find(layout.fields, field, &RecordField::name) != layout.fields.end();
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    const auto has = [](const compiler::MaterialLayout& layout, std::string_view field) {
+        return std::ranges::find(layout.fields, field, &compiler::RecordField::name) != layout.fields.end();
     };
-    const MaterialLayout plain = makeMaterialLayout(model, 0);
+    const compiler::MaterialLayout plain = compiler::makeMaterialLayout(model, 0);
     EXPECT_TRUE(has(plain, "baseColorFactor"));
     EXPECT_FALSE(has(plain, "clearcoatFactor"));
     EXPECT_TRUE(plain.textures.empty());
     EXPECT_EQ(plain.bytes, plain.textureOffset);
-    const MaterialLayout coated =
-        makeMaterialLayout(model, model.mask("clearcoat") | model.mask("normalTexture"));
+    const compiler::MaterialLayout coated =
+        compiler::makeMaterialLayout(model, model.mask("clearcoat") | model.mask("normalTexture"));
     EXPECT_TRUE(has(coated, "clearcoatFactor"));
     EXPECT_TRUE(has(coated, "normalScale"));
     EXPECT_FALSE(has(coated, "clearcoatNormalScale"));
@@ -113,7 +114,7 @@ TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
 }
 
 TEST(MaterialTables, ListEachImageOncePerColourSpace) {
-    const MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
+    const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     ASSERT_EQ(tables.textures.size(), 3U);
     EXPECT_EQ(tables.textures[0].image, 0U);
     EXPECT_EQ(tables.textures[0].srgb, 1U);
@@ -130,16 +131,16 @@ TEST(MaterialTables, ListEachImageOncePerColourSpace) {
 }
 
 TEST(MaterialTables, LeaveEmptySlotsZero) {
-    const MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
+    const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     using Words = std::array<std::uint32_t, sizeof(gpu::TextureRecord) / sizeof(std::uint32_t)>;
-    for (const MaterialTexture& texture : builtinMaterialModel().textures) {
+    for (const materials::MaterialTexture& texture : materials::builtinMaterialModel().textures) {
         EXPECT_EQ(std::bit_cast<Words>(Records(tables.materials).texture(0, texture.name)), Words{});
     }
 }
 
 // A quarter turn counter-clockwise on the image, whose v points down, takes (1, 0) to (0, -1).
 TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
-    const MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
+    const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     const gpu::TextureRecord record = Records(tables.materials).texture(2, "occlusionTexture");
     const auto apply = [&](float u, float v) {
         return std::pair(record.rowU.x * u + record.rowU.y * v + record.rowU.z,
@@ -162,18 +163,18 @@ TEST(MaterialTables, TransformScalesThenTurnsThenMoves) {
 // One image is in every slot; this tests which of its views each slot gets.
 TEST(MaterialTables, TexturesOfColorsAreSrgb) {
     const auto srgbSlots = [](bool specularGlossiness) {
-        Scene scene = makeSampleScene();
+        gltf::Scene scene = makeSampleScene();
         scene.materials.resize(1);
         if (specularGlossiness) {
             scene.materials[0].give("KHR_materials_pbrSpecularGlossiness");
         }
-        for (TextureInfo& info : scene.materials[0].textures) {
+        for (materials::TextureInfo& info : scene.materials[0].textures) {
             info.texture = 0;
         }
-        const MaterialTables tables = makeMaterialTables(scene, wholeLayout());
+        const compiler::MaterialTables tables = makeMaterialTables(scene, wholeLayout());
         EXPECT_EQ(tables.textures.size(), 2U);
         std::set<std::string> slots;
-        for (const MaterialTexture& texture : builtinMaterialModel().textures) {
+        for (const materials::MaterialTexture& texture : materials::builtinMaterialModel().textures) {
             if (tables.textures[Records(tables.materials).texture(0, texture.name).textureIndex].srgb == 1U) {
                 slots.insert(texture.name);
             }
@@ -187,12 +188,12 @@ TEST(MaterialTables, TexturesOfColorsAreSrgb) {
     EXPECT_EQ(srgbSlots(true), expected);
 }
 
-Records recordOf(const Material& material) {
+Records recordOf(const materials::Material& material) {
     return Records(makeMaterialRecord(material, wholeLayout()));
 }
 
 TEST(MaterialTables, HoldEveryFactorOfTheExtensions) {
-    Material material;
+    materials::Material material;
     material["ior"] = 1.25F;
     material.give("KHR_materials_specular");
     material["specularFactor"] = 0.5F;
@@ -250,7 +251,7 @@ TEST(MaterialTables, HoldEveryFactorOfTheExtensions) {
 
 // After the attenuation distance, white light has become the attenuation colour.
 TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
-    Material material;
+    materials::Material material;
     material.give("KHR_materials_volume");
     material["thicknessFactor"] = 1.0F;
     material["attenuationDistance"] = 0.25F;
@@ -271,11 +272,11 @@ TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
 }
 
 TEST(Tables, HoldWhatTheHeaderSays) {
-    CompileSettings settings;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
-    settings.plan.merge = MergePolicy::None;
-    const CompiledPackage compiled = compileSample(settings);
-    const PackageFile* const file = findFile(compiled, package::kTablesFile);
+    compiler::CompileSettings settings;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    settings.plan.merge = compiler::MergePolicy::None;
+    const compiler::CompiledPackage compiled = compileSample(settings);
+    const compiler::PackageFile* const file = findFile(compiled, package::kTablesFile);
     ASSERT_NE(file, nullptr);
     const TableReader reader(file->bytes);
     EXPECT_EQ(std::memcmp(reader.header.magic, "GLINTPKG", 8), 0);
@@ -284,13 +285,13 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     package::PackageHeader unhashed = reader.header;
     unhashed.contentHash = 0;
     const std::uint64_t seed =
-        hashBytes({reinterpret_cast<const std::uint8_t*>(&unhashed), sizeof(package::PackageHeader)});
+        base::hashBytes({reinterpret_cast<const std::uint8_t*>(&unhashed), sizeof(package::PackageHeader)});
     EXPECT_EQ(reader.header.contentHash,
-              hashBytes(std::span(file->bytes).subspan(sizeof(package::PackageHeader)), seed));
+              base::hashBytes(std::span(file->bytes).subspan(sizeof(package::PackageHeader)), seed));
     EXPECT_EQ(reader.header.strategies, settings.strategies);
-    EXPECT_EQ(reader.header.alphaTested, 1U);
+    EXPECT_EQ(reader.header.alpha, package::AlphaPolicy::Tested);
     EXPECT_EQ(reader.header.caseCount, compiled.plan.cases.size());
-    EXPECT_EQ(reader.header.interopHash, static_cast<std::uint32_t>(interopSourceHash()));
+    EXPECT_EQ(reader.header.interopHash, static_cast<std::uint32_t>(compiler::interopSourceHash()));
 
     const auto strings = reader.read<char>(SectionKind::Strings);
     const auto text = [&](package::StringRef ref) {
@@ -300,10 +301,10 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     const auto modules = reader.read<package::ModuleEntry>(SectionKind::Modules);
     ASSERT_EQ(modules.size(), compiled.modules.size());
     for (std::size_t i = 0; i < modules.size(); ++i) {
-        const PackageFile* const spirv = findFile(compiled, text(modules[i].file));
+        const compiler::PackageFile* const spirv = findFile(compiled, text(modules[i].file));
         ASSERT_NE(spirv, nullptr) << text(modules[i].file);
         EXPECT_EQ(spirv->bytes.size(), modules[i].bytes);
-        EXPECT_EQ(hashBytes(spirv->bytes), modules[i].hash);
+        EXPECT_EQ(base::hashBytes(spirv->bytes), modules[i].hash);
     }
     const auto cases = reader.read<package::CaseEntry>(SectionKind::Cases);
     ASSERT_EQ(cases.size(), compiled.plan.cases.size());
@@ -317,26 +318,27 @@ TEST(Tables, HoldWhatTheHeaderSays) {
 }
 
 TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
-    for (const AlphaPolicy alpha : {AlphaPolicy::Opaque, AlphaPolicy::Tested}) {
-        CompileSettings settings;
+    for (const package::AlphaPolicy alpha : {package::AlphaPolicy::Opaque, package::AlphaPolicy::Tested}) {
+        compiler::CompileSettings settings;
         settings.strategies = package::kStrategyUber;
         settings.plan.keys.alpha = alpha;
-        const CompiledPackage compiled = compileSample(settings);
-        const PackageFile* const file = findFile(compiled, package::kTablesFile);
+        const compiler::CompiledPackage compiled = compileSample(settings);
+        const compiler::PackageFile* const file = findFile(compiled, package::kTablesFile);
         ASSERT_NE(file, nullptr);
         const auto primitives =
             TableReader(file->bytes).read<package::PrimitiveEntry>(SectionKind::Primitives);
         ASSERT_EQ(primitives.size(), 4U);
         EXPECT_EQ(primitives[0].geometryFlags, 0U);
         EXPECT_EQ(primitives[1].geometryFlags, gpu::kGeometryDoubleSided);
-        const std::uint32_t tested = alpha == AlphaPolicy::Tested ? gpu::kGeometryAlphaTested : 0U;
+        const std::uint32_t tested = alpha == package::AlphaPolicy::Tested ? gpu::kGeometryAlphaTested : 0U;
         EXPECT_EQ(primitives[3].geometryFlags, gpu::kGeometryMasked | tested);
         EXPECT_EQ(primitives[3].alphaMode, 1U);
         for (std::uint32_t i = 0; i < 4; ++i) {
             EXPECT_EQ(primitives[i].primitive, i);
             EXPECT_EQ(primitives[i].materialIndex, i);
-            const Key& key = compiled.plan.keys[compiled.plan.keyOfPrimitive[i]];
-            EXPECT_EQ(primitives[i].featureLobes | FeatureMask{primitives[i].featureInputs} << 32U, key.mask);
+            const compiler::Key& key = compiled.plan.keys[compiled.plan.keyOfPrimitive[i]];
+            EXPECT_EQ(primitives[i].featureLobes | materials::FeatureMask{primitives[i].featureInputs} << 32U,
+                      key.mask);
             EXPECT_EQ(primitives[i].shaderId, static_cast<std::uint32_t>(key.shaderId));
         }
     }
@@ -344,12 +346,12 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
 
 // Scenes share cases but have their own tables: materials and textures of each count from 0.
 TEST(Tables, GoSceneByScene) {
-    std::vector<Scene> scenes{makeSampleScene(), makeSampleScene()};
+    std::vector<gltf::Scene> scenes{makeSampleScene(), makeSampleScene()};
     scenes[1].materials[0]["clearcoatFactor"] = 1.0F;
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.merge = MergePolicy::None;
-    const Result<CompiledPackage> compiled = compilePackage(scenes, settings);
+    settings.plan.merge = compiler::MergePolicy::None;
+    const Result<compiler::CompiledPackage> compiled = compilePackage(scenes, settings);
     ASSERT_TRUE(compiled) << toString(compiled.error());
     const TableReader reader(findFile(*compiled, package::kTablesFile)->bytes);
     const auto entries = reader.read<package::SceneEntry>(SectionKind::Scenes);
@@ -370,34 +372,34 @@ TEST(Tables, GoSceneByScene) {
 
 // Hits may keep fewer lobes, but the mask on the device is that of primary surfaces.
 TEST(Tables, GivePrimitivesTheirPrimaryMask) {
-    Scene scene = makeSampleScene();
+    gltf::Scene scene = makeSampleScene();
     scene.materials[0]["clearcoatFactor"] = 1.0F;
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.plan.keys.keptLobes = 0;
-    const SceneList scenes({&scene, 1});
-    const Plan plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
-    const Bytes bytes = makeTables(scenes, plan, {}, settings);
+    const gltf::SceneList scenes({&scene, 1});
+    const compiler::Plan plan = makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    const base::Bytes bytes = makeTables(scenes, plan, {}, settings);
     const auto primitives = TableReader(bytes).read<package::PrimitiveEntry>(SectionKind::Primitives);
     ASSERT_EQ(primitives.size(), 4U);
     EXPECT_EQ(primitives[0].featureLobes, bit("clearcoat"));
     EXPECT_EQ((plan.always | plan.sometimes) & bit("clearcoat"), 0U);
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(primitives[i].featureLobes | FeatureMask{primitives[i].featureInputs} << 32U,
+        EXPECT_EQ(primitives[i].featureLobes | materials::FeatureMask{primitives[i].featureInputs} << 32U,
                   plan.primaryMaskOfPrimitive[i]);
     }
 }
 
 TEST(CheckScene, RefusesIndicesThatLeadNowhere) {
     const auto idAfter = [](auto change) {
-        Scene scene = makeSampleScene();
+        gltf::Scene scene = makeSampleScene();
         change(scene);
-        const Result<CompiledPackage> compiled = compilePackage(scene, {});
+        const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, {});
         return compiled ? std::string("none") : compiled.error().id;
     };
-    EXPECT_EQ(idAfter([](Scene& scene) { scene.textures[0].image = 2; }), "scene-index");
-    EXPECT_EQ(idAfter([](Scene& scene) { scene.textures[1].sampler = -1; }), "scene-index");
-    EXPECT_EQ(idAfter([](Scene& scene) { scene.materials[1].textures[0].texture = 9; }), "scene-index");
-    EXPECT_EQ(idAfter([](Scene& scene) { scene.meshes[0].primitives[0].material = 4; }), "scene-index");
+    EXPECT_EQ(idAfter([](gltf::Scene& scene) { scene.textures[0].image = 2; }), "scene-index");
+    EXPECT_EQ(idAfter([](gltf::Scene& scene) { scene.textures[1].sampler = -1; }), "scene-index");
+    EXPECT_EQ(idAfter([](gltf::Scene& scene) { scene.materials[1].textures[0].texture = 9; }), "scene-index");
+    EXPECT_EQ(idAfter([](gltf::Scene& scene) { scene.meshes[0].primitives[0].material = 4; }), "scene-index");
 }
 
 }  // namespace

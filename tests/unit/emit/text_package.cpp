@@ -10,11 +10,11 @@ namespace glint::testing {
 
 namespace fs = std::filesystem;
 
-CompiledPackage makePackage(const std::map<std::string, std::string>& contents) {
-    CompiledPackage package;
+compiler::CompiledPackage makePackage(const std::map<std::string, std::string>& contents) {
+    compiler::CompiledPackage package;
     std::string list;
     for (const auto& [name, text] : contents) {
-        package.files.push_back({name, Bytes(text.begin(), text.end())});
+        package.files.push_back({name, base::Bytes(text.begin(), text.end())});
         list += list.empty() ? "" : ",";
         list += "{\"file\":\"";
         list += name;
@@ -23,7 +23,7 @@ CompiledPackage makePackage(const std::map<std::string, std::string>& contents) 
     std::string manifest = "{\"format\":\"glint-package\",\"files\":[";
     manifest += list;
     manifest += "]}";
-    package.files.push_back({package::kManifestFile, Bytes(manifest.begin(), manifest.end())});
+    package.files.push_back({package::kManifestFile, base::Bytes(manifest.begin(), manifest.end())});
     return package;
 }
 
@@ -31,7 +31,7 @@ std::map<std::string, std::string> readFolder(const fs::path& folder) {
     std::map<std::string, std::string> contents;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         if (entry.is_regular_file()) {
-            const auto bytes = readFile(entry.path());
+            const auto bytes = base::readFile(entry.path());
             EXPECT_TRUE(bytes);
             contents[entry.path().lexically_relative(folder).generic_string()] =
                 std::string(bytes->begin(), bytes->end());

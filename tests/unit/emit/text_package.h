@@ -11,7 +11,7 @@
 namespace glint::testing {
 
 // Makes a package of files by name, and a manifest that lists them.
-CompiledPackage makePackage(const std::map<std::string, std::string>& contents);
+compiler::CompiledPackage makePackage(const std::map<std::string, std::string>& contents);
 
 // Returns the contents of all files below `folder`, by name.
 std::map<std::string, std::string> readFolder(const std::filesystem::path& folder);

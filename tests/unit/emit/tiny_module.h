@@ -11,19 +11,19 @@
 namespace glint::testing {
 
 // Returns a unit whose lines have consecutive numbers in one file.
-inline GlslUnit makeUnit(std::string_view text, std::string_view file, int firstNumber = 1) {
-    GlslUnit unit;
-    for (const std::string_view line : splitLines(text)) {
+inline compiler::GlslUnit makeUnit(std::string_view text, std::string_view file, int firstNumber = 1) {
+    compiler::GlslUnit unit;
+    for (const std::string_view line : compiler::splitLines(text)) {
         unit.add(line, file, firstNumber++);
     }
     return unit;
 }
 
 // `body` is the body of main(); it can use the buffer data.x. The text after #version begins in line 10.
-inline ModuleSource makeTinyModule(int shaderId, const std::string& body) {
+inline compiler::ModuleSource makeTinyModule(int shaderId, const std::string& body) {
     return {
         {package::ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
-        ShaderStage::Compute,
+        compiler::ShaderStage::Compute,
         "shade_" + std::to_string(shaderId) + ".comp",
         makeUnit("#version 460\n"
                  "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"

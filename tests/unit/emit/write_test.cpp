@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 class WritePackage : public ::testing::Test {
 protected:
-    const CompiledPackage first_ =
+    const compiler::CompiledPackage first_ =
         makePackage({{"tables.bin", "one"}, {"same.spv", "same"}, {"old.spv", "x"}, {"glsl/a.comp", "a"}});
-    const CompiledPackage second_ =
+    const compiler::CompiledPackage second_ =
         makePackage({{"tables.bin", "two"}, {"same.spv", "same"}, {"new.spv", "y"}});
     TemporaryFolder temporary_;
     const fs::path folder_ = temporary_.path() / "deep" / "out";
@@ -136,7 +136,7 @@ TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenItFails) {
 TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenANameCannotBeWritten) {
     ASSERT_TRUE(writePackage(first_, folder_));
     const auto before = readFolder(folder_);
-    const CompiledPackage tooLong =
+    const compiler::CompiledPackage tooLong =
         makePackage({{"tables.bin", "three"}, {std::string(300, 'n') + ".spv", "n"}});
     const Status status = writePackage(tooLong, folder_);
     ASSERT_FALSE(status);
@@ -193,17 +193,17 @@ TEST_F(WritePackage, KeepsThePermissionsOfTheFolder) {
 
 TEST(WriteCompiled, WritesWhatWasCompiled) {
     const TemporaryFolder temporary;
-    CompileSettings settings;
+    compiler::CompileSettings settings;
     settings.emitGlsl = true;
-    const CompiledPackage package = compileSample(settings);
+    const compiler::CompiledPackage package = compileSample(settings);
     const Status status = writePackage(package, temporary.path() / "out");
     ASSERT_TRUE(status) << toString(status.error());
     const auto contents = readFolder(temporary.path() / "out");
     EXPECT_EQ(contents.size(), package.files.size());
-    for (const PackageFile& file : package.files) {
+    for (const compiler::PackageFile& file : package.files) {
         EXPECT_EQ(contents.at(file.name), textOf(&file));
     }
-    EXPECT_EQ(manifestFiles(contents.at("manifest.json")).size(), package.files.size());
+    EXPECT_EQ(compiler::manifestFiles(contents.at("manifest.json")).size(), package.files.size());
 }
 
 }  // namespace

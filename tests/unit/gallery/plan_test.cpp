@@ -15,8 +15,9 @@ namespace gallery::test {
 
 namespace {
 
-const glint::Scene& scene() {
-    static const auto kScene = glint::importScene(document().folder / "gallery.gltf", {.decodeImages = true});
+const glint::gltf::Scene& scene() {
+    static const auto kScene =
+        glint::gltf::importScene(document().folder / "gallery.gltf", {.decodeImages = true});
     if (!kScene.ok()) {
         throw std::runtime_error(glint::toString(kScene.error()));
     }
@@ -24,11 +25,13 @@ const glint::Scene& scene() {
 }
 
 // Returns the keys of each material, by its name.
-std::map<std::string, std::set<glint::FeatureMask>> keysByMaterial(const glint::KeyOptions& options) {
-    std::map<std::string, std::set<glint::FeatureMask>> keys;
-    for (const glint::PrimitiveInputs& primitive : glint::planningInputs(scene())) {
-        const glint::Material& material = scene().materials.at(static_cast<std::size_t>(primitive.material));
-        keys[material.name].insert(glint::makeKey(material, primitive, options));
+std::map<std::string, std::set<glint::materials::FeatureMask>> keysByMaterial(
+    const glint::materials::KeyOptions& options) {
+    std::map<std::string, std::set<glint::materials::FeatureMask>> keys;
+    for (const glint::materials::PrimitiveInputs& primitive : glint::gltf::planningInputs(scene())) {
+        const glint::materials::Material& material =
+            scene().materials.at(static_cast<std::size_t>(primitive.material));
+        keys[material.name].insert(glint::compiler::makeKey(material, primitive, options));
     }
     return keys;
 }
@@ -45,17 +48,19 @@ TEST(GalleryPlan, ImportsWithoutAWarning) {
 }
 
 TEST(GalleryPlan, CoversEveryFeature) {
-    const auto inputs = glint::planningInputs(scene());
-    const glint::Plan plan =
-        glint::makePlan(scene().materials, inputs, {{glint::AlphaPolicy::Tested}, glint::MergePolicy::None});
-    for (const glint::Feature& feature : glint::builtinMaterialModel().features) {
+    const auto inputs = glint::gltf::planningInputs(scene());
+    const glint::compiler::Plan plan = glint::compiler::makePlan(
+        scene().materials, inputs,
+        {{glint::package::AlphaPolicy::Tested}, glint::compiler::MergePolicy::None});
+    for (const glint::materials::Feature& feature : glint::materials::builtinMaterialModel().features) {
         EXPECT_NE((plan.always | plan.sometimes) & feature.mask(), 0U) << feature.name;
     }
 }
 
 TEST(GalleryPlan, HasFewerKeysThanMaterials) {
-    const auto inputs = glint::planningInputs(scene());
-    const glint::Plan plan = glint::makePlan(scene().materials, inputs, {{}, glint::MergePolicy::None});
+    const auto inputs = glint::gltf::planningInputs(scene());
+    const glint::compiler::Plan plan =
+        glint::compiler::makePlan(scene().materials, inputs, {{}, glint::compiler::MergePolicy::None});
     EXPECT_LT(plan.keys.size(), scene().materials.size());
     EXPECT_GT(plan.keys.size(), scene().materials.size() / 2);
 }
@@ -77,7 +82,7 @@ TEST(GalleryPlan, TwinsShareAKey) {
 
 // The lobes that distinguish the exhibits of extensions from all others, one row for each material.
 TEST(GalleryPlan, ExhibitsHaveTheLobesOfTheirExtensions) {
-    using glint::Feature;
+    using glint::materials::Feature;
     const std::map<std::string, std::set<std::string>> expected{
         {"Carbon fibre", {"clearcoat"}},
         {"Worn lacquer", {"clearcoat"}},
@@ -94,23 +99,23 @@ TEST(GalleryPlan, ExhibitsHaveTheLobesOfTheirExtensions) {
         {"Celadon", {"specularGlossiness"}}};
     const auto keys = keysByMaterial({});
     for (const auto& [name, lobes] : expected) {
-        glint::FeatureMask mask = 0;
+        glint::materials::FeatureMask mask = 0;
         for (const std::string& lobe : lobes) {
             mask |= glint::bit(lobe);
         }
         ASSERT_EQ(keys.at(name).size(), 1U) << name;
-        EXPECT_EQ(*keys.at(name).begin() & glint::kLobeMask, mask) << name;
+        EXPECT_EQ(*keys.at(name).begin() & glint::materials::kLobeMask, mask) << name;
     }
 }
 
 TEST(GalleryPlan, VariantChangesTheVelvet) {
     const auto worn = [](const std::string& variant) {
-        glint::ImportOptions options;
+        glint::gltf::ImportOptions options;
         options.variant = variant;
-        const auto scene = glint::importScene(document().folder / "gallery.gltf", options);
+        const auto scene = glint::gltf::importScene(document().folder / "gallery.gltf", options);
         EXPECT_TRUE(scene.ok());
         std::set<std::string> names;
-        for (const glint::PrimitiveInputs& primitive : glint::planningInputs(*scene)) {
+        for (const glint::materials::PrimitiveInputs& primitive : glint::gltf::planningInputs(*scene)) {
             names.insert(scene->materials.at(static_cast<std::size_t>(primitive.material)).name);
         }
         return names;

@@ -61,8 +61,8 @@ struct Pointed {
         return animation["samplers"][number];
     }
 
-    Scene import() {
-        Result<Scene> scene = test::import(builder);
+    gltf::Scene import() {
+        Result<gltf::Scene> scene = test::import(builder);
         if (!scene) {
             ADD_FAILURE() << toString(scene.error());
             return {};
@@ -74,7 +74,7 @@ struct Pointed {
 };
 
 // Returns the scene at a time of its first animation.
-Scene posedAt(Scene scene, double time) {
+gltf::Scene posedAt(gltf::Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
     scene_view::applyPose(scene_view::poseAt(scene, kFirst, time), scene);
     return scene;
@@ -90,11 +90,11 @@ TEST(AnimationPointers, MaterialValuesAreInterpolated) {
                          2);
     // A value out of range is clamped, as the importer does.
     pointed.drive<float>("/materials/0/pbrMetallicRoughness/roughnessFactor", {0.5F, 2.5F}, 1);
-    const Scene rest = pointed.import();
+    const gltf::Scene rest = pointed.import();
     EXPECT_TRUE(rest.warnings.empty()) << toString(rest.warnings.front());
     ASSERT_EQ(rest.animatedMaterials.size(), 1U);
-    const Scene scene = posedAt(rest, 0.5);
-    const Material& material = scene.materials.at(0);
+    const gltf::Scene scene = posedAt(rest, 0.5);
+    const materials::Material& material = scene.materials.at(0);
     EXPECT_EQ(material["baseColorFactor"], (std::array{0.5F, 0.25F, 0.125F, 1.0F}));
     EXPECT_EQ(material["clearcoatFactor"], 0.5F);
     EXPECT_EQ(material["normalScale"], -1.0F);
@@ -102,7 +102,7 @@ TEST(AnimationPointers, MaterialValuesAreInterpolated) {
     EXPECT_EQ(material["roughnessFactor"], 1.0F);
     EXPECT_EQ(material["transmissionFactor"], 0.0F) << "not animated";
     // The file's values return, however often the scene was posed.
-    Scene again = posedAt(scene, 1.0);
+    gltf::Scene again = posedAt(scene, 1.0);
     scene_view::applyPose(scene_view::restPose(again), again);
     EXPECT_EQ(again.materials[0]["baseColorFactor"], rest.materials[0]["baseColorFactor"]);
     EXPECT_EQ(again.materials[0]["roughnessFactor"], 0.75F);
@@ -113,7 +113,7 @@ TEST(AnimationPointers, IntegersAreWhatTheyAreMarkedAs) {
     Pointed pointed;
     pointed.drive<std::uint8_t>("/materials/0/extensions/KHR_materials_ior/ior", {1, 3}, 1);
     pointed.drive<std::uint8_t>("/materials/0/pbrMetallicRoughness/roughnessFactor", {255, 51}, 1, true);
-    const Scene scene = posedAt(pointed.import(), 1.0);
+    const gltf::Scene scene = posedAt(pointed.import(), 1.0);
     EXPECT_EQ(scene.materials.at(0)["ior"], 3.0F);
     EXPECT_EQ(scene.materials.at(0)["roughnessFactor"], 0.2F);
 }
@@ -129,16 +129,16 @@ TEST(AnimationPointers, LightsCamerasAndNodesFollow) {
     pointed.drive<float>("/meshes/0/weights", {0.5F, 0, 1, 0}, 1);
     pointed.drive<std::uint8_t>("/nodes/0/extensions/KHR_node_visibility/visible", {0, 7},
                                 1)["interpolation"] = "STEP";
-    const Scene rest = pointed.import();
+    const gltf::Scene rest = pointed.import();
     EXPECT_TRUE(rest.warnings.empty()) << toString(rest.warnings.front());
     EXPECT_FALSE(rest.nodes.at(0).shown);
     EXPECT_TRUE(rest.nodes.at(0).canShow);
     EXPECT_FALSE(rest.lights.at(0).shines());
     EXPECT_TRUE(rest.lights.at(0).canShine);
-    const Scene half = posedAt(rest, 0.5);
+    const gltf::Scene half = posedAt(rest, 0.5);
     EXPECT_FALSE(half.nodes.at(0).shown) << "STEP";
     EXPECT_EQ(half.lights.at(0).intensity, 4.0F);
-    EXPECT_EQ(half.lights.at(0).color, (Float3{0.5F, 1.0F, 0.75F}));
+    EXPECT_EQ(half.lights.at(0).color, (gltf::Float3{0.5F, 1.0F, 0.75F}));
     EXPECT_EQ(half.lights.at(0).innerConeAngle, half.lights.at(0).outerConeAngle)
         << "no wider than the outer one";
     EXPECT_EQ(half.cameras.at(0).yfov, 1.5);
@@ -155,7 +155,7 @@ TEST(AnimationPointers, UnknownOnesAreNoted) {
     pointed.drive<float>("/materials/0/extensions/KHR_materials_future/glow", {1, 2}, 1);
     pointed.drive<float>("/materials/0/extensions/KHR_materials_future/glow", {1, 2}, 1);
     pointed.drive<float>("/nodes/0/extras/speed", {1, 2}, 1);
-    const Scene scene = pointed.import();
+    const gltf::Scene scene = pointed.import();
     EXPECT_TRUE(scene.animations.at(0).channels.empty());
     ASSERT_EQ(countWarnings(scene, "animation-pointer"), 3U);
     const Diagnostic note = findWarning(scene, "animation-pointer");
@@ -174,7 +174,7 @@ TEST(AnimationPointers, WrongOnesAreWarnedOf) {
           "/nodes/1/extensions/KHR_node_visibility/visible"}) {
         Pointed pointed;
         pointed.drive<float>(pointer, {1, 2}, 1);
-        const Scene scene = pointed.import();
+        const gltf::Scene scene = pointed.import();
         EXPECT_TRUE(scene.animations.at(0).channels.empty()) << pointer;
         ASSERT_EQ(scene.warnings.size(), 1U) << pointer;
         EXPECT_EQ(scene.warnings[0].id, "animation-pointer") << pointer;
@@ -187,7 +187,7 @@ TEST(AnimationPointers, WrongOnesAreWarnedOf) {
     target.erase("extensions");
     EXPECT_EQ(countWarnings(bare.import(), "animation-pointer"), 1U);
     target["extensions"]["KHR_animation_pointer"]["pointer"] = 3;
-    const Result<Scene> typed = import(bare.builder);
+    const Result<gltf::Scene> typed = import(bare.builder);
     ASSERT_FALSE(typed.ok());
     EXPECT_EQ(typed.error().id, "json-type");
     target["extensions"]["KHR_animation_pointer"] = Json::object();
@@ -198,7 +198,7 @@ TEST(AnimationPointers, AccessorsMustFit) {
     const auto refused = [](auto drive) {
         Pointed pointed;
         drive(pointed);
-        const Scene scene = pointed.import();
+        const gltf::Scene scene = pointed.import();
         return scene.animations.at(0).channels.empty() && countWarnings(scene, "animation-keyframes") == 1;
     };
     const char* const kVisible = "/nodes/0/extensions/KHR_node_visibility/visible";
@@ -217,33 +217,34 @@ TEST(AnimationPointers, AccessorsMustFit) {
 // Every property of every slot and extension has its own number, width and setter.
 TEST(AnimationPointers, EveryPropertySetsItsOwnValue) {
     // There are 32 factors, and an offset, a rotation and a scale for each of 21 places of textures.
-    ASSERT_EQ(materialPropertyCount(builtinMaterialModel()), 32 + 3 * 21);
-    for (int property = 0; property < materialPropertyCount(builtinMaterialModel()); ++property) {
-        const std::string below = materialPropertyName(builtinMaterialModel(), property);
+    ASSERT_EQ(gltf::materialPropertyCount(materials::builtinMaterialModel()), 32 + 3 * 21);
+    for (int property = 0; property < gltf::materialPropertyCount(materials::builtinMaterialModel());
+         ++property) {
+        const std::string below = gltf::materialPropertyName(materials::builtinMaterialModel(), property);
         const std::string name = below.starts_with("KHR_") ? "extensions/" + below : below;
-        EXPECT_EQ(findMaterialProperty(builtinMaterialModel(), name), property) << name;
-        Material material;
+        EXPECT_EQ(gltf::findMaterialProperty(materials::builtinMaterialModel(), name), property) << name;
+        materials::Material material;
         if (name.find("pbrSpecularGlossiness") != std::string::npos) {
             material.give("KHR_materials_pbrSpecularGlossiness");
         }
-        const std::size_t width = materialPropertyWidth(builtinMaterialModel(), property);
-        setMaterialProperty(material, property, std::vector<double>(width, 0.375));
+        const std::size_t width = gltf::materialPropertyWidth(materials::builtinMaterialModel(), property);
+        gltf::setMaterialProperty(material, property, std::vector<double>(width, 0.375));
         for (std::size_t number = 0; number < width; ++number) {
             const double expected = name.ends_with("/ior") || name.ends_with("iridescenceIor") ? 1.0 : 0.375;
-            EXPECT_EQ(materialPropertyValue(material, property, number), expected) << name;
+            EXPECT_EQ(gltf::materialPropertyValue(material, property, number), expected) << name;
         }
     }
 }
 
-FeatureMask keyOf(const Scene& scene) {
-    const SceneList list(std::span(&scene, 1));
-    return makeKey(list.materials()[0], list.primitives()[0], {});
+materials::FeatureMask keyOf(const gltf::Scene& scene) {
+    const gltf::SceneList list(std::span(&scene, 1));
+    return compiler::makeKey(list.materials()[0], list.primitives()[0], {});
 }
 
 // A feature stays if its value leaves the neutral one at any time, even if it is neutral at rest and in the
 // keyframes.
 TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
-    const FeatureMask still = keyOf(Pointed().import());
+    const materials::FeatureMask still = keyOf(Pointed().import());
     EXPECT_EQ(still & (bit("clearcoat") | bit("transmission") | bit("ior") | bit("volume") |
                        bit("textureTransform")),
               0U);
@@ -254,8 +255,8 @@ TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
     pointed.drive<float>("/materials/0/extensions/KHR_materials_ior/ior", {1.5F, 2}, 1);
     pointed.drive<float>("/materials/0/pbrMetallicRoughness/metallicFactor", {0, 1}, 1);
     pointed.drive<float>("/materials/0/normalTexture/extensions/KHR_texture_transform/rotation", {0, 1}, 1);
-    const Scene scene = pointed.import();
-    const FeatureMask key = keyOf(scene);
+    const gltf::Scene scene = pointed.import();
+    const materials::FeatureMask key = keyOf(scene);
     for (const char* const feature : {"clearcoat", "ior", "textureTransform"}) {
         EXPECT_NE(key & bit(feature), 0U) << feature;
     }
@@ -264,7 +265,7 @@ TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
     EXPECT_EQ(scene.animatedMaterials[0].changes[0].substr(0, 35), "pbrMetallicRoughness/metallicFactor");
     // At each time the key contains the whole key of that time's values.
     for (const double time : {0.0, 0.25, 0.5, 1.0}) {
-        Scene plain = posedAt(scene, time);
+        gltf::Scene plain = posedAt(scene, time);
         plain.animatedMaterials.clear();
         EXPECT_EQ(keyOf(plain) & ~key, 0U) << time;
     }
@@ -275,7 +276,7 @@ TEST(AnimationPlanning, ConstantKeyframesAreConstants) {
     Pointed pointed;
     pointed.drive<float>("/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor", {0, 0}, 1);
     pointed.drive<float>("/materials/0/extensions/KHR_materials_transmission/transmissionFactor", {-1, 0}, 1);
-    const Scene scene = pointed.import();
+    const gltf::Scene scene = pointed.import();
     EXPECT_EQ(keyOf(scene), keyOf(Pointed().import()));
     EXPECT_TRUE(scene.animatedMaterials.at(0).changes.empty());
 }
@@ -285,7 +286,7 @@ TEST(AnimationPlanning, SplinesOvershoot) {
     Pointed pointed;
     pointed.drive<float>("/materials/0/extensions/KHR_materials_clearcoat/clearcoatFactor",
                          {0, 0, 4, 0, 0, 0}, 1)["interpolation"] = "CUBICSPLINE";
-    const Scene scene = pointed.import();
+    const gltf::Scene scene = pointed.import();
     EXPECT_GT(posedAt(scene, 0.3).materials.at(0)["clearcoatFactor"], 0.1F);
     EXPECT_NE(keyOf(scene) & bit("clearcoat"), 0U);
 }
@@ -293,11 +294,11 @@ TEST(AnimationPlanning, SplinesOvershoot) {
 TEST(AnimationPlanning, TheSmoothestMomentCountsForReflections) {
     Pointed pointed;
     pointed.drive<float>("/materials/0/pbrMetallicRoughness/roughnessFactor", {1, 0.125F}, 1);
-    const Scene scene = pointed.import();
-    const SceneList list(std::span(&scene, 1));
-    const EffectDeclaration& reflection = builtinMaterialModel().effects[2];
-    EXPECT_TRUE(sendsRays(reflection, list.materials()[0], list.primitives()[0], 0.125F));
-    EXPECT_FALSE(sendsRays(reflection, list.materials()[0], list.primitives()[0], 0.12F));
+    const gltf::Scene scene = pointed.import();
+    const gltf::SceneList list(std::span(&scene, 1));
+    const materials::EffectDeclaration& reflection = materials::builtinMaterialModel().effects[2];
+    EXPECT_TRUE(compiler::sendsRays(reflection, list.materials()[0], list.primitives()[0], 0.125F));
+    EXPECT_FALSE(compiler::sendsRays(reflection, list.materials()[0], list.primitives()[0], 0.12F));
 }
 
 }  // namespace

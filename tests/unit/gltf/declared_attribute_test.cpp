@@ -14,31 +14,31 @@
 namespace glint::test {
 namespace {
 
-const MaterialModel& modelWithWear() {
+const materials::MaterialModel& modelWithWear() {
     static const TemporaryFolder folder;
-    static const Result<const MaterialModel*> model = [&] {
+    static const Result<const materials::MaterialModel*> model = [&] {
         const std::string text = R"json({
             "name": "wear", "stage": "surface", "extension": "TEST_wear", "glsl": { "surface": "wear.glsl" },
             "attributes": [{ "name": "wearShare", "at": "_WEAR", "type": "vec2" },
                            { "name": "wearAge", "at": "_AGE", "type": "float", "default": 3 }],
             "neutral": [{ "when": "not attribute(wearAge)", "because": "nothing is old" }]
         })json";
-        EXPECT_TRUE(writeFile(folder.path() / "wear.json", text));
-        EXPECT_TRUE(writeFile(folder.path() / "wear.glsl", std::string("// wear\n")));
-        return loadMaterialModel(std::vector{folder.path().string()});
+        EXPECT_TRUE(base::writeFile(folder.path() / "wear.json", text));
+        EXPECT_TRUE(base::writeFile(folder.path() / "wear.glsl", std::string("// wear\n")));
+        return materials::loadMaterialModel(std::vector{folder.path().string()});
     }();
     EXPECT_TRUE(model) << toString(model.error());
     return **model;
 }
 
-ImportOptions withWear() {
-    ImportOptions options;
+gltf::ImportOptions withWear() {
+    gltf::ImportOptions options;
     options.materialModel = &modelWithWear();
     return options;
 }
 
-std::vector<float> valuesOf(const Primitive& primitive, const std::string& name) {
-    for (const VertexValues& attribute : primitive.attributes) {
+std::vector<float> valuesOf(const gltf::Primitive& primitive, const std::string& name) {
+    for (const gltf::VertexValues& attribute : primitive.attributes) {
         if (attribute.name == name) {
             return attribute.values;
         }
@@ -49,31 +49,31 @@ std::vector<float> valuesOf(const Primitive& primitive, const std::string& name)
 TEST(DeclaredAttributes, AreReadAsTheFileHasThem) {
     GltfBuilder floats;
     floats.addTriangle()["attributes"]["_WEAR"] = floats.addAccessor<float>({1, -2, 0.5F, 7, 0, 1e6F}, 2);
-    const Result<Scene> asFloats = import(floats, withWear());
+    const Result<gltf::Scene> asFloats = import(floats, withWear());
     EXPECT_EQ(valuesOf(onlyPrimitive(asFloats), "_WEAR"), (std::vector<float>{1, -2, 0.5F, 7, 0, 1e6F}));
 
     GltfBuilder shorts;
     constexpr std::uint16_t kMost = std::numeric_limits<std::uint16_t>::max();
     Json& triangle = shorts.addTriangle();
     triangle["attributes"]["_WEAR"] = shorts.addAccessor<std::uint16_t>({kMost, 0, 0, kMost, 0, 0}, 2, true);
-    const Result<Scene> asShares = import(shorts, withWear());
+    const Result<gltf::Scene> asShares = import(shorts, withWear());
     EXPECT_EQ(valuesOf(onlyPrimitive(asShares), "_WEAR"), (std::vector<float>{1, 0, 0, 1, 0, 0}));
 
     // Without the pack nobody reads them.
-    const Result<Scene> without = import(floats);
+    const Result<gltf::Scene> without = import(floats);
     EXPECT_TRUE(onlyPrimitive(without).attributes.empty());
 }
 
 TEST(DeclaredAttributes, MustFitTheDeclaration) {
     GltfBuilder type;
     type.addTriangle()["attributes"]["_WEAR"] = type.addAccessor<float>(std::vector<float>(9), 3);
-    const Result<Scene> wrongType = import(type, withWear());
+    const Result<gltf::Scene> wrongType = import(type, withWear());
     ASSERT_FALSE(wrongType);
     EXPECT_EQ(wrongType.error().id, "attribute-type");
     EXPECT_TRUE(wrongType.error().where.ends_with("#/meshes/0/primitives/0/attributes/_WEAR"));
     GltfBuilder count;
     count.addTriangle()["attributes"]["_WEAR"] = count.addAccessor<float>({1, 2}, 2);
-    const Result<Scene> wrongCount = import(count, withWear());
+    const Result<gltf::Scene> wrongCount = import(count, withWear());
     ASSERT_FALSE(wrongCount);
     EXPECT_EQ(wrongCount.error().id, "attribute-count");
 }
@@ -82,7 +82,7 @@ TEST(DeclaredAttributes, ThatAreNotFiniteAreReplaced) {
     GltfBuilder builder;
     constexpr float kNotFinite = std::numeric_limits<float>::infinity();
     builder.addTriangle()["attributes"]["_WEAR"] = builder.addAccessor<float>({1, kNotFinite, 2, 3, 4, 5}, 2);
-    const Result<Scene> scene = import(builder, withWear());
+    const Result<gltf::Scene> scene = import(builder, withWear());
     EXPECT_EQ(valuesOf(onlyPrimitive(scene), "_WEAR"), (std::vector<float>{1, 0, 2, 3, 4, 5}));
     ASSERT_EQ(scene->warnings.size(), 1U);
     EXPECT_EQ(scene->warnings[0].id, "attribute-not-finite");
@@ -96,15 +96,15 @@ TEST(DeclaredAttributes, DecideAboutKeys) {
     builder.root["materials"] = {{{"extensions", {{"TEST_wear", Json::object()}}}}};
     builder.root["extensionsUsed"] = {"TEST_wear"};
     triangle["material"] = 0;
-    const Result<Scene> scene = import(builder, withWear());
+    const Result<gltf::Scene> scene = import(builder, withWear());
     ASSERT_TRUE(scene) << toString(scene.error());
-    const FeatureMask wear = modelWithWear().mask("wear");
+    const materials::FeatureMask wear = modelWithWear().mask("wear");
     const auto key = [&](std::uint64_t attributes,
                          std::vector<std::pair<std::string, std::string>>* dropped) {
-        PrimitiveInputs inputs = planningInputs(*scene).front();
+        materials::PrimitiveInputs inputs = planningInputs(*scene).front();
         EXPECT_EQ(inputs.attributes, 1U);
         inputs.attributes = attributes;
-        return makeKey(scene->materials[0], inputs, {}, dropped) & wear;
+        return compiler::makeKey(scene->materials[0], inputs, {}, dropped) & wear;
     };
     EXPECT_NE(key(3, nullptr), 0U);
     std::vector<std::pair<std::string, std::string>> dropped;

@@ -11,30 +11,30 @@ namespace glint::test {
 namespace {
 
 // Returns a square in the plane z = 0, of side 1 or of another size.
-Primitive square(float side = 1.0F) {
-    Primitive primitive;
+gltf::Primitive square(float side = 1.0F) {
+    gltf::Primitive primitive;
     primitive.positions = {{0, 0, 0}, {side, 0, 0}, {side, side, 0}, {0, side, 0}};
     primitive.indices = {0, 1, 2, 0, 2, 3};
     return primitive;
 }
 
-Matrix4 scaled(double x, double y, double z) {
+gltf::Matrix4 scaled(double x, double y, double z) {
     return {x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 7, 8, 9, 1};
 }
 
 // Returns a stretch along X followed by a turn of 45 degrees about Z: columns of unequal lengths.
-Matrix4 stretchedAndTurned(double x) {
+gltf::Matrix4 stretchedAndTurned(double x) {
     const double half = 0.7071067811865476;
     return {x * half, x * half, 0, 0, -half, half, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 }
 
 struct Places {
-    Scene scene;
+    gltf::Scene scene;
 
-    void add(const Primitive& primitive, const std::vector<Matrix4>& worlds) {
+    void add(const gltf::Primitive& primitive, const std::vector<gltf::Matrix4>& worlds) {
         scene.meshes.push_back({"", {primitive}});
-        for (const Matrix4& world : worlds) {
-            Node node;
+        for (const gltf::Matrix4& world : worlds) {
+            gltf::Node node;
             node.mesh = static_cast<int>(scene.meshes.size()) - 1;
             node.world = world;
             scene.nodes.push_back(node);
@@ -42,7 +42,7 @@ struct Places {
     }
     std::vector<double> hits() const {
         std::vector<double> hits;
-        for (const PrimitiveInputs& inputs : planningInputs(scene)) {
+        for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {
             hits.push_back(inputs.expectedHits);
         }
         return hits;

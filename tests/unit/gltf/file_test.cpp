@@ -12,7 +12,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Returns a triangle whose buffer is in the file with that URI.
-std::string triangleWithBuffer(const std::string& uri, Bytes& bytes) {
+std::string triangleWithBuffer(const std::string& uri, base::Bytes& bytes) {
     GltfBuilder builder;
     builder.addTriangle();
     bytes = builder.buffer;
@@ -21,17 +21,17 @@ std::string triangleWithBuffer(const std::string& uri, Bytes& bytes) {
 }
 
 // Imports a scene in "<folder>/scenes" whose buffer has that URI.
-Result<Scene> importWithUri(const TemporaryFolder& folder, const std::string& uri,
-                            const ImportOptions& options = {}) {
-    Bytes bytes;
+Result<gltf::Scene> importWithUri(const TemporaryFolder& folder, const std::string& uri,
+                                  const gltf::ImportOptions& options = {}) {
+    base::Bytes bytes;
     const std::string text = triangleWithBuffer(uri, bytes);
     const fs::path scenes = folder.path() / "scenes";
     fs::create_directories(scenes / "sub folder");
     for (const fs::path& path :
          {folder.path() / "outside.bin", scenes / "a.bin", scenes / "sub folder/b.bin"}) {
-        EXPECT_TRUE(writeFile(path, bytes).ok());
+        EXPECT_TRUE(base::writeFile(path, bytes).ok());
     }
-    EXPECT_TRUE(writeFile(scenes / "scene.gltf", text).ok());
+    EXPECT_TRUE(base::writeFile(scenes / "scene.gltf", text).ok());
     return importScene(scenes / "scene.gltf", options);
 }
 
@@ -39,15 +39,15 @@ TEST(GltfFiles, OpensRelativeFilesAndRecordsThem) {
     const TemporaryFolder folder;
     for (const char* uri :
          {"a.bin", "./a.bin", "sub%20folder/b.bin", "sub folder/b.bin", "sub%20folder/../a.bin"}) {
-        const Result<Scene> scene = importWithUri(folder, uri);
+        const Result<gltf::Scene> scene = importWithUri(folder, uri);
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         ASSERT_EQ(scene->files.size(), 2U);
         EXPECT_EQ(scene->path, (folder.path() / "scenes/scene.gltf").string());
         EXPECT_EQ(scene->files[0].path, scene->path);
-        const Result<Bytes> content = readFile(scene->files[1].path);
+        const Result<base::Bytes> content = base::readFile(scene->files[1].path);
         ASSERT_TRUE(content.ok());
         EXPECT_EQ(scene->files[1].bytes, content->size());
-        EXPECT_EQ(scene->files[1].hash, hashBytes(*content));
+        EXPECT_EQ(scene->files[1].hash, base::hashBytes(*content));
     }
 }
 
@@ -59,7 +59,7 @@ TEST(GltfFiles, RefusesToLeaveTheFolder) {
           std::string("sub folder/../../outside.bin"), absolute, std::string("file://") + absolute,
           std::string("http://localhost/a.bin"), std::string("C:/a.bin"), std::string("a.bin%00"),
           std::string("%2Fetc/passwd"), std::string("\\\\server\\a.bin"), std::string()}) {
-        const Result<Scene> scene = importWithUri(folder, uri);
+        const Result<gltf::Scene> scene = importWithUri(folder, uri);
         ASSERT_FALSE(scene.ok()) << uri;
         EXPECT_EQ(scene.error().id, "uri-unsafe") << uri;
         EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#/buffers/0/uri"));
@@ -76,10 +76,10 @@ TEST(GltfFiles, FollowsLinksUnlessPathsAreStrict) {
     fs::create_directory_symlink(folder.path(), scenes / "up");
     fs::create_symlink("a.bin", scenes / "inner.bin");
     for (const std::string uri : {"link.bin", "up/outside.bin"}) {
-        const Result<Scene> followed = importWithUri(folder, uri);
+        const Result<gltf::Scene> followed = importWithUri(folder, uri);
         ASSERT_TRUE(followed.ok()) << toString(followed.error());
         EXPECT_EQ(followed->files.at(1).path, (scenes / uri).string());
-        const Result<Scene> refused = importWithUri(folder, uri, {.strictPaths = true});
+        const Result<gltf::Scene> refused = importWithUri(folder, uri, {.strictPaths = true});
         ASSERT_FALSE(refused.ok()) << uri;
         EXPECT_EQ(refused.error().id, "uri-unsafe");
         EXPECT_TRUE(refused.error().where.ends_with("scene.gltf#/buffers/0/uri"));
@@ -89,49 +89,49 @@ TEST(GltfFiles, FollowsLinksUnlessPathsAreStrict) {
     fs::create_directories(folder.path() / "forest");
     fs::create_symlink(scenes / "scene.gltf", folder.path() / "forest/scene.gltf");
     fs::create_symlink(scenes / "a.bin", folder.path() / "forest/inner.bin");
-    const Result<Scene> forest = importScene(folder.path() / "forest/scene.gltf");
+    const Result<gltf::Scene> forest = gltf::importScene(folder.path() / "forest/scene.gltf");
     EXPECT_TRUE(forest.ok()) << toString(forest.error());
 }
 
 TEST(GltfFiles, ExplainsWhatIsMissingOrTooShort) {
     const TemporaryFolder folder;
-    const Result<Scene> missing = importWithUri(folder, "none.bin");
+    const Result<gltf::Scene> missing = importWithUri(folder, "none.bin");
     ASSERT_FALSE(missing.ok());
     EXPECT_EQ(missing.error().id, "file-open");
     EXPECT_NE(missing.error().message.find("none.bin"), std::string::npos);
-    const Result<Scene> directory = importWithUri(folder, "sub folder");
+    const Result<gltf::Scene> directory = importWithUri(folder, "sub folder");
     ASSERT_FALSE(directory.ok());
     EXPECT_EQ(directory.error().id, "file-open");
 
     GltfBuilder builder;
     builder.addTriangle();
     builder.root["buffers"] = Json::array({{{"byteLength", 36}, {"uri", "data:;base64,AAAA"}}});
-    const Result<Scene> tooShort = import(builder);
+    const Result<gltf::Scene> tooShort = import(builder);
     ASSERT_FALSE(tooShort.ok());
     EXPECT_EQ(tooShort.error().id, "buffer-size");
     // A buffer without a URI is valid, because others may bring its data. Glint has no data to draw then.
     builder.root["buffers"][0].erase("uri");
-    const Result<Scene> without = import(builder);
+    const Result<gltf::Scene> without = import(builder);
     ASSERT_TRUE(without.ok()) << toString(without.error());
     EXPECT_EQ(countWarnings(*without, "buffer-external"), 1U);
     EXPECT_TRUE(findWarning(*without, "buffer-external").where.ends_with("#/meshes/0/primitives/0"));
     EXPECT_TRUE(without->meshes.at(0).primitives.empty());
 
-    EXPECT_EQ(importScene(folder.path() / "none.gltf").error().id, "file-open");
-    EXPECT_EQ(importScene(folder.path()).error().id, "file-open");
+    EXPECT_EQ(gltf::importScene(folder.path() / "none.gltf").error().id, "file-open");
+    EXPECT_EQ(gltf::importScene(folder.path()).error().id, "file-open");
 }
 
 TEST(GltfFiles, BoundsTheBytesRead) {
     GltfBuilder builder;
     builder.addTriangle();
-    const Result<Scene> scene = import(builder, {.maxFileBytes = 100});
+    const Result<gltf::Scene> scene = import(builder, {.maxFileBytes = 100});
     ASSERT_FALSE(scene.ok());
     EXPECT_EQ(scene.error().id, "file-size");
 }
 
 TEST(GltfJson, IsChecked) {
     const auto idOf = [](const std::string& text) {
-        const Result<Scene> scene = importText(text);
+        const Result<gltf::Scene> scene = importText(text);
         if (!scene) {
             EXPECT_NE(scene.error().where.find("scene.gltf"), std::string::npos);
             EXPECT_FALSE(scene.error().message.empty());
@@ -156,16 +156,16 @@ TEST(GltfJson, IsChecked) {
 }
 
 std::string errorOfBytes(const std::string& bytes) {
-    const Result<Scene> scene = importText(bytes);
+    const Result<gltf::Scene> scene = importText(bytes);
     return scene ? "imported" : scene.error().id;
 }
 
 TEST(GltfGlb, IsReadWhateverItsName) {
     GltfBuilder builder;
     builder.addTriangle();
-    const Result<Scene> scene = importText(builder.glb());
+    const Result<gltf::Scene> scene = importText(builder.glb());
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_EQ(scene->meshes[0].primitives[0].positions[1], (Float3{1, 0, 0}));
+    EXPECT_EQ(scene->meshes[0].primitives[0].positions[1], (gltf::Float3{1, 0, 0}));
     EXPECT_EQ(scene->files.size(), 1U);
 }
 

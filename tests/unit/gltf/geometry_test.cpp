@@ -10,7 +10,7 @@
 namespace glint::test {
 namespace {
 
-void expectError(const Result<Scene>& scene, std::string_view id, std::string_view pointer) {
+void expectError(const Result<gltf::Scene>& scene, std::string_view id, std::string_view pointer) {
     ASSERT_FALSE(scene.ok());
     EXPECT_EQ(scene.error().id, id) << toString(scene.error());
     EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#" + std::string(pointer))) << scene.error().where;
@@ -21,14 +21,14 @@ void expectError(const Result<Scene>& scene, std::string_view id, std::string_vi
 TEST(GltfGeometry, GeneratesIndicesAndLeavesMissingAttributesEmpty) {
     GltfBuilder builder;
     builder.addTriangle();
-    const Result<Scene> scene = import(builder);
-    const Primitive& primitive = onlyPrimitive(scene);
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& primitive = onlyPrimitive(scene);
     EXPECT_EQ(primitive.indices, (std::vector<std::uint32_t>{0, 1, 2}));
-    EXPECT_EQ(primitive.positions, (std::vector<Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+    EXPECT_EQ(primitive.positions, (std::vector<gltf::Float3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
     EXPECT_TRUE(primitive.normals.empty());
     EXPECT_TRUE(primitive.tangents.empty());
     EXPECT_TRUE(primitive.texCoords0.empty());
-    EXPECT_EQ(primitive.colorContent, ColorContent::None);
+    EXPECT_EQ(primitive.colorContent, materials::ColorContent::None);
     EXPECT_EQ(primitive.pointer, "/meshes/0/primitives/0");
     EXPECT_EQ(scene->defaultMaterial, 0);
     EXPECT_EQ(primitive.material, 0);
@@ -61,7 +61,7 @@ TEST(GltfGeometry, SkipsPointsAndLines) {
     for (const int mode : {0, 1, 2, 3}) {
         GltfBuilder builder;
         builder.addTriangle()["mode"] = mode;
-        const Result<Scene> scene = import(builder);
+        const Result<gltf::Scene> scene = import(builder);
         ASSERT_TRUE(scene.ok());
         EXPECT_TRUE(scene->meshes[0].primitives.empty());
         EXPECT_EQ(countWarnings(*scene, "primitive-skipped"), 1U);
@@ -75,7 +75,7 @@ TEST(GltfGeometry, SkipsPointsAndLines) {
 TEST(GltfGeometry, DropsIncompleteTriangles) {
     GltfBuilder builder;
     builder.addTriangle()["indices"] = builder.addAccessor<std::uint16_t>({0, 1, 2, 0, 1}, 1);
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     EXPECT_EQ(onlyPrimitive(scene).indices.size(), 3U);
     EXPECT_NE(findWarning(*scene, "triangle-incomplete").message.find("2 vertices"), std::string::npos);
 }
@@ -108,14 +108,14 @@ TEST(GltfGeometry, NormalizesIntegers) {
         builder.addAccessor<std::int8_t>({127, -127, -128, 0, 0, 0}, 2, true);
     primitive["attributes"]["COLOR_0"] =
         builder.addAccessor<std::uint8_t>({255, 51, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4, true);
-    const Result<Scene> scene = import(builder);
-    const Primitive& read = onlyPrimitive(scene);
-    EXPECT_EQ(read.texCoords0[0], (Float2{0.0F, 1.0F}));
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& read = onlyPrimitive(scene);
+    EXPECT_EQ(read.texCoords0[0], (gltf::Float2{0.0F, 1.0F}));
     EXPECT_FLOAT_EQ(read.texCoords0[1][0], 0.2F);
-    EXPECT_EQ(read.texCoords1[0], (Float2{1.0F, -1.0F}));
-    EXPECT_EQ(read.texCoords1[1], (Float2{-1.0F, 0.0F}));
+    EXPECT_EQ(read.texCoords1[0], (gltf::Float2{1.0F, -1.0F}));
+    EXPECT_EQ(read.texCoords1[1], (gltf::Float2{-1.0F, 0.0F}));
     EXPECT_FLOAT_EQ(read.colors[0][1], 0.2F);
-    EXPECT_EQ(read.colorContent, ColorContent::Varying);
+    EXPECT_EQ(read.colorContent, materials::ColorContent::Varying);
 }
 
 TEST(GltfGeometry, ReadsQuantizedAttributes) {
@@ -127,25 +127,25 @@ TEST(GltfGeometry, ReadsQuantizedAttributes) {
     primitive["attributes"]["NORMAL"] = builder.addAccessor<std::int8_t>({0, 0, 127, 0, 0, 1, 0, 3, 4}, 3);
     primitive["attributes"]["TEXCOORD_0"] = builder.addAccessor<std::uint8_t>({0, 1, 2, 3, 4, 255}, 2);
     builder.addMesh(primitive);
-    const Result<Scene> scene = import(builder);
-    const Primitive& read = onlyPrimitive(scene);
-    EXPECT_EQ(read.positions[2], (Float3{0.0F, -100.0F, 0.0F}));
-    EXPECT_EQ(read.normals[1], (Float3{0.0F, 0.0F, 1.0F}));
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& read = onlyPrimitive(scene);
+    EXPECT_EQ(read.positions[2], (gltf::Float3{0.0F, -100.0F, 0.0F}));
+    EXPECT_EQ(read.normals[1], (gltf::Float3{0.0F, 0.0F, 1.0F}));
     EXPECT_FLOAT_EQ(read.normals[2][1], 0.6F);
-    EXPECT_EQ(read.texCoords0[2], (Float2{4.0F, 255.0F}));
+    EXPECT_EQ(read.texCoords0[2], (gltf::Float2{4.0F, 255.0F}));
 }
 
 TEST(GltfGeometry, ClassifiesColors) {
     GltfBuilder white;
     white.addTriangle()["attributes"]["COLOR_0"] =
         white.addAccessor<std::uint16_t>(std::vector<std::uint16_t>(9, 65535), 3, true);
-    const Result<Scene> scene = import(white);
-    EXPECT_EQ(onlyPrimitive(scene).colorContent, ColorContent::White);
-    EXPECT_EQ(onlyPrimitive(scene).colors[2], (Float4{1.0F, 1.0F, 1.0F, 1.0F}));
+    const Result<gltf::Scene> scene = import(white);
+    EXPECT_EQ(onlyPrimitive(scene).colorContent, materials::ColorContent::White);
+    EXPECT_EQ(onlyPrimitive(scene).colors[2], (gltf::Float4{1.0F, 1.0F, 1.0F, 1.0F}));
     GltfBuilder clear;
     clear.addTriangle()["attributes"]["COLOR_0"] =
         clear.addAccessor<float>({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0.999F}, 4);
-    EXPECT_EQ(onlyPrimitive(import(clear)).colorContent, ColorContent::Varying);
+    EXPECT_EQ(onlyPrimitive(import(clear)).colorContent, materials::ColorContent::Varying);
 }
 
 TEST(GltfGeometry, ReadsStridedViews) {
@@ -155,7 +155,7 @@ TEST(GltfGeometry, ReadsStridedViews) {
     builder.append("accessors",
                    {{"bufferView", view}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
     builder.addMesh({{"attributes", {{"POSITION", 0}}}});
-    EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (Float3{0, 1, 0}));
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (gltf::Float3{0, 1, 0}));
     builder.root["bufferViews"][0]["byteStride"] = 8;
     expectError(import(builder), "accessor-stride", "/bufferViews/0/byteStride");
 }
@@ -170,11 +170,11 @@ TEST(GltfGeometry, AppliesSparseAccessors) {
         {"indices", {{"bufferView", builder.addView(indices, sizeof indices)}, {"componentType", 5123}}},
         {"values", {{"bufferView", builder.addView(values, sizeof values)}}}};
     EXPECT_EQ(onlyPrimitive(import(builder)).positions,
-              (std::vector<Float3>{{0, 0, 0}, {5, 6, 7}, {8, 9, 10}}));
+              (std::vector<gltf::Float3>{{0, 0, 0}, {5, 6, 7}, {8, 9, 10}}));
     // Without a buffer view, the base consists of zeros.
     builder.root["accessors"][0].erase("bufferView");
-    EXPECT_EQ(onlyPrimitive(import(builder)).positions[0], (Float3{0, 0, 0}));
-    EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (Float3{8, 9, 10}));
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions[0], (gltf::Float3{0, 0, 0}));
+    EXPECT_EQ(onlyPrimitive(import(builder)).positions[2], (gltf::Float3{8, 9, 10}));
     builder.root["accessors"][0]["count"] = 2;
     expectError(import(builder), "sparse-index", "/accessors/0/sparse/indices");
     builder.root["accessors"][0]["count"] = 1;
@@ -246,7 +246,7 @@ TEST(GltfGeometry, NeedsPositionsOnlyWhereDrawn) {
     builder.addTriangle()["attributes"].erase("POSITION");
     expectError(import(builder), "position-missing", "/meshes/0/primitives/0/attributes");
     builder.root.erase("nodes");
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     ASSERT_TRUE(scene.ok());
     EXPECT_EQ(countWarnings(*scene, "position-missing"), 1U);
     EXPECT_TRUE(scene->meshes[0].primitives.empty());
@@ -260,9 +260,9 @@ TEST(GltfGeometry, ListsPlanningInputs) {
     first["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
     first["attributes"]["TEXCOORD_1"] = builder.addAccessor<float>(std::vector<float>(6), 2);
     builder.addTriangle();
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     ASSERT_TRUE(scene.ok());
-    const std::vector<PrimitiveInputs> inputs = planningInputs(*scene);
+    const std::vector<materials::PrimitiveInputs> inputs = planningInputs(*scene);
     ASSERT_EQ(inputs.size(), 2U);
     EXPECT_EQ(inputs[0].material, 0);
     EXPECT_TRUE(inputs[0].hasNormals);

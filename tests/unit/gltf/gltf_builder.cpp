@@ -93,7 +93,7 @@ std::string chunk(std::uint32_t type, std::string payload, char padding) {
     return word(static_cast<std::uint32_t>(payload.size())) + word(type) + payload;
 }
 
-std::string base64(const Bytes& bytes) {
+std::string base64(const base::Bytes& bytes) {
     constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -108,20 +108,20 @@ std::string base64(const Bytes& bytes) {
     return text;
 }
 
-Result<Scene> importText(const std::string& text, const ImportOptions& options) {
+Result<gltf::Scene> importText(const std::string& text, const gltf::ImportOptions& options) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "scene.gltf";
-    if (const Status status = writeFile(path, text); !status) {
+    if (const Status status = base::writeFile(path, text); !status) {
         return status.error();
     }
     return importScene(path, options);
 }
 
-Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options) {
+Result<gltf::Scene> import(const GltfBuilder& builder, const gltf::ImportOptions& options) {
     return importText(builder.text(), options);
 }
 
-GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType) {
+GltfBuilder sceneWithImage(const base::Bytes& bytes, const std::string& mimeType) {
     GltfBuilder builder;
     const int view = builder.addView(bytes.data(), bytes.size());
     builder.append("images", {{"bufferView", view}, {"mimeType", mimeType}});
@@ -132,7 +132,7 @@ GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType) {
     return builder;
 }
 
-std::size_t countWarnings(const Scene& scene, std::string_view id) {
+std::size_t countWarnings(const gltf::Scene& scene, std::string_view id) {
     std::size_t count = 0;
     for (const Diagnostic& warning : scene.warnings) {
         count += warning.id == id ? 1 : 0;
@@ -140,7 +140,7 @@ std::size_t countWarnings(const Scene& scene, std::string_view id) {
     return count;
 }
 
-Diagnostic findWarning(const Scene& scene, std::string_view id) {
+Diagnostic findWarning(const gltf::Scene& scene, std::string_view id) {
     for (const Diagnostic& warning : scene.warnings) {
         if (warning.id == id) {
             return warning;

@@ -77,7 +77,7 @@ public:
     Json buffers(bool embedded) const;
 
     Json root;
-    Bytes buffer;
+    base::Bytes buffer;
     std::vector<Json> otherBuffers;  // after the first
 
 private:
@@ -89,19 +89,19 @@ std::string word(std::uint32_t value);
 // Returns a GLB chunk, padded to four bytes.
 std::string chunk(std::uint32_t type, std::string payload, char padding);
 
-std::string base64(const Bytes& bytes);
+std::string base64(const base::Bytes& bytes);
 
 // Writes `text` to a file in a new folder and imports it.
-Result<Scene> importText(const std::string& text, const ImportOptions& options = {});
-Result<Scene> import(const GltfBuilder& builder, const ImportOptions& options = {});
+Result<gltf::Scene> importText(const std::string& text, const gltf::ImportOptions& options = {});
+Result<gltf::Scene> import(const GltfBuilder& builder, const gltf::ImportOptions& options = {});
 
 // A material whose base colour is the image of those bytes.
-GltfBuilder sceneWithImage(const Bytes& bytes, const std::string& mimeType = "image/png");
+GltfBuilder sceneWithImage(const base::Bytes& bytes, const std::string& mimeType = "image/png");
 
 // Warnings of that kind.
-std::size_t countWarnings(const Scene& scene, std::string_view id);
+std::size_t countWarnings(const gltf::Scene& scene, std::string_view id);
 // Returns the first warning of that kind; an empty one if there is none.
-Diagnostic findWarning(const Scene& scene, std::string_view id);
+Diagnostic findWarning(const gltf::Scene& scene, std::string_view id);
 
 // A PNG of 1 x 2 pixels of 8 bits, RGBA: (255, 0, 128, 64) above (1, 2, 3, 4).
 inline constexpr const char* kPng8 =

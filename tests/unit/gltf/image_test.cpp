@@ -13,10 +13,10 @@
 namespace glint::test {
 namespace {
 
-const ImportOptions kDecode{.decodeImages = true};
+const gltf::ImportOptions kDecode{.decodeImages = true};
 
-Image decodePng(const PngSpec& spec) {
-    Result<Scene> scene = import(sceneWithImage(makePng(spec)), kDecode);
+gltf::Image decodePng(const PngSpec& spec) {
+    Result<gltf::Scene> scene = import(sceneWithImage(makePng(spec)), kDecode);
     if (!scene || scene->images.empty()) {
         ADD_FAILURE() << (scene ? "no image" : toString(scene.error()));
         return {};
@@ -24,7 +24,7 @@ Image decodePng(const PngSpec& spec) {
     return scene->images[0];
 }
 
-std::vector<int> channels16(const Image& image) {
+std::vector<int> channels16(const gltf::Image& image) {
     std::vector<int> channels;
     for (std::size_t i = 0; i + 2 <= image.pixels.size(); i += 2) {
         std::uint16_t channel = 0;
@@ -35,54 +35,55 @@ std::vector<int> channels16(const Image& image) {
 }
 
 TEST(GltfPng, KeepsSixteenBits) {
-    const Image rgba = decodePng({1,
-                                  2,
-                                  16,
-                                  PngColor::Rgba,
-                                  {},
-                                  {0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC, 0xDE, 0xF0,  //
-                                   0x00, 0x01, 0xFF, 0xFE, 0x80, 0x00, 0x00, 0x00}});
-    EXPECT_EQ(rgba.format, PixelFormat::Rgba16);
+    const gltf::Image rgba = decodePng({1,
+                                        2,
+                                        16,
+                                        PngColor::Rgba,
+                                        {},
+                                        {0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC, 0xDE, 0xF0,  //
+                                         0x00, 0x01, 0xFF, 0xFE, 0x80, 0x00, 0x00, 0x00}});
+    EXPECT_EQ(rgba.format, gltf::PixelFormat::Rgba16);
     EXPECT_EQ(channels16(rgba),
               (std::vector{0x1234, 0x5678, 0x9ABC, 0xDEF0, 0x0001, 0xFFFE, 0x8000, 0x0000}));
-    const Image rgb = decodePng({1, 1, 16, PngColor::Rgb, {}, {0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC}});
+    const gltf::Image rgb = decodePng({1, 1, 16, PngColor::Rgb, {}, {0x12, 0x34, 0x56, 0x78, 0x9A, 0xBC}});
     EXPECT_EQ(channels16(rgb), (std::vector{0x1234, 0x5678, 0x9ABC, 0xFFFF}));
-    const Image gray = decodePng({1, 1, 16, PngColor::Gray, {}, {0x12, 0x34}});
+    const gltf::Image gray = decodePng({1, 1, 16, PngColor::Gray, {}, {0x12, 0x34}});
     EXPECT_EQ(channels16(gray), (std::vector{0x1234, 0x1234, 0x1234, 0xFFFF}));
-    const Image grayAlpha = decodePng({1, 1, 16, PngColor::GrayAlpha, {}, {0x12, 0x34, 0x56, 0x78}});
+    const gltf::Image grayAlpha = decodePng({1, 1, 16, PngColor::GrayAlpha, {}, {0x12, 0x34, 0x56, 0x78}});
     EXPECT_EQ(channels16(grayAlpha), (std::vector{0x1234, 0x1234, 0x1234, 0x5678}));
 }
 
 TEST(GltfPng, SixteenBitsHaveATransparentColour) {
-    const Image image =
+    const gltf::Image image =
         decodePng({2, 1, 16, PngColor::Gray, {{"tRNS", {0x12, 0x34}}}, {0x12, 0x34, 0x12, 0x35}});
     EXPECT_EQ(channels16(image), (std::vector{0x1234, 0x1234, 0x1234, 0, 0x1235, 0x1235, 0x1235, 0xFFFF}));
 }
 
 TEST(GltfPng, ReadsGrayPaletteAndTransparency) {
-    const Image gray = decodePng({2, 1, 8, PngColor::Gray, {}, {7, 200}});
-    EXPECT_EQ(gray.format, PixelFormat::Rgba8);
-    EXPECT_EQ(gray.pixels, (Bytes{7, 7, 7, 255, 200, 200, 200, 255}));
-    const Image bits = decodePng({8, 1, 1, PngColor::Gray, {}, {0x40}});
+    const gltf::Image gray = decodePng({2, 1, 8, PngColor::Gray, {}, {7, 200}});
+    EXPECT_EQ(gray.format, gltf::PixelFormat::Rgba8);
+    EXPECT_EQ(gray.pixels, (base::Bytes{7, 7, 7, 255, 200, 200, 200, 255}));
+    const gltf::Image bits = decodePng({8, 1, 1, PngColor::Gray, {}, {0x40}});
     EXPECT_EQ(bits.pixels.at(0), 0);
     EXPECT_EQ(bits.pixels.at(4), 255);
-    const Image grayAlpha = decodePng({1, 1, 8, PngColor::GrayAlpha, {}, {7, 9}});
-    EXPECT_EQ(grayAlpha.pixels, (Bytes{7, 7, 7, 9}));
-    const Image palette = decodePng(
+    const gltf::Image grayAlpha = decodePng({1, 1, 8, PngColor::GrayAlpha, {}, {7, 9}});
+    EXPECT_EQ(grayAlpha.pixels, (base::Bytes{7, 7, 7, 9}));
+    const gltf::Image palette = decodePng(
         {3, 1, 8, PngColor::Palette, {{"PLTE", {1, 2, 3, 4, 5, 6, 7, 8, 9}}, {"tRNS", {10, 20}}}, {2, 0, 1}});
-    EXPECT_EQ(palette.pixels, (Bytes{7, 8, 9, 255, 1, 2, 3, 10, 4, 5, 6, 20}));
-    const Image key = decodePng({2, 1, 8, PngColor::Rgb, {{"tRNS", {0, 1, 0, 2, 0, 3}}}, {1, 2, 3, 1, 2, 4}});
-    EXPECT_EQ(key.pixels, (Bytes{1, 2, 3, 0, 1, 2, 4, 255}));
+    EXPECT_EQ(palette.pixels, (base::Bytes{7, 8, 9, 255, 1, 2, 3, 10, 4, 5, 6, 20}));
+    const gltf::Image key =
+        decodePng({2, 1, 8, PngColor::Rgb, {{"tRNS", {0, 1, 0, 2, 0, 3}}}, {1, 2, 3, 1, 2, 4}});
+    EXPECT_EQ(key.pixels, (base::Bytes{1, 2, 3, 0, 1, 2, 4, 255}));
 }
 
 TEST(GltfWebp, RoundTrips) {
-    const Result<Scene> scene = import(webpScene(), kDecode);
+    const Result<gltf::Scene> scene = import(webpScene(), kDecode);
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
     ASSERT_EQ(scene->images.size(), 1U);
     EXPECT_EQ(scene->images[0].width, 2);
     EXPECT_EQ(scene->images[0].height, 1);
-    EXPECT_EQ(scene->images[0].pixels, Bytes(kWebpPixels.begin(), kWebpPixels.end()));
+    EXPECT_EQ(scene->images[0].pixels, base::Bytes(kWebpPixels.begin(), kWebpPixels.end()));
     EXPECT_EQ(scene->materials[0].texture("baseColorTexture").texture, 0);
 }
 
@@ -91,28 +92,28 @@ TEST(GltfWebp, IsPreferredToItsFallback) {
     builder.root.erase("extensionsRequired");
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
     builder.root["textures"][0]["source"] = 1;
-    const Result<Scene> scene = import(builder, kDecode);
+    const Result<gltf::Scene> scene = import(builder, kDecode);
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     ASSERT_EQ(scene->images.size(), 1U);
     EXPECT_EQ(scene->images[0].pointer, "/images/0");
 }
 
 TEST(GltfWebp, ExplainsDamage) {
-    const auto errorOf = [](const GltfBuilder& builder, const ImportOptions& options = kDecode) {
-        const Result<Scene> scene = import(builder, options);
+    const auto errorOf = [](const GltfBuilder& builder, const gltf::ImportOptions& options = kDecode) {
+        const Result<gltf::Scene> scene = import(builder, options);
         if (scene) {
             return std::string("imported");
         }
         EXPECT_FALSE(scene.error().hint.empty());
         return scene.error().id + " " + scene.error().message;
     };
-    const Bytes whole = encodeWebp(Bytes(std::size_t{4} * 64 * 64, 77), 64, 64);
+    const base::Bytes whole = encodeWebp(base::Bytes(std::size_t{4} * 64 * 64, 77), 64, 64);
     for (const std::size_t size : {std::size_t{13}, std::size_t{20}, whole.size() - 4}) {
         const std::string error = errorOf(sceneWithImage(
-            Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)), "image/webp"));
+            base::Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)), "image/webp"));
         EXPECT_TRUE(error.starts_with("image-decode is a WebP image that can't be decoded: ")) << error;
     }
-    Bytes signature = whole;
+    base::Bytes signature = whole;
     signature[20] = 0;  // the first byte of the VP8L stream
     EXPECT_NE(errorOf(sceneWithImage(signature, "image/webp")).find("bitstream error"), std::string::npos);
     EXPECT_TRUE(errorOf(sceneWithImage(whole, "image/webp"), {.decodeImages = true, .maxImageSize = 63})
@@ -128,7 +129,8 @@ TEST(GltfImages, NamesForeignFormats) {
     for (const auto& [start, name] : {std::pair("DDS ", "DDS"), std::pair("\xABKTX 11\xBB", "KTX 1"),
                                       std::pair("1234ftypavif", "AVIF")}) {
         const std::string text(start);
-        const Result<Scene> scene = import(sceneWithImage(Bytes(text.begin(), text.end())), kDecode);
+        const Result<gltf::Scene> scene =
+            import(sceneWithImage(base::Bytes(text.begin(), text.end())), kDecode);
         ASSERT_FALSE(scene.ok());
         EXPECT_NE(scene.error().message.find(name), std::string::npos) << scene.error().message;
     }

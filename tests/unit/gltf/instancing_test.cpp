@@ -20,8 +20,8 @@ struct Instanced {
     Json& attributes() {
         return builder.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     }
-    Scene import() {
-        Result<Scene> scene = test::import(builder);
+    gltf::Scene import() {
+        Result<gltf::Scene> scene = test::import(builder);
         if (!scene) {
             ADD_FAILURE() << toString(scene.error());
             return {};
@@ -29,7 +29,7 @@ struct Instanced {
         return std::move(*scene);
     }
     std::string errorId() {
-        const Result<Scene> scene = test::import(builder);
+        const Result<gltf::Scene> scene = test::import(builder);
         return scene ? "imported" : scene.error().id;
     }
     GltfBuilder builder;
@@ -43,14 +43,14 @@ TEST(GltfInstancing, ComposesTranslationRotationAndScale) {
     instanced.attributes()["ROTATION"] =
         instanced.builder.addAccessor(std::vector<std::int16_t>{0, 0, 23170, 23170, 0, 0, 0, 32767}, 4, true);
     instanced.attributes()["SCALE"] = instanced.builder.addAccessor(std::vector<float>{2, 3, 4, 1, 1, 1}, 3);
-    const Scene scene = instanced.import();
+    const gltf::Scene scene = instanced.import();
     EXPECT_TRUE(scene.warnings.empty());
     ASSERT_EQ(scene.instancings.size(), 1U);
     EXPECT_EQ(scene.nodes.at(0).instancing, 0);
-    const Instancing& instancing = scene.instancings[0];
+    const gltf::Instancing& instancing = scene.instancings[0];
     ASSERT_EQ(instancing.count, 2U);
-    const Matrix4 first = gltf::instanceTransform(instancing, 0);
-    const Matrix4 expected{0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 1, 2, 3, 1};
+    const gltf::Matrix4 first = gltf::instanceTransform(instancing, 0);
+    const gltf::Matrix4 expected{0, 2, 0, 0, -3, 0, 0, 0, 0, 0, 4, 0, 1, 2, 3, 1};
     for (std::size_t i = 0; i < expected.size(); ++i) {
         EXPECT_NEAR(first[i], expected[i], 1e-4) << i;
     }
@@ -61,7 +61,7 @@ TEST(GltfInstancing, WhatIsLeftOutIsNeutral) {
     Instanced instanced;
     instanced.attributes()["ROTATION"] =
         instanced.builder.addAccessor(std::vector<std::int8_t>{0, 0, 0, 127, 127, 0, 0, 0}, 4, true);
-    const Scene scene = instanced.import();
+    const gltf::Scene scene = instanced.import();
     ASSERT_EQ(scene.instancings.at(0).count, 2U);
     EXPECT_EQ(gltf::instanceTransform(scene.instancings[0], 0), gltf::identity());
     EXPECT_NEAR(gltf::instanceTransform(scene.instancings[0], 1)[5], -1.0, 1e-6) << "half a turn about X";
@@ -72,7 +72,7 @@ TEST(GltfInstancing, NotesAttributesOfApplications) {
     instanced.attributes()["TRANSLATION"] = instanced.builder.addAccessor(std::vector<float>{1, 2, 3}, 3);
     instanced.attributes()["_ID"] = 0;
     instanced.attributes()["_COLOR_0"] = 99;
-    const Scene scene = instanced.import();
+    const gltf::Scene scene = instanced.import();
     ASSERT_EQ(scene.warnings.size(), 1U);
     EXPECT_EQ(scene.warnings[0].severity, Severity::Note);
     EXPECT_EQ(scene.warnings[0].id, "node-instances");
@@ -115,7 +115,7 @@ TEST(GltfInstancing, CountsForExpectedHits) {
     const double many = planningInputs(instanced.import()).at(0).expectedHits;
     GltfBuilder single;
     single.addTriangle();
-    const Result<Scene> one = import(single);
+    const Result<gltf::Scene> one = import(single);
     ASSERT_TRUE(one.ok());
     EXPECT_NEAR(many / planningInputs(*one).at(0).expectedHits, 4000.0, 1e-6);
 }
@@ -129,10 +129,10 @@ TEST(GltfVisibility, HidesANodeAndAllBelow) {
     builder.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = true;
     builder.root["nodes"].push_back(
         Json::parse(R"({"children": [0], "extensions": {"KHR_node_visibility": {"visible": false}}})"));
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     EXPECT_TRUE(scene->warnings.empty());
-    const Node& below = scene->nodes.at(1);
+    const gltf::Node& below = scene->nodes.at(1);
     EXPECT_TRUE(below.visible);
     EXPECT_FALSE(below.shown);
     EXPECT_FALSE(below.canShow);

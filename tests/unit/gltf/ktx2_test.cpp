@@ -18,18 +18,18 @@
 namespace glint::test {
 namespace {
 
-const ImportOptions kDecodeKtx2{.decodeImages = true};
+const gltf::ImportOptions kDecodeKtx2{.decodeImages = true};
 constexpr std::size_t kLevelIndex = 80;
 
-Bytes readKtx2File(const std::string& name) {
-    Result<Bytes> bytes =
-        readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/unit/gltf/ktx2" / (name + ".ktx2"));
+base::Bytes readKtx2File(const std::string& name) {
+    Result<base::Bytes> bytes =
+        base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/unit/gltf/ktx2" / (name + ".ktx2"));
     EXPECT_TRUE(bytes.ok()) << name;
-    return bytes ? *bytes : Bytes();
+    return bytes ? *bytes : base::Bytes();
 }
 
 // Returns a scene whose base colour is that KTX2 image, without a fallback.
-GltfBuilder basisuScene(const Bytes& bytes) {
+GltfBuilder basisuScene(const base::Bytes& bytes) {
     GltfBuilder builder = sceneWithImage(bytes, "image/ktx2");
     builder.root["extensionsUsed"] = Json::array({"KHR_texture_basisu"});
     Json texture;
@@ -38,18 +38,18 @@ GltfBuilder basisuScene(const Bytes& bytes) {
     return builder;
 }
 
-void setWord(Bytes& bytes, std::size_t offset, std::uint32_t value) {
+void setWord(base::Bytes& bytes, std::size_t offset, std::uint32_t value) {
     for (std::size_t i = 0; i < 4; ++i) {
         bytes.at(offset + i) = static_cast<std::uint8_t>(value >> 8U * i);
     }
 }
 
-std::size_t wordAt(const Bytes& bytes, std::size_t offset) {
+std::size_t wordAt(const base::Bytes& bytes, std::size_t offset) {
     return bytes.at(offset) | std::size_t{bytes.at(offset + 1)} << 8U;
 }
 
 // Returns the pixel of a level.
-std::array<int, 4> pixelAt(const Image& image, int level, int x, int y) {
+std::array<int, 4> pixelAt(const gltf::Image& image, int level, int x, int y) {
     std::size_t offset = 0;
     for (int i = 0; i < level; ++i) {
         offset += 4 * pixelCount(image, i);
@@ -81,8 +81,8 @@ protected:
         }
     }
 
-    static Image decode(const std::string& name) {
-        const Result<Scene> scene = import(basisuScene(readKtx2File(name)), kDecodeKtx2);
+    static gltf::Image decode(const std::string& name) {
+        const Result<gltf::Scene> scene = import(basisuScene(readKtx2File(name)), kDecodeKtx2);
         if (!scene || scene->images.size() != 1) {
             ADD_FAILURE() << name << ": " << (scene ? "no image" : toString(scene.error()));
             return {};
@@ -100,14 +100,14 @@ TEST_F(GltfKtx2, DecodesEveryKindOfData) {
         bool alpha;
         int levels;
         int tolerance;
-        Transfer transfer;
+        gltf::Transfer transfer;
     };
-    for (const Kind& kind :
-         {Kind{"etc1s", false, 1, 12, Transfer::Srgb}, Kind{"etc1s_alpha_mips", true, 5, 12, Transfer::Srgb},
-          Kind{"uastc_linear", false, 1, 3, Transfer::Linear},
-          Kind{"uastc_alpha_zstd", true, 1, 3, Transfer::Srgb}}) {
+    for (const Kind& kind : {Kind{"etc1s", false, 1, 12, gltf::Transfer::Srgb},
+                             Kind{"etc1s_alpha_mips", true, 5, 12, gltf::Transfer::Srgb},
+                             Kind{"uastc_linear", false, 1, 3, gltf::Transfer::Linear},
+                             Kind{"uastc_alpha_zstd", true, 1, 3, gltf::Transfer::Srgb}}) {
         SCOPED_TRACE(kind.name);
-        const Image image = decode(kind.name);
+        const gltf::Image image = decode(kind.name);
         ASSERT_EQ(image.width, 16);
         ASSERT_EQ(image.height, 8);
         ASSERT_EQ(image.levels, kind.levels);
@@ -125,11 +125,11 @@ TEST_F(GltfKtx2, DecodesEveryKindOfData) {
 // check.
 TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
     for (const std::size_t padding : {std::size_t{1}, std::size_t{6}}) {
-        const Bytes bytes = readKtx2File("uastc_linear");
+        const base::Bytes bytes = readKtx2File("uastc_linear");
         GltfBuilder builder = basisuScene(bytes);
         builder.root["bufferViews"][0]["byteOffset"] = padding;
         builder.buffer.insert(builder.buffer.begin(), padding, std::uint8_t{0});
-        const Result<Scene> scene = import(builder, kDecodeKtx2);
+        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         EXPECT_TRUE(isNear(pixelAt(scene->images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
     }
@@ -141,7 +141,7 @@ TEST_F(GltfKtx2, KeepsTheMipsOfTheFile) {
         {{224, 0, 0, 255}, {0, 224, 0, 255}, {0, 0, 224, 255}, {224, 224, 0, 255}, {0, 224, 224, 255}}};
     for (const char* name : {"etc1s_steps", "uastc_zstd_steps"}) {
         SCOPED_TRACE(name);
-        const Image image = decode(name);
+        const gltf::Image image = decode(name);
         ASSERT_EQ(image.levels, 5);
         ASSERT_EQ(image.pixels.size(), 4U * (256 + 64 + 16 + 4 + 1));
         for (int level = 0; level < image.levels; ++level) {
@@ -157,7 +157,7 @@ TEST_F(GltfKtx2, IsPreferredToItsFallback) {
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
     builder.root["textures"][0]["source"] = 1;
-    const Result<Scene> scene = import(builder, kDecodeKtx2);
+    const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     ASSERT_EQ(scene->images.size(), 1U);
     EXPECT_EQ(scene->images[0].pointer, "/images/0");
@@ -171,16 +171,16 @@ TEST_F(GltfKtx2, SurvivesDamage) {
     int refused = 0;
     for (const char* name :
          {"etc1s_alpha_mips", "etc1s", "uastc_linear", "uastc_alpha_zstd", "uastc_zstd_steps"}) {
-        const Bytes whole = readKtx2File(name);
+        const base::Bytes whole = readKtx2File(name);
         for (int round = 0; round < 200; ++round) {
-            Bytes bytes = whole;
+            base::Bytes bytes = whole;
             for (int change = 0; change < 1 + round % 4; ++change) {
                 bytes.at(12 + random() % (bytes.size() - 12)) = static_cast<std::uint8_t>(random());
             }
             if (round % 8 == 0) {
                 bytes.resize(random() % bytes.size());
             }
-            const Result<Scene> scene =
+            const Result<gltf::Scene> scene =
                 import(basisuScene(bytes), {.decodeImages = true, .maxImageSize = 256});
             if (scene) {
                 EXPECT_EQ(scene->images[0].pixels.size(), byteCount(scene->images[0]));
@@ -196,11 +196,11 @@ TEST_F(GltfKtx2, SurvivesDamage) {
 
 // --- Headers, in every build ---
 
-using Change = std::function<void(Bytes&)>;
+using Change = std::function<void(base::Bytes&)>;
 
 // Returns why the header of the file is refused after a change, or "" if it is not.
 std::string problemOf(const std::string& name, const Change& change) {
-    Bytes bytes = readKtx2File(name);
+    base::Bytes bytes = readKtx2File(name);
     change(bytes);
     std::string problem;
     const auto file = gltf::readKtx2(bytes, problem);
@@ -209,10 +209,10 @@ std::string problemOf(const std::string& name, const Change& change) {
 }
 
 // These return the places of the data format descriptor and of the global data.
-std::size_t descriptor(const Bytes& bytes) {
+std::size_t descriptor(const base::Bytes& bytes) {
     return wordAt(bytes, 48);
 }
-std::size_t globalData(const Bytes& bytes) {
+std::size_t globalData(const base::Bytes& bytes) {
     return wordAt(bytes, 64);
 }
 
@@ -223,47 +223,50 @@ TEST(GltfKtx2Header, IsRefusedWithTheReason) {
         const char* reason;
     };
     const std::vector<Row> rows{
-        {"etc1s", [](Bytes& b) { b.resize(90); }, "ends within its header"},
-        {"etc1s", [](Bytes& b) { setWord(b, 12, 37); }, "VkFormat 37"},    // R8G8B8A8_UNORM
-        {"etc1s", [](Bytes& b) { setWord(b, 12, 145); }, "VkFormat 145"},  // BC7
-        {"uastc_hdr", [](Bytes&) {}, "VkFormat 1000066000"},
-        {"etc1s", [](Bytes& b) { b.at(descriptor(b) + 12) = 168; }, "UASTC HDR"},
-        {"etc1s", [](Bytes& b) { b.at(descriptor(b) + 12) = 169; }, "XUASTC"},
-        {"etc1s", [](Bytes& b) { b.at(descriptor(b) + 12) = 1; }, "colour model 1"},
-        {"etc1s", [](Bytes& b) { setWord(b, 20, 0); }, "0 x 8"},
-        {"etc1s", [](Bytes& b) { setWord(b, 24, 0x80000000U); }, "16 x 2147483648"},
-        {"etc1s", [](Bytes& b) { setWord(b, 28, 1); }, "two-dimensional"},
-        {"etc1s", [](Bytes& b) { setWord(b, 32, 1); }, "two-dimensional"},
-        {"etc1s", [](Bytes& b) { setWord(b, 36, 6); }, "two-dimensional"},
-        {"etc1s", [](Bytes& b) { setWord(b, 40, 0); }, "0 levels"},
-        {"etc1s", [](Bytes& b) { setWord(b, 40, 6); }, "6 levels; 1 to 5"},
-        {"etc1s", [](Bytes& b) { setWord(b, 44, 2); }, "scheme is 2"},
-        {"uastc_linear", [](Bytes& b) { setWord(b, 44, 1); }, "scheme is 1"},
-        {"uastc_linear", [](Bytes& b) { setWord(b, 44, 3); }, "scheme is 3"},
-        {"etc1s", [](Bytes& b) { setWord(b, 48, 0xFFFFFFF0U); }, "descriptor"},
-        {"etc1s", [](Bytes& b) { setWord(b, 52, 40); }, "descriptor"},
-        {"etc1s", [](Bytes& b) { setWord(b, descriptor(b), 60); }, "descriptor"},
-        {"etc1s", [](Bytes& b) { b.at(descriptor(b) + 14) = 4; }, "transfer function"},
-        {"etc1s_alpha_mips", [](Bytes& b) { b.at(descriptor(b) + 28 + 16 + 3) = 4; }, "neither RGB nor RGBA"},
-        {"uastc_linear", [](Bytes& b) { b.at(descriptor(b) + 28 + 3) = 6; }, "neither RGB nor RGBA"},
-        {"etc1s", [](Bytes& b) { setWord(b, 56, 0xFFFFFFFFU); }, "metadata"},
-        {"etc1s", [](Bytes& b) { setWord(b, 60, 0xFFFFFFFFU); }, "metadata"},
-        {"etc1s", [](Bytes& b) { setWord(b, wordAt(b, 56), 0xFFFFFFFFU); }, "metadata"},
-        {"etc1s", [](Bytes& b) { setWord(b, 68, 1); }, "global data"},
-        {"etc1s", [](Bytes& b) { setWord(b, 76, 0xFFFFFFFFU); }, "global data"},
-        {"etc1s", [](Bytes& b) { setWord(b, 72, 30); }, "global data"},
-        {"etc1s", [](Bytes& b) { setWord(b, globalData(b) + 4, 0xFFFFFFFFU); }, "global data"},
-        {"etc1s", [](Bytes& b) { setWord(b, globalData(b) + 24, 1000); }, "level 0"},
-        {"etc1s", [](Bytes& b) { setWord(b, globalData(b) + 28, 0); }, "level 0"},
+        {"etc1s", [](base::Bytes& b) { b.resize(90); }, "ends within its header"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 12, 37); }, "VkFormat 37"},    // R8G8B8A8_UNORM
+        {"etc1s", [](base::Bytes& b) { setWord(b, 12, 145); }, "VkFormat 145"},  // BC7
+        {"uastc_hdr", [](base::Bytes&) {}, "VkFormat 1000066000"},
+        {"etc1s", [](base::Bytes& b) { b.at(descriptor(b) + 12) = 168; }, "UASTC HDR"},
+        {"etc1s", [](base::Bytes& b) { b.at(descriptor(b) + 12) = 169; }, "XUASTC"},
+        {"etc1s", [](base::Bytes& b) { b.at(descriptor(b) + 12) = 1; }, "colour model 1"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 20, 0); }, "0 x 8"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 24, 0x80000000U); }, "16 x 2147483648"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 28, 1); }, "two-dimensional"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 32, 1); }, "two-dimensional"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 36, 6); }, "two-dimensional"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 40, 0); }, "0 levels"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 40, 6); }, "6 levels; 1 to 5"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 44, 2); }, "scheme is 2"},
+        {"uastc_linear", [](base::Bytes& b) { setWord(b, 44, 1); }, "scheme is 1"},
+        {"uastc_linear", [](base::Bytes& b) { setWord(b, 44, 3); }, "scheme is 3"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 48, 0xFFFFFFF0U); }, "descriptor"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 52, 40); }, "descriptor"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, descriptor(b), 60); }, "descriptor"},
+        {"etc1s", [](base::Bytes& b) { b.at(descriptor(b) + 14) = 4; }, "transfer function"},
+        {"etc1s_alpha_mips", [](base::Bytes& b) { b.at(descriptor(b) + 28 + 16 + 3) = 4; },
+         "neither RGB nor RGBA"},
+        {"uastc_linear", [](base::Bytes& b) { b.at(descriptor(b) + 28 + 3) = 6; }, "neither RGB nor RGBA"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 56, 0xFFFFFFFFU); }, "metadata"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 60, 0xFFFFFFFFU); }, "metadata"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, wordAt(b, 56), 0xFFFFFFFFU); }, "metadata"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 68, 1); }, "global data"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 76, 0xFFFFFFFFU); }, "global data"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 72, 30); }, "global data"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, globalData(b) + 4, 0xFFFFFFFFU); }, "global data"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, globalData(b) + 24, 1000); }, "level 0"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, globalData(b) + 28, 0); }, "level 0"},
         // The offset plus the length wraps.
-        {"etc1s", [](Bytes& b) { std::fill_n(b.begin() + kLevelIndex, 8, std::uint8_t{0xFF}); }, "level 0"},
-        {"etc1s", [](Bytes& b) { setWord(b, kLevelIndex + 8, 1000); }, "level 0"},
-        {"etc1s", [](Bytes& b) { setWord(b, kLevelIndex + 16, 4); }, "level 0"},
+        {"etc1s", [](base::Bytes& b) { std::fill_n(b.begin() + kLevelIndex, 8, std::uint8_t{0xFF}); },
+         "level 0"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, kLevelIndex + 8, 1000); }, "level 0"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, kLevelIndex + 16, 4); }, "level 0"},
         // The Zstandard data claim to be larger than their blocks.
-        {"uastc_zstd_steps", [](Bytes& b) { setWord(b, kLevelIndex + 24 + 16, 0x7FFFFFFFU); }, "level 1"},
-        {"uastc_linear", [](Bytes& b) { setWord(b, kLevelIndex + 8, 64); }, "level 0"},
+        {"uastc_zstd_steps", [](base::Bytes& b) { setWord(b, kLevelIndex + 24 + 16, 0x7FFFFFFFU); },
+         "level 1"},
+        {"uastc_linear", [](base::Bytes& b) { setWord(b, kLevelIndex + 8, 64); }, "level 0"},
         {"uastc_linear",
-         [](Bytes& b) {
+         [](base::Bytes& b) {
              b.push_back(0);
              setWord(b, kLevelIndex, static_cast<std::uint32_t>(wordAt(b, kLevelIndex) + 1));
          },
@@ -275,30 +278,31 @@ TEST(GltfKtx2Header, IsRefusedWithTheReason) {
     }
     for (const char* name :
          {"etc1s", "etc1s_alpha_mips", "etc1s_steps", "uastc_linear", "uastc_alpha_zstd"}) {
-        EXPECT_EQ(problemOf(name, [](Bytes&) {}), "") << name;
+        EXPECT_EQ(problemOf(name, [](base::Bytes&) {}), "") << name;
     }
 }
 
 TEST(GltfKtx2Header, DeviationsAreTold) {
     const auto deviationsOf = [](const Change& change, const std::string& name = "etc1s") {
-        Bytes bytes = readKtx2File(name);
+        base::Bytes bytes = readKtx2File(name);
         change(bytes);
         std::string problem;
         const auto file = gltf::readKtx2(bytes, problem);
         EXPECT_TRUE(file) << problem;
         return file && !file->deviations.empty() ? file->deviations[0] : std::string();
     };
-    EXPECT_EQ(deviationsOf([](Bytes&) {}), "");
-    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 15) = 1; }).find("premultiplied"),
+    EXPECT_EQ(deviationsOf([](base::Bytes&) {}), "");
+    EXPECT_NE(deviationsOf([](base::Bytes& b) { b.at(descriptor(b) + 15) = 1; }).find("premultiplied"),
               std::string::npos);
-    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 13) = 10; }).find("primaries"),
+    EXPECT_NE(deviationsOf([](base::Bytes& b) { b.at(descriptor(b) + 13) = 10; }).find("primaries"),
               std::string::npos);
-    EXPECT_NE(deviationsOf([](Bytes& b) { b.at(descriptor(b) + 28 + 3) = 3; }).find("gray"),
+    EXPECT_NE(deviationsOf([](base::Bytes& b) { b.at(descriptor(b) + 28 + 3) = 3; }).find("gray"),
               std::string::npos);
-    EXPECT_NE(deviationsOf([](Bytes& b) { setWord(b, 20, 15); }).find("multiples of 4"), std::string::npos);
+    EXPECT_NE(deviationsOf([](base::Bytes& b) { setWord(b, 20, 15); }).find("multiples of 4"),
+              std::string::npos);
     // The files have one pair, "KTXwriter". It is as long as these.
     const auto rename = [](const std::string& pair) {
-        return [pair](Bytes& b) {
+        return [pair](base::Bytes& b) {
             std::copy(pair.begin(), pair.end(), b.begin() + static_cast<std::ptrdiff_t>(wordAt(b, 56) + 4));
         };
     };
@@ -317,7 +321,7 @@ TEST_F(GltfKtx2, OtherUseThanTheFileSaysIsAWarning) {
         if (!asColor) {
             builder.root["materials"][0] = {{"normalTexture", {{"index", 0}}}};
         }
-        const Result<Scene> scene = import(builder, kDecodeKtx2);
+        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
         EXPECT_TRUE(scene.ok()) << toString(scene.error());
         return scene ? findWarning(*scene, "ktx2-metadata").message : std::string();
     };
@@ -336,7 +340,7 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     }
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     const auto expectError = [&] {
-        const Result<Scene> scene = import(builder, kDecodeKtx2);
+        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
         ASSERT_FALSE(scene.ok());
         EXPECT_EQ(scene.error().id, "texture-basisu");
         EXPECT_TRUE(scene.error().where.ends_with("#/textures/0"));
@@ -349,7 +353,7 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     expectError();
 
     builder.root.erase("extensionsRequired");
-    const Result<Scene> fallback = import(builder, kDecodeKtx2);
+    const Result<gltf::Scene> fallback = import(builder, kDecodeKtx2);
     ASSERT_TRUE(fallback.ok()) << toString(fallback.error());
     ASSERT_EQ(fallback->images.size(), 1U);
     EXPECT_EQ(fallback->images[0].pointer, "/images/1");
@@ -358,9 +362,9 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
 }
 
 TEST(GltfBasisu, ExplainsKtxInTheGuiseOfPng) {
-    Bytes start = readKtx2File("etc1s");
+    base::Bytes start = readKtx2File("etc1s");
     start.resize(100);
-    const Result<Scene> scene = import(sceneWithImage(start), kDecodeKtx2);
+    const Result<gltf::Scene> scene = import(sceneWithImage(start), kDecodeKtx2);
     ASSERT_FALSE(scene.ok());
     EXPECT_EQ(scene.error().id, "image-decode");
     EXPECT_NE(scene.error().message.find("KTX2"), std::string::npos) << scene.error().message;

@@ -20,8 +20,8 @@ GltfBuilder withMaterial(Json material) {
     return builder;
 }
 
-Scene mustImport(const GltfBuilder& builder) {
-    Result<Scene> scene = import(builder);
+gltf::Scene mustImport(const GltfBuilder& builder) {
+    Result<gltf::Scene> scene = import(builder);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
         return {};
@@ -29,20 +29,20 @@ Scene mustImport(const GltfBuilder& builder) {
     return std::move(*scene);
 }
 
-Scene importMaterial(const std::string& extensions) {
+gltf::Scene importMaterial(const std::string& extensions) {
     return mustImport(withMaterial({{"extensions", Json::parse(extensions)}}));
 }
 
-const Material& onlyMaterial(const Scene& scene) {
+const materials::Material& onlyMaterial(const gltf::Scene& scene) {
     return scene.materials.at(0);
 }
 
 TEST(GltfMaterialExtensions, HaveTheDefaultsOfTheirTexts) {
-    const Scene scene = importMaterial(R"({"KHR_materials_clearcoat": {}, "KHR_materials_sheen": {},
+    const gltf::Scene scene = importMaterial(R"({"KHR_materials_clearcoat": {}, "KHR_materials_sheen": {},
         "KHR_materials_transmission": {}, "KHR_materials_volume": {}, "KHR_materials_ior": {},
         "KHR_materials_specular": {}, "KHR_materials_iridescence": {}, "KHR_materials_anisotropy": {},
         "KHR_materials_dispersion": {}, "KHR_materials_diffuse_transmission": {}})");
-    const Material& read = onlyMaterial(scene);
+    const materials::Material& read = onlyMaterial(scene);
     EXPECT_TRUE(read.gives("KHR_materials_clearcoat") && read.gives("KHR_materials_sheen") &&
                 read.gives("KHR_materials_transmission") && read.gives("KHR_materials_volume") &&
                 read.gives("KHR_materials_ior") && read.gives("KHR_materials_specular") &&
@@ -75,7 +75,7 @@ TEST(GltfMaterialExtensions, HaveTheDefaultsOfTheirTexts) {
 }
 
 TEST(GltfMaterialExtensions, AreReadToTheLastValue) {
-    const Scene scene = importMaterial(R"({
+    const gltf::Scene scene = importMaterial(R"({
         "KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatRoughnessFactor": 0.25,
             "clearcoatNormalTexture": {"index": 0, "scale": -2}},
         "KHR_materials_sheen": {"sheenColorFactor": [0.125, 0.25, 0.5], "sheenRoughnessFactor": 0.75},
@@ -90,7 +90,7 @@ TEST(GltfMaterialExtensions, AreReadToTheLastValue) {
         "KHR_materials_dispersion": {"dispersion": 2},
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25,
             "diffuseTransmissionColorFactor": [1, 0.5, 0.25]}})");
-    const Material& read = onlyMaterial(scene);
+    const materials::Material& read = onlyMaterial(scene);
     EXPECT_EQ(read["clearcoatFactor"], 0.5F);
     EXPECT_EQ(read["clearcoatRoughnessFactor"], 0.25F);
     EXPECT_EQ(read["clearcoatNormalScale"], -2.0F);
@@ -159,26 +159,26 @@ Json materialWith(const SlotPlace& place, const Json& textureInfo) {
 TEST(GltfMaterialExtensions, EverySlotTakesTextureSetAndTransform) {
     const Json info = Json::parse(R"({"index": 1, "texCoord": 0, "extensions": {"KHR_texture_transform":
         {"offset": [0.5, -1], "rotation": 0.25, "scale": [2, 3], "texCoord": 1}}})");
-    std::vector<int> seen(builtinMaterialModel().textures.size());
+    std::vector<int> seen(materials::builtinMaterialModel().textures.size());
     for (const SlotPlace& place : kPlaces) {
         SCOPED_TRACE(std::string(place.owner) + " " + place.member);
-        const Scene scene = mustImport(withMaterial(materialWith(place, info)));
-        const Material& material = onlyMaterial(scene);
-        for (std::size_t slot = 0; slot < builtinMaterialModel().textures.size(); ++slot) {
+        const gltf::Scene scene = mustImport(withMaterial(materialWith(place, info)));
+        const materials::Material& material = onlyMaterial(scene);
+        for (std::size_t slot = 0; slot < materials::builtinMaterialModel().textures.size(); ++slot) {
             const bool isThis =
-                slot == static_cast<std::size_t>(builtinMaterialModel().findTexture(place.slot));
+                slot == static_cast<std::size_t>(materials::builtinMaterialModel().findTexture(place.slot));
             EXPECT_EQ(material.textures[slot].texture, isThis ? 0 : -1) << slot;
         }
-        const TextureInfo& read = material.texture(place.slot);
+        const materials::TextureInfo& read = material.texture(place.slot);
         EXPECT_EQ(read.texCoord, 1);
         EXPECT_TRUE(read.hasTransform);
         EXPECT_EQ(read.transform.offset, (std::array{0.5F, -1.0F}));
         EXPECT_EQ(read.transform.rotation, 0.25F);
         EXPECT_EQ(read.transform.scale, (std::array{2.0F, 3.0F}));
         EXPECT_TRUE(scene.warnings.empty());
-        ++seen[static_cast<std::size_t>(builtinMaterialModel().findTexture(place.slot))];
+        ++seen[static_cast<std::size_t>(materials::builtinMaterialModel().findTexture(place.slot))];
     }
-    for (std::size_t slot = 0; slot < builtinMaterialModel().textures.size(); ++slot) {
+    for (std::size_t slot = 0; slot < materials::builtinMaterialModel().textures.size(); ++slot) {
         EXPECT_GT(seen[slot], 0) << slot;
     }
 }
@@ -186,11 +186,11 @@ TEST(GltfMaterialExtensions, EverySlotTakesTextureSetAndTransform) {
 TEST(GltfMaterialExtensions, EverySlotIsChecked) {
     for (const SlotPlace& place : kPlaces) {
         SCOPED_TRACE(std::string(place.owner) + " " + place.member);
-        const Result<Scene> outside = import(withMaterial(materialWith(place, {{"index", 2}})));
+        const Result<gltf::Scene> outside = import(withMaterial(materialWith(place, {{"index", 2}})));
         ASSERT_FALSE(outside.ok());
         EXPECT_EQ(outside.error().id, "index-range");
         EXPECT_NE(outside.error().where.find(std::string(place.member) + "/index"), std::string::npos);
-        const Result<Scene> noObject = import(withMaterial(materialWith(place, 3)));
+        const Result<gltf::Scene> noObject = import(withMaterial(materialWith(place, 3)));
         ASSERT_FALSE(noObject.ok());
         EXPECT_EQ(noObject.error().id, "json-type");
     }
@@ -201,80 +201,81 @@ struct OutOfRange {
     const char* member;
     Json value;
     float used;
-    float (*read)(const Material&);
+    float (*read)(const materials::Material&);
 };
 
 TEST(GltfMaterialExtensions, ClampWhatIsOutOfRangeWithAWarning) {
     const OutOfRange cases[] = {
         {"clearcoat", "clearcoatFactor", 1.5, 1.0F,
-         [](const Material& m) -> float { return m["clearcoatFactor"]; }},
+         [](const materials::Material& m) -> float { return m["clearcoatFactor"]; }},
         {"clearcoat", "clearcoatRoughnessFactor", -1, 0.0F,
-         [](const Material& m) -> float { return m["clearcoatRoughnessFactor"]; }},
+         [](const materials::Material& m) -> float { return m["clearcoatRoughnessFactor"]; }},
         {"sheen",
          "sheenColorFactor",
          {0, 2, 0},
          1.0F,
-         [](const Material& m) -> float { return m["sheenColorFactor"][1]; }},
+         [](const materials::Material& m) -> float { return m["sheenColorFactor"][1]; }},
         {"sheen", "sheenRoughnessFactor", 2, 1.0F,
-         [](const Material& m) -> float { return m["sheenRoughnessFactor"]; }},
+         [](const materials::Material& m) -> float { return m["sheenRoughnessFactor"]; }},
         {"transmission", "transmissionFactor", 2, 1.0F,
-         [](const Material& m) -> float { return m["transmissionFactor"]; }},
+         [](const materials::Material& m) -> float { return m["transmissionFactor"]; }},
         {"volume", "thicknessFactor", -1, 0.0F,
-         [](const Material& m) -> float { return m["thicknessFactor"]; }},
+         [](const materials::Material& m) -> float { return m["thicknessFactor"]; }},
         {"volume",
          "attenuationColor",
          {1, 1, 1.5},
          1.0F,
-         [](const Material& m) -> float { return m["attenuationColor"][2]; }},
+         [](const materials::Material& m) -> float { return m["attenuationColor"][2]; }},
         {"volume", "attenuationDistance", 0, 1e-6F,
-         [](const Material& m) -> float { return m["attenuationDistance"]; }},
+         [](const materials::Material& m) -> float { return m["attenuationDistance"]; }},
         {"volume", "attenuationDistance", -2, 1e-6F,
-         [](const Material& m) -> float { return m["attenuationDistance"]; }},
-        {"ior", "ior", 0.5, 1.0F, [](const Material& m) -> float { return m["ior"]; }},
-        {"ior", "ior", -1, 1.0F, [](const Material& m) -> float { return m["ior"]; }},
+         [](const materials::Material& m) -> float { return m["attenuationDistance"]; }},
+        {"ior", "ior", 0.5, 1.0F, [](const materials::Material& m) -> float { return m["ior"]; }},
+        {"ior", "ior", -1, 1.0F, [](const materials::Material& m) -> float { return m["ior"]; }},
         {"specular", "specularFactor", 1.5, 1.0F,
-         [](const Material& m) -> float { return m["specularFactor"]; }},
+         [](const materials::Material& m) -> float { return m["specularFactor"]; }},
         {"specular",
          "specularColorFactor",
          {-1, 0, 0},
          0.0F,
-         [](const Material& m) -> float { return m["specularColorFactor"][0]; }},
+         [](const materials::Material& m) -> float { return m["specularColorFactor"][0]; }},
         {"iridescence", "iridescenceFactor", 2, 1.0F,
-         [](const Material& m) -> float { return m["iridescenceFactor"]; }},
+         [](const materials::Material& m) -> float { return m["iridescenceFactor"]; }},
         {"iridescence", "iridescenceIor", 0.9, 1.0F,
-         [](const Material& m) -> float { return m["iridescenceIor"]; }},
+         [](const materials::Material& m) -> float { return m["iridescenceIor"]; }},
         {"iridescence", "iridescenceThicknessMinimum", -1, 0.0F,
-         [](const Material& m) -> float { return m["iridescenceThicknessMinimum"]; }},
+         [](const materials::Material& m) -> float { return m["iridescenceThicknessMinimum"]; }},
         {"iridescence", "iridescenceThicknessMaximum", -1, 0.0F,
-         [](const Material& m) -> float { return m["iridescenceThicknessMaximum"]; }},
+         [](const materials::Material& m) -> float { return m["iridescenceThicknessMaximum"]; }},
         {"anisotropy", "anisotropyStrength", -0.5, 0.0F,
-         [](const Material& m) -> float { return m["anisotropyStrength"]; }},
-        {"dispersion", "dispersion", -1, 0.0F, [](const Material& m) -> float { return m["dispersion"]; }},
+         [](const materials::Material& m) -> float { return m["anisotropyStrength"]; }},
+        {"dispersion", "dispersion", -1, 0.0F,
+         [](const materials::Material& m) -> float { return m["dispersion"]; }},
         {"diffuse_transmission", "diffuseTransmissionFactor", 2, 1.0F,
-         [](const Material& m) -> float { return m["diffuseTransmissionFactor"]; }},
+         [](const materials::Material& m) -> float { return m["diffuseTransmissionFactor"]; }},
         {"diffuse_transmission",
          "diffuseTransmissionColorFactor",
          {0, 0, 2},
          1.0F,
-         [](const Material& m) -> float { return m["diffuseTransmissionColorFactor"][2]; }},
+         [](const materials::Material& m) -> float { return m["diffuseTransmissionColorFactor"][2]; }},
         {"pbrSpecularGlossiness",
          "diffuseFactor",
          {2, 0, 0, 1},
          1.0F,
-         [](const Material& m) -> float { return m["baseColorFactor"][0]; }},
+         [](const materials::Material& m) -> float { return m["baseColorFactor"][0]; }},
         {"pbrSpecularGlossiness",
          "specularFactor",
          {0, 0, -1},
          0.0F,
-         [](const Material& m) -> float { return m["glossySpecularFactor"][2]; }},
+         [](const materials::Material& m) -> float { return m["glossySpecularFactor"][2]; }},
         {"pbrSpecularGlossiness", "glossinessFactor", 2, 1.0F,
-         [](const Material& m) -> float { return m["glossinessFactor"]; }},
+         [](const materials::Material& m) -> float { return m["glossinessFactor"]; }},
     };
     for (const OutOfRange& entry : cases) {
         SCOPED_TRACE(std::string(entry.member) + " " + entry.value.dump());
         Json material;
         material["extensions"][std::string("KHR_materials_") + entry.extension][entry.member] = entry.value;
-        const Scene scene = mustImport(withMaterial(material));
+        const gltf::Scene scene = mustImport(withMaterial(material));
         EXPECT_EQ(entry.read(onlyMaterial(scene)), entry.used);
         ASSERT_EQ(countWarnings(scene, "material-range"), 1U);
         const Diagnostic warning = findWarning(scene, "material-range");
@@ -282,14 +283,14 @@ TEST(GltfMaterialExtensions, ClampWhatIsOutOfRangeWithAWarning) {
         EXPECT_FALSE(warning.hint.empty());
         // A value of the wrong type is refused.
         material["extensions"][std::string("KHR_materials_") + entry.extension][entry.member] = "much";
-        const Result<Scene> refused = import(withMaterial(material));
+        const Result<gltf::Scene> refused = import(withMaterial(material));
         ASSERT_FALSE(refused.ok());
         EXPECT_EQ(refused.error().id, "json-type");
     }
 }
 
 TEST(GltfMaterialExtensions, TakeTheLimitsOfTheirRanges) {
-    const Scene scene = importMaterial(R"({"KHR_materials_ior": {"ior": 0},
+    const gltf::Scene scene = importMaterial(R"({"KHR_materials_ior": {"ior": 0},
         "KHR_materials_iridescence": {"iridescenceIor": 1, "iridescenceThicknessMinimum": 500,
             "iridescenceThicknessMaximum": 100},
         "KHR_materials_volume": {"attenuationDistance": 1.7976931348623157e308}})");
@@ -301,13 +302,13 @@ TEST(GltfMaterialExtensions, TakeTheLimitsOfTheirRanges) {
 }
 
 TEST(GltfMaterialExtensions, SpecularGlossinessWinsOverMetallicRoughness) {
-    const Scene scene = mustImport(withMaterial(Json::parse(R"({
+    const gltf::Scene scene = mustImport(withMaterial(Json::parse(R"({
         "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1], "metallicFactor": 1, "roughnessFactor": 0.5,
             "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 0, "texCoord": 1}},
         "extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.25, 0.5, 0.75, 0.125],
             "specularFactor": [0.5, 0.25, 0.125], "glossinessFactor": 0.75,
             "diffuseTexture": {"index": 1, "texCoord": 1}}}})")));
-    const Material& read = onlyMaterial(scene);
+    const materials::Material& read = onlyMaterial(scene);
     EXPECT_TRUE(read.gives("KHR_materials_pbrSpecularGlossiness"));
     EXPECT_EQ(read["baseColorFactor"], (std::array{0.25F, 0.5F, 0.75F, 0.125F}));
     EXPECT_EQ(read["glossySpecularFactor"], (std::array{0.5F, 0.25F, 0.125F}));
@@ -318,11 +319,11 @@ TEST(GltfMaterialExtensions, SpecularGlossinessWinsOverMetallicRoughness) {
 }
 
 TEST(GltfMaterialExtensions, UnlitReadsTheMetallicRoughnessBaseColor) {
-    const Scene scene = mustImport(withMaterial(Json::parse(R"({
+    const gltf::Scene scene = mustImport(withMaterial(Json::parse(R"({
         "pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1], "baseColorTexture": {"index": 0}},
         "extensions": {"KHR_materials_unlit": {}, "KHR_materials_pbrSpecularGlossiness":
             {"diffuseFactor": [0, 0, 1, 1], "diffuseTexture": {"index": 1, "texCoord": 1}}}})")));
-    const Material& read = onlyMaterial(scene);
+    const materials::Material& read = onlyMaterial(scene);
     EXPECT_TRUE(read.isUnlit());
     EXPECT_EQ(read["baseColorFactor"], (std::array{1.0F, 0.5F, 0.0F, 1.0F}));
     EXPECT_EQ(read.texture("baseColorTexture").texCoord, 0);
@@ -335,7 +336,7 @@ TEST(GltfMaterialExtensions, MayBeRequired) {
         GltfBuilder builder = withMaterial(Json::object());
         builder.root["extensionsRequired"] = {std::string("KHR_materials_") + name};
         builder.root["extensionsUsed"] = builder.root["extensionsRequired"];
-        const Result<Scene> scene = import(builder);
+        const Result<gltf::Scene> scene = import(builder);
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         EXPECT_TRUE(scene->warnings.empty()) << name;
     }

@@ -23,8 +23,8 @@ GltfBuilder texturedMaterial() {
     return builder;
 }
 
-Scene mustImport(const GltfBuilder& builder, const ImportOptions& options = {}) {
-    Result<Scene> scene = import(builder, options);
+gltf::Scene mustImport(const GltfBuilder& builder, const gltf::ImportOptions& options = {}) {
+    Result<gltf::Scene> scene = import(builder, options);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
         return {};
@@ -35,10 +35,10 @@ Scene mustImport(const GltfBuilder& builder, const ImportOptions& options = {}) 
 TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {
     GltfBuilder builder;
     builder.append("materials", Json::object());
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     ASSERT_EQ(scene.materials.size(), 1U);
-    const Material& read = scene.materials[0];
-    const Material expected;
+    const materials::Material& read = scene.materials[0];
+    const materials::Material expected;
     EXPECT_EQ(read["baseColorFactor"], expected["baseColorFactor"]);
     EXPECT_EQ(read["metallicFactor"], 1.0F);
     EXPECT_EQ(read["roughnessFactor"], 1.0F);
@@ -47,10 +47,10 @@ TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {
     EXPECT_EQ(read["normalScale"], 1.0F);
     EXPECT_EQ(read["occlusionStrength"], 1.0F);
     EXPECT_EQ(read["alphaCutoff"], 0.5F);
-    EXPECT_EQ(read.alphaMode, AlphaMode::Opaque);
+    EXPECT_EQ(read.alphaMode, materials::AlphaMode::Opaque);
     EXPECT_FALSE(read.doubleSided);
     EXPECT_FALSE(read.isUnlit());
-    for (const TextureInfo& info : read.textures) {
+    for (const materials::TextureInfo& info : read.textures) {
         EXPECT_EQ(info.texture, -1);
     }
     EXPECT_EQ(scene.defaultMaterial, -1);
@@ -71,12 +71,12 @@ TEST(GltfMaterials, ReadsEveryValue) {
         "emissiveTexture": {"index": 0},
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3000000000},
             "KHR_materials_unlit": {}}})");
-    const Scene scene = mustImport(builder);
-    const Material& read = scene.materials.at(0);
+    const gltf::Scene scene = mustImport(builder);
+    const materials::Material& read = scene.materials.at(0);
     EXPECT_EQ(read.name, "paint");
     EXPECT_TRUE(read.doubleSided);
     EXPECT_TRUE(read.isUnlit());
-    EXPECT_EQ(read.alphaMode, AlphaMode::Mask);
+    EXPECT_EQ(read.alphaMode, materials::AlphaMode::Mask);
     EXPECT_EQ(read["alphaCutoff"], 0.25F);
     EXPECT_EQ(read["baseColorFactor"], (std::array{0.5F, 0.25F, 0.125F, 0.75F}));
     EXPECT_EQ(read["emissiveFactor"], (std::array{0.125F, 0.25F, 0.5F}));
@@ -85,14 +85,14 @@ TEST(GltfMaterials, ReadsEveryValue) {
     EXPECT_EQ(read["roughnessFactor"], 0.75F);
     EXPECT_EQ(read["normalScale"], -2.0F);
     EXPECT_EQ(read["occlusionStrength"], 0.5F);
-    for (std::size_t slot = 0; slot < builtinMaterialModel().textures.size(); ++slot) {
-        const bool isCore =
-            slot <= static_cast<std::size_t>(builtinMaterialModel().findTexture("emissiveTexture"));
+    for (std::size_t slot = 0; slot < materials::builtinMaterialModel().textures.size(); ++slot) {
+        const bool isCore = slot <= static_cast<std::size_t>(
+                                        materials::builtinMaterialModel().findTexture("emissiveTexture"));
         EXPECT_EQ(read.textures[slot].texture, isCore ? 0 : -1);
     }
     EXPECT_EQ(read.texture("baseColorTexture").texCoord, 1);
     EXPECT_EQ(read.texture("occlusionTexture").texCoord, 1);
-    const TextureTransform& transform = read.texture("normalTexture").transform;
+    const materials::TextureTransform& transform = read.texture("normalTexture").transform;
     EXPECT_EQ(transform.offset, (std::array{0.5F, -1.0F}));
     EXPECT_EQ(transform.rotation, 3.0F);
     EXPECT_EQ(transform.scale, (std::array{2.0F, 0.5F}));
@@ -105,7 +105,7 @@ TEST(GltfMaterials, ClampsFactorsWithAWarning) {
     GltfBuilder builder;
     builder.append("materials", Json::parse(R"({"pbrMetallicRoughness": {"metallicFactor": 1.5,
         "roughnessFactor": -1, "baseColorFactor": [2, 0, 0, 1]}, "alphaMode": "GLASS"})"));
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     EXPECT_EQ(scene.materials.at(0)["metallicFactor"], 1.0F);
     EXPECT_EQ(scene.materials.at(0)["roughnessFactor"], 0.0F);
     EXPECT_EQ(scene.materials.at(0)["baseColorFactor"][0], 1.0F);
@@ -117,7 +117,7 @@ TEST(GltfMaterials, ClampsFactorsWithAWarning) {
 
 TEST(GltfMaterials, RefusesWrongTypesAndNumbers) {
     const auto idOf = [](const char* material) {
-        const Result<Scene> scene =
+        const Result<gltf::Scene> scene =
             importText(std::string(R"({"asset": {"version": "2.0"}, "materials": [)") + material + "]}");
         return scene ? std::string("imported") : scene.error().id;
     };
@@ -136,7 +136,7 @@ TEST(GltfMaterials, RefusesWrongTypesAndNumbers) {
 TEST(GltfMaterials, LeavesOutUvSetsBeyondTheSecond) {
     GltfBuilder builder = texturedMaterial();
     builder.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 2;
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     EXPECT_EQ(scene.materials.at(0).texture("baseColorTexture").texture, -1);
     EXPECT_EQ(countWarnings(scene, "texture-uv-set"), 1U);
 }
@@ -147,7 +147,7 @@ TEST(GltfMaterials, NotesTexturesWithoutASource) {
     builder.addTriangle();
     builder.append("textures", Json::object());
     builder.append("materials", Json::parse(R"({"normalTexture": {"index": 0}})"));
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     EXPECT_EQ(scene.materials.at(0).texture("normalTexture").texture, -1);
     EXPECT_EQ(findWarning(scene, "texture-source").severity, Severity::Note);
     EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
@@ -161,7 +161,7 @@ TEST(GltfMaterials, NotesExtensionsThatChangeNoPictureOnce) {
     builder.root["extensionsRequired"] = Json::array({"KHR_xmp_json_ld"});
     builder.root["extensions"]["KHR_xmp_json_ld"]["packets"] = Json::array({Json::object()});
     builder.append("materials", Json::parse(R"({"extensions": {"KHR_xmp_json_ld": {"packet": 0}}})"));
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     ASSERT_EQ(scene.warnings.size(), 1U);
     EXPECT_EQ(scene.warnings[0].id, "extension-no-picture");
     EXPECT_EQ(scene.warnings[0].severity, Severity::Note);
@@ -175,7 +175,7 @@ TEST(GltfMaterials, NamesUnsupportedExtensions) {
     builder.root["extensionsUsed"] = Json::array({"KHR_materials_future", "KHR_materials_unlit"});
     builder.append("materials", Json::parse(R"({"extensions": {"KHR_materials_future": {},
         "ACME_paint": {}, "KHR_materials_unlit": {}}})"));
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     EXPECT_EQ(scene.materials.at(0).unsupportedExtensions,
               (std::vector<std::string>{"ACME_paint", "KHR_materials_future"}));
     EXPECT_EQ(countWarnings(scene, "extension-ignored"), 1U);
@@ -185,7 +185,7 @@ TEST(GltfExtensions, RefusesWhatIsRequiredAndUnknown) {
     for (const char* name : {"KHR_materials_future", "EXT_texture_avif", "MSFT_texture_dds", "ACME_magic"}) {
         GltfBuilder builder;
         builder.root["extensionsRequired"] = Json::array({"KHR_texture_transform", name});
-        const Result<Scene> scene = import(builder);
+        const Result<gltf::Scene> scene = import(builder);
         ASSERT_FALSE(scene.ok()) << name;
         EXPECT_EQ(scene.error().id, "extension-unsupported");
         EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#/extensionsRequired/1"));
@@ -207,7 +207,7 @@ TEST(GltfExtensions, UsesTheFallbackOfTextures) {
     builder.root["textures"][0]["extensions"]["EXT_texture_avif"]["source"] = 1;
     EXPECT_EQ(mustImport(builder).materials.at(0).texture("baseColorTexture").texture, 0);
     builder.root["textures"][0].erase("source");
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     EXPECT_EQ(scene.materials.at(0).texture("baseColorTexture").texture, -1);
     EXPECT_TRUE(scene.textures.empty());
     EXPECT_TRUE(scene.images.empty());
@@ -221,7 +221,7 @@ TEST(GltfExtensions, LeavesSlotsOfUnreadableFormatsEmpty) {
           Json{{"uri", "a.bin"}, {"mimeType", "image/vnd-ms.dds"}}}) {
         GltfBuilder builder = texturedMaterial();
         builder.root["images"][0] = image;
-        const Scene scene = mustImport(builder, {.decodeImages = true});
+        const gltf::Scene scene = mustImport(builder, {.decodeImages = true});
         EXPECT_EQ(scene.materials.at(0).texture("baseColorTexture").texture, -1);
         EXPECT_EQ(countWarnings(scene, "texture-source"), 1U);
     }
@@ -233,49 +233,49 @@ TEST(GltfTextures, ReadsSamplers) {
         {"wrapS": 33071, "wrapT": 33648, "magFilter": 9728, "minFilter": 9728},
         {"minFilter": 9985}, {"minFilter": 9986}, {"minFilter": 1, "magFilter": 2, "wrapS": 3, "wrapT": 4}])");
     builder.root["textures"][0]["sampler"] = 1;
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     ASSERT_EQ(scene.samplers.size(), 4U);
     EXPECT_EQ(scene.textures.at(0).sampler, 1);
-    const Sampler& first = scene.samplers[0];
-    EXPECT_EQ(first.wrapU, Wrap::ClampToEdge);
-    EXPECT_EQ(first.wrapV, Wrap::MirroredRepeat);
-    EXPECT_EQ(first.magnification, Filter::Nearest);
-    EXPECT_EQ(first.minification, Filter::Nearest);
+    const gltf::Sampler& first = scene.samplers[0];
+    EXPECT_EQ(first.wrapU, gltf::Wrap::ClampToEdge);
+    EXPECT_EQ(first.wrapV, gltf::Wrap::MirroredRepeat);
+    EXPECT_EQ(first.magnification, gltf::Filter::Nearest);
+    EXPECT_EQ(first.minification, gltf::Filter::Nearest);
     EXPECT_FALSE(first.mipmapped);
-    EXPECT_EQ(scene.samplers[1].minification, Filter::Linear);
-    EXPECT_EQ(scene.samplers[1].mip, Filter::Nearest);
-    EXPECT_EQ(scene.samplers[2].minification, Filter::Nearest);
-    EXPECT_EQ(scene.samplers[2].mip, Filter::Linear);
+    EXPECT_EQ(scene.samplers[1].minification, gltf::Filter::Linear);
+    EXPECT_EQ(scene.samplers[1].mip, gltf::Filter::Nearest);
+    EXPECT_EQ(scene.samplers[2].minification, gltf::Filter::Nearest);
+    EXPECT_EQ(scene.samplers[2].mip, gltf::Filter::Linear);
     EXPECT_TRUE(scene.samplers[2].mipmapped);
-    EXPECT_EQ(scene.samplers[3], Sampler{});
+    EXPECT_EQ(scene.samplers[3], gltf::Sampler{});
     EXPECT_EQ(countWarnings(scene, "sampler-value"), 4U);
 }
 
 TEST(GltfTextures, AppendsADefaultSampler) {
     GltfBuilder builder = texturedMaterial();
     builder.append("samplers", {{"wrapS", 33071}});
-    const Scene scene = mustImport(builder);
+    const gltf::Scene scene = mustImport(builder);
     ASSERT_EQ(scene.samplers.size(), 2U);
     EXPECT_EQ(scene.textures.at(0).sampler, 1);
-    EXPECT_EQ(scene.samplers[1], Sampler{});
+    EXPECT_EQ(scene.samplers[1], gltf::Sampler{});
 }
 
 TEST(GltfImages, DecodesWhereAsked) {
-    const Scene headers = mustImport(texturedMaterial());
+    const gltf::Scene headers = mustImport(texturedMaterial());
     EXPECT_TRUE(headers.images.at(0).pixels.empty());
     EXPECT_EQ(headers.images.at(0).name, "image 0");
     EXPECT_EQ(headers.images.at(0).pointer, "/images/0");
-    const Scene decoded = mustImport(texturedMaterial(), {.decodeImages = true});
+    const gltf::Scene decoded = mustImport(texturedMaterial(), {.decodeImages = true});
     EXPECT_EQ(decoded.images.at(0).width, 1);
     EXPECT_EQ(decoded.images.at(0).height, 2);
     EXPECT_EQ(decoded.images.at(0).pixels, (std::vector<std::uint8_t>{255, 0, 128, 64, 1, 2, 3, 4}));
 }
 
 TEST(GltfImages, ExplainsWhatItCannotDecode) {
-    const auto idOf = [](const Json& image, const ImportOptions& options) {
+    const auto idOf = [](const Json& image, const gltf::ImportOptions& options) {
         GltfBuilder builder = texturedMaterial();
         builder.root["images"][0] = image;
-        const Result<Scene> scene = import(builder, options);
+        const Result<gltf::Scene> scene = import(builder, options);
         if (scene) {
             return std::string("imported");
         }
@@ -283,7 +283,7 @@ TEST(GltfImages, ExplainsWhatItCannotDecode) {
         EXPECT_FALSE(scene.error().hint.empty());
         return scene.error().id;
     };
-    const ImportOptions decode{.decodeImages = true};
+    const gltf::ImportOptions decode{.decodeImages = true};
     EXPECT_EQ(idOf({{"uri", "data:image/png;base64,AAAAAAAA"}}, decode), "image-decode");
     EXPECT_EQ(idOf({{"uri", "data:image/png;base64,"}}, decode), "image-decode");
     EXPECT_EQ(idOf({{"uri", "data:image/png;base64,A*"}}, decode), "data-uri");
@@ -299,13 +299,13 @@ TEST(GltfImages, ExplainsWhatItCannotDecode) {
 TEST(GltfImages, RefusesJpegsOfManyScans) {
     // Each scan would cost a pass over the image.
     const auto messageOf = [](std::size_t scans) {
-        Bytes bytes{0xFF, 0xD8};
+        base::Bytes bytes{0xFF, 0xD8};
         for (std::size_t i = 0; i < scans; ++i) {
             bytes.insert(bytes.end(), {0xFF, 0xDA});
         }
         GltfBuilder builder = texturedMaterial();
         builder.root["images"][0] = {{"uri", "data:image/jpeg;base64," + base64(bytes)}};
-        const Result<Scene> scene = import(builder, {.decodeImages = true});
+        const Result<gltf::Scene> scene = import(builder, {.decodeImages = true});
         return scene ? "imported" : scene.error().id + ": " + scene.error().message;
     };
     EXPECT_TRUE(messageOf(257).starts_with("image-decode: ")) << messageOf(257);
@@ -320,7 +320,7 @@ TEST(GltfImages, DecodesFromBufferViews) {
     builder.root["buffers"] = Json::array({{{"byteLength", 75}, {"uri", uri}}});
     builder.root["bufferViews"] = Json::array({{{"buffer", 0}, {"byteLength", 75}}});
     builder.root["images"][0] = {{"bufferView", 0}, {"mimeType", "image/png"}};
-    const Scene scene = mustImport(builder, {.decodeImages = true});
+    const gltf::Scene scene = mustImport(builder, {.decodeImages = true});
     EXPECT_EQ(scene.images.at(0).pixels.size(), 8U);
     EXPECT_EQ(scene.images.at(0).pixels[4], 1);
 }

@@ -38,13 +38,13 @@ std::vector<fs::path> findModels(const fs::path& folder) {
 }
 
 // Expects everything on which the readers of a Scene rely.
-void expectSound(const Scene& scene) {
+void expectSound(const gltf::Scene& scene) {
     const int materials = static_cast<int>(scene.materials.size());
     const auto inRange = [](int index, std::size_t size) {
         return index >= -1 && index < static_cast<int>(size);
     };
-    for (const Mesh& mesh : scene.meshes) {
-        for (const Primitive& primitive : mesh.primitives) {
+    for (const gltf::Mesh& mesh : scene.meshes) {
+        for (const gltf::Primitive& primitive : mesh.primitives) {
             const std::size_t count = primitive.positions.size();
             EXPECT_TRUE(primitive.material >= 0 && primitive.material < materials) << primitive.pointer;
             EXPECT_EQ(primitive.indices.size() % 3, 0U);
@@ -55,17 +55,17 @@ void expectSound(const Scene& scene) {
                   primitive.texCoords1.size(), primitive.colors.size()}) {
                 EXPECT_TRUE(size == 0 || size == count) << primitive.pointer;
             }
-            for (const Float3& normal : primitive.normals) {
+            for (const gltf::Float3& normal : primitive.normals) {
                 ASSERT_NEAR(std::hypot(normal[0], normal[1], normal[2]), 1.0F, 1e-5F) << primitive.pointer;
             }
         }
     }
-    for (const Material& material : scene.materials) {
-        for (const TextureInfo& info : material.textures) {
+    for (const materials::Material& material : scene.materials) {
+        for (const materials::TextureInfo& info : material.textures) {
             EXPECT_TRUE(inRange(info.texture, scene.textures.size()));
         }
     }
-    for (const Texture& texture : scene.textures) {
+    for (const gltf::Texture& texture : scene.textures) {
         EXPECT_TRUE(texture.image >= 0 && inRange(texture.image, scene.images.size()));
         EXPECT_TRUE(texture.sampler >= 0 && inRange(texture.sampler, scene.samplers.size()));
     }
@@ -90,7 +90,7 @@ TEST(GltfModels, AllImport) {
         GTEST_SKIP() << noModels(kModels);
     }
     for (const fs::path& path : models) {
-        const Result<Scene> scene = importScene(path, {.decodeImages = true});
+        const Result<gltf::Scene> scene = gltf::importScene(path, {.decodeImages = true});
         if (!scene && scene.error().id == "texture-basisu") {
             EXPECT_FALSE(gltf::hasBasisu()) << path;
             continue;
@@ -98,7 +98,7 @@ TEST(GltfModels, AllImport) {
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         expectSound(*scene);
         EXPECT_FALSE(planningInputs(*scene).empty()) << path;
-        for (const Image& image : scene->images) {
+        for (const gltf::Image& image : scene->images) {
             EXPECT_EQ(image.pixels.size(), byteCount(image)) << image.name;
         }
     }
@@ -110,26 +110,26 @@ TEST(GltfModels, LampHasItsKtx2Textures) {
     if (!gltf::hasBasisu() || !fs::exists(path)) {
         GTEST_SKIP() << "no model, or this build does not decode KTX2";
     }
-    const Result<Scene> scene = importScene(path, {.decodeImages = true});
+    const Result<gltf::Scene> scene = gltf::importScene(path, {.decodeImages = true});
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
     ASSERT_EQ(scene->images.size(), 4U);
     // The means of the channels show copper, and normals that point out of the surface.
-    const auto meanOf = [](const Image& image, std::size_t channel) {
+    const auto meanOf = [](const gltf::Image& image, std::size_t channel) {
         double sum = 0;
         for (std::size_t i = channel; i < image.pixels.size(); i += 4) {
             sum += image.pixels[i];
         }
         return sum / static_cast<double>(pixelCount(image, 0));
     };
-    for (const Image& image : scene->images) {
+    for (const gltf::Image& image : scene->images) {
         EXPECT_EQ(image.width, 2048) << image.name;
         EXPECT_EQ(image.height, 2048) << image.name;
     }
-    const Image& color = scene->images[0];
+    const gltf::Image& color = scene->images[0];
     EXPECT_GT(meanOf(color, 0), meanOf(color, 1) + 15);
     EXPECT_GT(meanOf(color, 1), meanOf(color, 2) + 10);
-    const Image& normals = scene->images[2];
+    const gltf::Image& normals = scene->images[2];
     EXPECT_NEAR(meanOf(normals, 0), 128, 3);
     EXPECT_NEAR(meanOf(normals, 1), 128, 3);
     EXPECT_GT(meanOf(normals, 2), 250);
@@ -141,16 +141,16 @@ TEST(GltfModels, EveryMaterialExtensionIsShaded) {
     if (models.empty()) {
         GTEST_SKIP() << noModels(kModels);
     }
-    FeatureMask seen = 0;
+    materials::FeatureMask seen = 0;
     for (const fs::path& path : models) {
-        const Result<Scene> scene = importScene(path);
+        const Result<gltf::Scene> scene = gltf::importScene(path);
         if (!scene) {
             continue;  // another test covers it
         }
-        for (const Material& material : scene->materials) {
+        for (const materials::Material& material : scene->materials) {
             EXPECT_TRUE(material.unsupportedExtensions.empty()) << path << ": " << material.name;
         }
-        const Plan plan = makePlan(scene->materials, planningInputs(*scene), {});
+        const compiler::Plan plan = compiler::makePlan(scene->materials, planningInputs(*scene), {});
         seen |= plan.primaryAlways | plan.primarySometimes;
     }
     for (const char* const lobe : {"ior", "specular", "clearcoat", "sheen", "anisotropy", "iridescence",
@@ -166,7 +166,7 @@ TEST(GltfModels, InvalidFilesAreExplained) {
     }
     for (const fs::path& path : models) {
         for (const bool decodeImages : {false, true}) {
-            const Result<Scene> scene = importScene(path, {.decodeImages = decodeImages});
+            const Result<gltf::Scene> scene = gltf::importScene(path, {.decodeImages = decodeImages});
             if (scene) {
                 expectSound(*scene);
                 continue;
@@ -202,8 +202,8 @@ TEST(GltfModels, ValidFilesAreRead) {
     const std::map<std::string, std::string> refused{{"asset/min_version_valid.gltf", "asset-version"}};
     for (const std::string& file : files) {
         for (const bool decodeImages : {false, true}) {
-            const Result<Scene> scene =
-                importScene(kModels / "invalid" / file, {.decodeImages = decodeImages});
+            const Result<gltf::Scene> scene =
+                gltf::importScene(kModels / "invalid" / file, {.decodeImages = decodeImages});
             const auto known = refused.find(file);
             if (known == refused.end()) {
                 EXPECT_TRUE(scene.ok()) << toString(scene.error());
@@ -220,33 +220,35 @@ TEST(GltfModels, HaveTheirKnownContent) {
     if (!fs::exists(features)) {
         GTEST_SKIP() << noModels(kModels);
     }
-    const Result<Scene> multi =
-        importScene(features / "TextureTransformMultiTest/TextureTransformMultiTest.glb");
+    const Result<gltf::Scene> multi =
+        gltf::importScene(features / "TextureTransformMultiTest/TextureTransformMultiTest.glb");
     ASSERT_TRUE(multi.ok());
     EXPECT_EQ(multi->materials.size(), 29U);
     EXPECT_EQ(planningInputs(*multi).size(), 29U);
-    const Result<Scene> modes = importScene(features / "MeshPrimitiveModes/MeshPrimitiveModes.gltf");
+    const Result<gltf::Scene> modes =
+        gltf::importScene(features / "MeshPrimitiveModes/MeshPrimitiveModes.gltf");
     ASSERT_TRUE(modes.ok());
     EXPECT_EQ(planningInputs(*modes).size(), 3U);
     EXPECT_EQ(modes->defaultMaterial, 0);
-    const Result<Scene> sparse = importScene(features / "SimpleSparseAccessor/SimpleSparseAccessor.gltf");
+    const Result<gltf::Scene> sparse =
+        gltf::importScene(features / "SimpleSparseAccessor/SimpleSparseAccessor.gltf");
     ASSERT_TRUE(sparse.ok());
-    EXPECT_EQ(sparse->meshes.at(0).primitives.at(0).positions.at(8), (Float3{1.0F, 2.0F, 0.0F}));
-    const Result<Scene> avocado = importScene(features / "Avocado-draco/Avocado.gltf");
+    EXPECT_EQ(sparse->meshes.at(0).primitives.at(0).positions.at(8), (gltf::Float3{1.0F, 2.0F, 0.0F}));
+    const Result<gltf::Scene> avocado = gltf::importScene(features / "Avocado-draco/Avocado.gltf");
     ASSERT_TRUE(avocado.ok());
     EXPECT_EQ(avocado->meshes.at(0).primitives.at(0).positions.size(), 406U);
     EXPECT_EQ(avocado->meshes.at(0).primitives.at(0).indices.size(), 2046U);
-    const Result<Scene> pirate = importScene(features / "pirate/pirate.glb");
+    const Result<gltf::Scene> pirate = gltf::importScene(features / "pirate/pirate.glb");
     ASSERT_TRUE(pirate.ok());
     EXPECT_EQ(pirate->meshes.at(0).primitives.at(0).positions.size(), 2887U);
     EXPECT_EQ(pirate->meshes.at(0).primitives.at(0).indices.size(), 15030U);
-    const Result<Scene> spheres =
-        importScene(kModels / "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb");
+    const Result<gltf::Scene> spheres =
+        gltf::importScene(kModels / "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb");
     ASSERT_TRUE(spheres.ok());
     std::size_t triangles = 0;
-    for (const Node& node : spheres->nodes) {
+    for (const gltf::Node& node : spheres->nodes) {
         if (node.mesh >= 0) {
-            for (const Primitive& primitive :
+            for (const gltf::Primitive& primitive :
                  spheres->meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                 triangles += primitive.indices.size() / 3;
             }

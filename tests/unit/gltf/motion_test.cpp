@@ -9,8 +9,8 @@
 namespace glint::test {
 namespace {
 
-Scene importMotion(const GltfBuilder& builder) {
-    Result<Scene> scene = import(builder);
+gltf::Scene importMotion(const GltfBuilder& builder) {
+    Result<gltf::Scene> scene = import(builder);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
         return {};
@@ -18,12 +18,12 @@ Scene importMotion(const GltfBuilder& builder) {
     return std::move(*scene);
 }
 
-const Primitive& primitiveOf(const Scene& scene) {
+const gltf::Primitive& primitiveOf(const gltf::Scene& scene) {
     return scene.meshes.at(0).primitives.at(0);
 }
 
 std::string errorId(const GltfBuilder& builder) {
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     return scene ? "imported" : scene.error().id;
 }
 
@@ -41,7 +41,7 @@ struct Animated {
                      {"samplers", {{{"input", input}, {"output", output}}}},
                      {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", path}}}}}}};
     }
-    Scene import() {
+    gltf::Scene import() {
         builder.root["animations"] = {animation};
         return importMotion(builder);
     }
@@ -51,16 +51,16 @@ struct Animated {
 
 TEST(GltfAnimations, AreRead) {
     Animated animated("translation", {0.5F, 2.0F});
-    const Scene scene = animated.import();
+    const gltf::Scene scene = animated.import();
     ASSERT_EQ(scene.animations.size(), 1U);
-    const Animation& animation = scene.animations[0];
+    const gltf::Animation& animation = scene.animations[0];
     EXPECT_EQ(animation.name, "move");
     EXPECT_EQ(animation.duration, 2.0);
     ASSERT_EQ(animation.channels.size(), 1U);
-    EXPECT_EQ(animation.channels[0].path, AnimationPath::Translation);
+    EXPECT_EQ(animation.channels[0].path, gltf::AnimationPath::Translation);
     EXPECT_EQ(animation.channels[0].target, 0);
-    const AnimationSampler& sampler = animation.samplers.at(0);
-    EXPECT_EQ(sampler.interpolation, Interpolation::Linear);
+    const gltf::AnimationSampler& sampler = animation.samplers.at(0);
+    EXPECT_EQ(sampler.interpolation, gltf::Interpolation::Linear);
     EXPECT_EQ(sampler.width, 3U);
     EXPECT_EQ(sampler.times, (std::vector<float>{0.5F, 2.0F}));
     EXPECT_EQ(sampler.values.size(), 6U);
@@ -80,21 +80,21 @@ TEST(GltfAnimations, TakeEveryInterpolationAndIntegers) {
          {"channels",
           {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "rotation"}}}},
            {{"sampler", 1}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
-    const Scene scene = importMotion(builder);
-    const Animation& animation = scene.animations.at(0);
+    const gltf::Scene scene = importMotion(builder);
+    const gltf::Animation& animation = scene.animations.at(0);
     ASSERT_EQ(animation.samplers.size(), 2U);
-    EXPECT_EQ(animation.samplers[0].interpolation, Interpolation::Step);
+    EXPECT_EQ(animation.samplers[0].interpolation, gltf::Interpolation::Step);
     EXPECT_EQ(animation.samplers[0].values, (std::vector<float>{0, 0, 0, 1, 0, 0, -1, 0}));
-    EXPECT_EQ(animation.samplers[1].interpolation, Interpolation::CubicSpline);
+    EXPECT_EQ(animation.samplers[1].interpolation, gltf::Interpolation::CubicSpline);
     EXPECT_EQ(animation.samplers[1].values.size(), 18U);
-    EXPECT_EQ(animation.channels[1].path, AnimationPath::Scale);
+    EXPECT_EQ(animation.channels[1].path, gltf::AnimationPath::Scale);
 }
 
 TEST(GltfAnimations, LeaveOutBadKeyframesWithAWarning) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const std::vector<float>& times :
          std::vector<std::vector<float>>{{1, 0}, {1, 1}, {-1, 0}, {0, nan}, {0, INFINITY}}) {
-        const Scene scene = Animated("translation", times).import();
+        const gltf::Scene scene = Animated("translation", times).import();
         EXPECT_TRUE(scene.animations.at(0).channels.empty());
         EXPECT_EQ(countWarnings(scene, "animation-keyframes"), 1U) << times[0] << ", " << times[1];
     }
@@ -123,7 +123,7 @@ TEST(GltfAnimations, LeaveOutChannelsThatDriveNothing) {
     outside.builder.root["nodes"].push_back({{"name", "apart"}});
     outside.animation["channels"][0]["target"]["node"] = 1;
     outside.builder.root["scenes"] = {{{"nodes", {0}}}};
-    const Scene scene = outside.import();
+    const gltf::Scene scene = outside.import();
     EXPECT_TRUE(scene.animations.at(0).channels.empty());
     EXPECT_TRUE(scene.warnings.empty());
 }
@@ -166,14 +166,14 @@ GltfBuilder skinned(const std::vector<std::vector<float>>& weights) {
 const std::vector<float> kHalves{0.5F, 0.5F, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
 
 TEST(GltfSkins, AreRead) {
-    const Scene scene = importMotion(skinned({kHalves}));
+    const gltf::Scene scene = importMotion(skinned({kHalves}));
     EXPECT_TRUE(scene.warnings.empty());
     ASSERT_EQ(scene.skins.size(), 1U);
     EXPECT_EQ(scene.nodes.at(0).skin, 0);
     EXPECT_EQ(scene.skins[0].name, "two");
     EXPECT_EQ(scene.skins[0].joints, (std::vector<int>{1, 2}));
     EXPECT_EQ(scene.skins[0].inverseBinds.at(1)[12], 1.0);
-    const SkinInfluences& influences = primitiveOf(scene).influences;
+    const gltf::SkinInfluences& influences = primitiveOf(scene).influences;
     EXPECT_EQ(influences.count, 2U) << "more joints than any vertex has are not kept";
     EXPECT_EQ(influences.joints, (std::vector<std::uint16_t>{0, 1, 0, 0, 1, 1}));
     EXPECT_EQ(influences.weights, (std::vector<float>{0.5F, 0.5F, 1, 0, 1, 0}));
@@ -181,13 +181,13 @@ TEST(GltfSkins, AreRead) {
 
 TEST(GltfSkins, JoinSetsAndNormaliseWeights) {
     const std::vector<float> quarters(12, 0.125F);
-    const Scene joined = importMotion(skinned({quarters, quarters}));
+    const gltf::Scene joined = importMotion(skinned({quarters, quarters}));
     EXPECT_EQ(primitiveOf(joined).influences.count, 8U);
     EXPECT_EQ(countWarnings(joined, "skin-weights"), 0U);
-    const Scene scaled = importMotion(skinned({{0.5F, 0.5F, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0}}));
+    const gltf::Scene scaled = importMotion(skinned({{0.5F, 0.5F, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0}}));
     EXPECT_EQ(primitiveOf(scaled).influences.weights, (std::vector<float>{0.5F, 0.5F, 1, 0, 1, 0}));
     EXPECT_EQ(countWarnings(scaled, "skin-weights"), 1U);
-    const Scene broken = importMotion(skinned({{NAN, 1, 0, 0, -1, 1, 0, 0, INFINITY, 1, 0, 0}}));
+    const gltf::Scene broken = importMotion(skinned({{NAN, 1, 0, 0, -1, 1, 0, 0, INFINITY, 1, 0, 0}}));
     EXPECT_EQ(primitiveOf(broken).influences.count, 1U);
     EXPECT_EQ(primitiveOf(broken).influences.joints, (std::vector<std::uint16_t>{1, 1, 1}));
 }
@@ -199,7 +199,7 @@ TEST(GltfSkins, ReadNormalisedWeightsOf16Bits) {
         std::vector<std::uint16_t>{32768, 32767, 0, 0, 65535, 0, 0, 0, 0, 65535, 0, 0}, 4, true);
     attributes["JOINTS_0"] =
         builder.addAccessor(std::vector<std::uint16_t>{0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
-    const Scene scene = importMotion(builder);
+    const gltf::Scene scene = importMotion(builder);
     EXPECT_NEAR(primitiveOf(scene).influences.weights.at(0), 32768.0F / 65535.0F, 1e-7F);
     EXPECT_TRUE(scene.warnings.empty());
 }
@@ -235,7 +235,7 @@ TEST(GltfSkins, AreChecked) {
 TEST(GltfSkins, AreLeftOutWhereAJointIsNotInTheScene) {
     GltfBuilder builder = skinned({kHalves});
     builder.root["scenes"] = {{{"nodes", {0, 1}}}};
-    const Scene scene = importMotion(builder);
+    const gltf::Scene scene = importMotion(builder);
     EXPECT_EQ(countWarnings(scene, "skin-joint-outside"), 1U);
     EXPECT_EQ(scene.nodes.at(0).skin, -1);
     EXPECT_TRUE(scene.skins.empty());
@@ -243,7 +243,7 @@ TEST(GltfSkins, AreLeftOutWhereAJointIsNotInTheScene) {
 
 TEST(GltfSkins, WarnOfMoreSetsThanAreRead) {
     const std::vector<std::vector<float>> sets(5, std::vector<float>(12, 0.05F));
-    const Scene scene = importMotion(skinned(sets));
+    const gltf::Scene scene = importMotion(skinned(sets));
     EXPECT_EQ(countWarnings(scene, "skin-influences"), 1U);
     EXPECT_EQ(primitiveOf(scene).influences.count, 16U);
 }
@@ -256,12 +256,12 @@ TEST(GltfMorphs, AreReadWithTheirWeights) {
     primitive["targets"] = {{{"POSITION", lift}}, {{"POSITION", shift}}};
     builder.root["meshes"][0]["weights"] = {0.25, 1};
     builder.root["nodes"].push_back({{"mesh", 0}, {"weights", {0, 0.5}}});
-    const Scene scene = importMotion(builder);
+    const gltf::Scene scene = importMotion(builder);
     EXPECT_TRUE(scene.warnings.empty());
-    const Primitive& read = scene.meshes.at(0).primitives.at(0);
+    const gltf::Primitive& read = scene.meshes.at(0).primitives.at(0);
     ASSERT_EQ(read.targets.size(), 2U);
-    EXPECT_EQ(read.targets[0].positions, (std::vector<Float3>{{0, 0, 1}, {0, 0, 2}, {0, 0, 3}}));
-    EXPECT_EQ(read.targets[1].positions.at(0), (Float3{1, 0, 0}));
+    EXPECT_EQ(read.targets[0].positions, (std::vector<gltf::Float3>{{0, 0, 1}, {0, 0, 2}, {0, 0, 3}}));
+    EXPECT_EQ(read.targets[1].positions.at(0), (gltf::Float3{1, 0, 0}));
     EXPECT_EQ(scene.meshes[0].weights, (std::vector<double>{0.25, 1}));
     EXPECT_EQ(scene.nodes.at(0).weights, (std::vector<double>{0.25, 1}));
     EXPECT_EQ(scene.nodes.at(1).weights, (std::vector<double>{0, 0.5}));
@@ -283,9 +283,9 @@ TEST(GltfMorphs, ReadSparseDifferences) {
                                        {"indices", {{"bufferView", indices}, {"componentType", 5123}}},
                                        {"values", {{"bufferView", values}}}}}});
     primitive["targets"] = {{{"POSITION", accessor}}};
-    const Scene scene = importMotion(builder);
+    const gltf::Scene scene = importMotion(builder);
     EXPECT_EQ(primitiveOf(scene).targets.at(0).positions,
-              (std::vector<Float3>{{0, 0, 0}, {0, 0, 0}, {7, 8, 9}}));
+              (std::vector<gltf::Float3>{{0, 0, 0}, {0, 0, 0}, {7, 8, 9}}));
 }
 
 TEST(GltfMorphs, AreChecked) {
@@ -299,9 +299,9 @@ TEST(GltfMorphs, AreChecked) {
     EXPECT_EQ(errorId(builder), "index-range");
     primitive["targets"] = {{{"POSITION", builder.addAccessor(std::vector<float>(9, NAN), 3)}}};
     builder.root["meshes"][0]["weights"] = {1, 2, 3};
-    const Scene scene = importMotion(builder);
+    const gltf::Scene scene = importMotion(builder);
     EXPECT_EQ(countWarnings(scene, "attribute-not-finite"), 1U);
-    EXPECT_EQ(primitiveOf(scene).targets.at(0).positions.at(0), Float3{});
+    EXPECT_EQ(primitiveOf(scene).targets.at(0).positions.at(0), gltf::Float3{});
     EXPECT_EQ(countWarnings(scene, "morph-weights"), 1U);
     EXPECT_EQ(scene.nodes.at(0).weights, std::vector<double>{1});
     primitive["targets"] = {{{"NORMAL", builder.addAccessor(std::vector<float>(9, 0.0F), 3)}}};

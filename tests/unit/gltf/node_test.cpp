@@ -9,12 +9,12 @@
 namespace glint::test {
 namespace {
 
-Result<Scene> importMembers(const std::string& members) {
+Result<gltf::Scene> importMembers(const std::string& members) {
     return importText(R"({"asset": {"version": "2.0"}, )" + members + "}");
 }
 
-Scene mustImport(const std::string& members) {
-    Result<Scene> scene = importMembers(members);
+gltf::Scene mustImport(const std::string& members) {
+    Result<gltf::Scene> scene = importMembers(members);
     if (!scene) {
         ADD_FAILURE() << toString(scene.error());
         return {};
@@ -23,11 +23,11 @@ Scene mustImport(const std::string& members) {
 }
 
 std::string errorId(const std::string& members) {
-    const Result<Scene> scene = importMembers(members);
+    const Result<gltf::Scene> scene = importMembers(members);
     return scene ? "imported" : scene.error().id;
 }
 
-void expectNear(const Matrix4& actual, const Matrix4& expected) {
+void expectNear(const gltf::Matrix4& actual, const gltf::Matrix4& expected) {
     for (std::size_t i = 0; i < actual.size(); ++i) {
         EXPECT_NEAR(actual[i], expected[i], 1e-12) << "element " << i;
     }
@@ -35,7 +35,7 @@ void expectNear(const Matrix4& actual, const Matrix4& expected) {
 
 TEST(GltfNodes, ComposesTransforms) {
     // The top is turned by 90 degrees about Z, then moved; the child is mirrored and stretched.
-    const Scene scene = mustImport(R"("nodes": [
+    const gltf::Scene scene = mustImport(R"("nodes": [
         {"name": "top", "translation": [1, 2, 3], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476],
          "children": [1]},
         {"name": "low", "translation": [10, 0, 0], "scale": [-2, 3, 0]}])");
@@ -48,7 +48,7 @@ TEST(GltfNodes, ComposesTransforms) {
 }
 
 TEST(GltfNodes, ReadsMatrices) {
-    const Scene scene = mustImport(R"("nodes": [
+    const gltf::Scene scene = mustImport(R"("nodes": [
         {"matrix": [1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 10, 0, 11, 12, 13, 1]},
         {"matrix": [1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2], "scale": [2, 2, 2]}])");
     expectNear(scene.nodes.at(0).world, {1, 2, 3, 0, 4, 5, 6, 0, 7, 8, 10, 0, 11, 12, 13, 1});
@@ -58,7 +58,8 @@ TEST(GltfNodes, ReadsMatrices) {
 
 TEST(GltfNodes, TakesTheDefaultScene) {
     const std::string nodes = R"("nodes": [{"name": "a"}, {"name": "b", "children": [2]}, {"name": "c"}])";
-    const Scene second = mustImport(nodes + R"(, "scene": 1, "scenes": [{"nodes": [0]}, {"nodes": [1]}])");
+    const gltf::Scene second =
+        mustImport(nodes + R"(, "scene": 1, "scenes": [{"nodes": [0]}, {"nodes": [1]}])");
     ASSERT_EQ(second.nodes.size(), 2U);
     EXPECT_EQ(second.nodes[0].name, "b");
     EXPECT_EQ(second.nodes[1].name, "c");
@@ -69,7 +70,7 @@ TEST(GltfNodes, TakesTheDefaultScene) {
 }
 
 TEST(GltfNodes, DrawsEachNodeOnce) {
-    const Scene scene = mustImport(R"("nodes": [{"children": [1]}, {}],
+    const gltf::Scene scene = mustImport(R"("nodes": [{"children": [1]}, {}],
         "scenes": [{"nodes": [0, 1, 0]}])");
     EXPECT_EQ(scene.nodes.size(), 2U);
     EXPECT_EQ(countWarnings(scene, "scene-node-child"), 1U);
@@ -96,20 +97,21 @@ TEST(GltfNodes, FollowsDeepHierarchies) {
             nodes.back()["children"] = Json::array({i + 1});
         }
     }
-    const Scene scene = mustImport("\"nodes\": " + nodes.dump());
+    const gltf::Scene scene = mustImport("\"nodes\": " + nodes.dump());
     ASSERT_EQ(scene.nodes.size(), static_cast<std::size_t>(kDepth));
     EXPECT_EQ(scene.nodes.back().world[13], kDepth);
 }
 
 TEST(GltfNodes, NormalizesRotations) {
-    const Scene scene = mustImport(R"("nodes": [{"rotation": [0, 0, 0, 2]}, {"rotation": [0, 0, 0, 0]}])");
+    const gltf::Scene scene =
+        mustImport(R"("nodes": [{"rotation": [0, 0, 0, 2]}, {"rotation": [0, 0, 0, 0]}])");
     expectNear(scene.nodes.at(0).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
     expectNear(scene.nodes.at(1).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
     EXPECT_EQ(countWarnings(scene, "node-rotation"), 2U);
 }
 
 TEST(GltfCameras, ArePlacedWithoutScale) {
-    const Scene scene = mustImport(R"(
+    const gltf::Scene scene = mustImport(R"(
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
                     {"name": "flat", "type": "orthographic",
                      "orthographic": {"xmag": 2, "ymag": -3, "znear": 0, "zfar": 10}}],
@@ -149,7 +151,7 @@ TEST(GltfCameras, AreChecked) {
 }
 
 TEST(GltfCameras, SurviveZeroScale) {
-    const Scene scene = mustImport(R"(
+    const gltf::Scene scene = mustImport(R"(
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
         "nodes": [{"camera": 0, "scale": [0, 0, 0], "translation": [1, 2, 3]}])");
     expectNear(scene.cameras.at(0).world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 3, 1});
@@ -163,22 +165,22 @@ std::string withLight(const std::string& light, const std::string& node = "") {
 }
 
 TEST(GltfLights, ArePlaced) {
-    const Scene scene = mustImport(withLight(
+    const gltf::Scene scene = mustImport(withLight(
         R"({"name": "lamp", "type": "spot", "color": [1, 0.5, 0.25], "intensity": 20, "range": 7,
             "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}})",
         R"(, "translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476],
             "scale": [1, 1, 5])"));
     ASSERT_EQ(scene.lights.size(), 1U);
-    const Light& light = scene.lights[0];
+    const gltf::Light& light = scene.lights[0];
     EXPECT_EQ(scene.nodes.at(0).light, 0);
     EXPECT_EQ(light.name, "lamp");
-    EXPECT_EQ(light.type, LightType::Spot);
-    EXPECT_EQ(light.color, (Float3{1.0F, 0.5F, 0.25F}));
+    EXPECT_EQ(light.type, gltf::LightType::Spot);
+    EXPECT_EQ(light.color, (gltf::Float3{1.0F, 0.5F, 0.25F}));
     EXPECT_EQ(light.intensity, 20.0F);
     EXPECT_EQ(light.range, 7.0F);
     EXPECT_EQ(light.innerConeAngle, 0.25F);
     EXPECT_EQ(light.outerConeAngle, 0.5F);
-    EXPECT_EQ(light.position, (Float3{1, 2, 3}));
+    EXPECT_EQ(light.position, (gltf::Float3{1, 2, 3}));
     // A quarter turn about Y takes -Z to -X.
     EXPECT_NEAR(light.direction[0], -1.0F, 1e-6F);
     EXPECT_NEAR(light.direction[1], 0.0F, 1e-6F);
@@ -186,25 +188,25 @@ TEST(GltfLights, ArePlaced) {
 }
 
 TEST(GltfLights, HaveTheExtensionsDefaults) {
-    const Scene scene = mustImport(withLight(R"({"type": "spot"})"));
-    const Light& light = scene.lights.at(0);
-    EXPECT_EQ(light.color, (Float3{1, 1, 1}));
+    const gltf::Scene scene = mustImport(withLight(R"({"type": "spot"})"));
+    const gltf::Light& light = scene.lights.at(0);
+    EXPECT_EQ(light.color, (gltf::Float3{1, 1, 1}));
     EXPECT_EQ(light.intensity, 1.0F);
     EXPECT_EQ(light.range, 0.0F);
     EXPECT_EQ(light.innerConeAngle, 0.0F);
     EXPECT_FLOAT_EQ(light.outerConeAngle, std::numbers::pi_v<float> / 4);
-    EXPECT_EQ(light.direction, (Float3{0, 0, -1}));
+    EXPECT_EQ(light.direction, (gltf::Float3{0, 0, -1}));
 }
 
 TEST(GltfLights, AreChecked) {
-    const Scene scene = mustImport(withLight(R"({"type": "spot", "intensity": -1, "color": [-1, 0, 0],
+    const gltf::Scene scene = mustImport(withLight(R"({"type": "spot", "intensity": -1, "color": [-1, 0, 0],
         "spot": {"innerConeAngle": 3, "outerConeAngle": 2}})",
-                                             R"(, "scale": [0, 0, 0])"));
+                                                   R"(, "scale": [0, 0, 0])"));
     EXPECT_EQ(scene.lights.at(0).intensity, 0.0F);
     EXPECT_LE(scene.lights.at(0).innerConeAngle, scene.lights.at(0).outerConeAngle);
     EXPECT_EQ(countWarnings(scene, "light-range"), 4U);
     EXPECT_EQ(countWarnings(scene, "pose-degenerate"), 1U);
-    EXPECT_EQ(scene.lights.at(0).direction, (Float3{0, 0, -1}));
+    EXPECT_EQ(scene.lights.at(0).direction, (gltf::Float3{0, 0, -1}));
     EXPECT_EQ(errorId(withLight(R"({"type": "laser"})")), "light-type");
     EXPECT_EQ(errorId(withLight(R"({})")), "json-missing");
     EXPECT_EQ(errorId(withLight("")), "index-range");
@@ -212,7 +214,7 @@ TEST(GltfLights, AreChecked) {
 
 TEST(GltfLights, WarnOfWhatTheExtensionForbids) {
     const auto lightAndWarnings = [](const std::string& members) {
-        const Scene scene = mustImport(withLight(R"({"type": "spot", )" + members + "}"));
+        const gltf::Scene scene = mustImport(withLight(R"({"type": "spot", )" + members + "}"));
         return std::pair(scene.lights.at(0), countWarnings(scene, "light-range"));
     };
     const auto [unlimited, rangeWarnings] = lightAndWarnings(R"("range": 0)");
@@ -222,7 +224,7 @@ TEST(GltfLights, WarnOfWhatTheExtensionForbids) {
     EXPECT_EQ(lightAndWarnings(R"("range": 0.5)").second, 0U);
     // The hue is unchanged.
     const auto [bright, colorWarnings] = lightAndWarnings(R"("color": [1, 2, 4])");
-    EXPECT_EQ(bright.color, (Float3{1, 2, 4}));
+    EXPECT_EQ(bright.color, (gltf::Float3{1, 2, 4}));
     EXPECT_EQ(colorWarnings, 2U);
     const auto [sharp, coneWarnings] =
         lightAndWarnings(R"("spot": {"innerConeAngle": 0.5, "outerConeAngle": 0.5})");

@@ -8,8 +8,8 @@
 namespace glint::test {
 
 // Returns the only primitive of a scene that must import.
-inline const Primitive& onlyPrimitive(const Result<Scene>& scene) {
-    static const Primitive kNone;
+inline const gltf::Primitive& onlyPrimitive(const Result<gltf::Scene>& scene) {
+    static const gltf::Primitive kNone;
     if (!scene || scene->meshes.empty() || scene->meshes[0].primitives.empty()) {
         ADD_FAILURE() << (scene ? "no primitive" : toString(scene.error()));
         return kNone;

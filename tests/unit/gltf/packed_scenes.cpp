@@ -60,7 +60,7 @@ Grid makeGrid() {
     return grid;
 }
 
-Bytes encodeDraco(const Grid& grid, DracoMethod method) {
+base::Bytes encodeDraco(const Grid& grid, DracoMethod method) {
     draco::Mesh mesh;
     mesh.set_num_points(static_cast<std::uint32_t>(grid.positions.size()));
     for (std::size_t i = 0; i < grid.indices.size(); i += 3) {
@@ -85,7 +85,7 @@ Bytes encodeDraco(const Grid& grid, DracoMethod method) {
 
 GltfBuilder dracoScene(DracoMethod method) {
     const Grid grid = makeGrid();
-    const Bytes packed = encodeDraco(grid, method);
+    const base::Bytes packed = encodeDraco(grid, method);
     GltfBuilder builder;
     builder.root["extensionsUsed"] = builder.root["extensionsRequired"] =
         Json::array({"KHR_draco_mesh_compression"});
@@ -113,7 +113,7 @@ void addFallbackBuffer(GltfBuilder& builder, std::size_t bytes) {
         {{"byteLength", bytes}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}});
 }
 
-int addPackedView(GltfBuilder& builder, const Bytes& packed, std::size_t count, std::size_t stride,
+int addPackedView(GltfBuilder& builder, const base::Bytes& packed, std::size_t count, std::size_t stride,
                   const std::string& mode, const std::string& filter) {
     const int plain = builder.addView(packed.data(), packed.size());
     Json& view = builder.root["bufferViews"][static_cast<std::size_t>(plain)];
@@ -132,8 +132,8 @@ int addPackedView(GltfBuilder& builder, const Bytes& packed, std::size_t count, 
     return plain;
 }
 
-Bytes packVertices(const void* vertices, std::size_t count, std::size_t stride) {
-    Bytes packed(meshopt_encodeVertexBufferBound(count, stride));
+base::Bytes packVertices(const void* vertices, std::size_t count, std::size_t stride) {
+    base::Bytes packed(meshopt_encodeVertexBufferBound(count, stride));
     packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), vertices, count, stride));
     return packed;
 }
@@ -155,7 +155,7 @@ GltfBuilder meshoptScene() {
         builder.append("accessors", vertexAccessor(positions, 5126, count, "VEC3", false));
 
     std::vector<std::array<float, 4>> unit(count, {0.0F, 0.0F, 1.0F, 0.0F});
-    Bytes octahedral(count * 4);
+    base::Bytes octahedral(count * 4);
     meshopt_encodeFilterOct(octahedral.data(), count, 4, 8, unit[0].data());
     const int normals = addPackedView(builder, packVertices(octahedral.data(), count, 4), count, 4,
                                       "ATTRIBUTES", "OCTAHEDRAL");
@@ -166,14 +166,14 @@ GltfBuilder meshoptScene() {
     for (const auto& position : grid.positions) {
         values.push_back({position[0] / kGridCells, position[1] / kGridCells});
     }
-    Bytes exponential(count * 8);
+    base::Bytes exponential(count * 8);
     meshopt_encodeFilterExp(exponential.data(), count, 8, 15, values[0].data());
     const int texCoords = addPackedView(builder, packVertices(exponential.data(), count, 8), count, 8,
                                         "ATTRIBUTES", "EXPONENTIAL");
     primitive["attributes"]["TEXCOORD_0"] =
         builder.append("accessors", vertexAccessor(texCoords, 5126, count, "VEC2", false));
 
-    Bytes triangles(meshopt_encodeIndexBufferBound(grid.indices.size(), count));
+    base::Bytes triangles(meshopt_encodeIndexBufferBound(grid.indices.size(), count));
     triangles.resize(meshopt_encodeIndexBuffer(triangles.data(), triangles.size(), grid.indices.data(),
                                                grid.indices.size()));
     const int indices = addPackedView(builder, triangles, grid.indices.size(), 2, "TRIANGLES");
@@ -183,10 +183,10 @@ GltfBuilder meshoptScene() {
     return builder;
 }
 
-Bytes encodeWebp(const Bytes& rgba8, int width, int height) {
+base::Bytes encodeWebp(const base::Bytes& rgba8, int width, int height) {
     std::uint8_t* encoded = nullptr;
     const std::size_t size = WebPEncodeLosslessRGBA(rgba8.data(), width, height, 4 * width, &encoded);
-    Bytes bytes(encoded, encoded + size);
+    base::Bytes bytes(encoded, encoded + size);
     WebPFree(encoded);
     return bytes;
 }
@@ -194,7 +194,7 @@ Bytes encodeWebp(const Bytes& rgba8, int width, int height) {
 GltfBuilder webpScene() {
     GltfBuilder builder;
     builder.root["extensionsUsed"] = builder.root["extensionsRequired"] = Json::array({"EXT_texture_webp"});
-    const Bytes webp = encodeWebp({kWebpPixels.begin(), kWebpPixels.end()}, 2, 1);
+    const base::Bytes webp = encodeWebp({kWebpPixels.begin(), kWebpPixels.end()}, 2, 1);
     const int view = builder.addView(webp.data(), webp.size());
     builder.append("images", {{"bufferView", view}, {"mimeType", "image/webp"}});
     Json texture;

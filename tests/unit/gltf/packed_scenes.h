@@ -29,7 +29,7 @@ inline constexpr std::uint32_t kDracoNormal = 1;
 inline constexpr std::uint32_t kDracoTexCoord = 2;
 
 // Encodes without loss, and with metadata. The sequential method keeps the order of points.
-Bytes encodeDraco(const Grid& grid, DracoMethod method);
+base::Bytes encodeDraco(const Grid& grid, DracoMethod method);
 
 // Returns the grid with KHR_draco_mesh_compression. Its accessors have no buffer views.
 GltfBuilder dracoScene(DracoMethod method);
@@ -38,17 +38,17 @@ GltfBuilder dracoScene(DracoMethod method);
 void addFallbackBuffer(GltfBuilder& builder, std::size_t bytes);
 
 // Appends a buffer view packed by EXT_meshopt_compression into the fallback buffer. Returns its index.
-int addPackedView(GltfBuilder& builder, const Bytes& packed, std::size_t count, std::size_t stride,
+int addPackedView(GltfBuilder& builder, const base::Bytes& packed, std::size_t count, std::size_t stride,
                   const std::string& mode, const std::string& filter = "NONE");
 
-Bytes packVertices(const void* vertices, std::size_t count, std::size_t stride);
+base::Bytes packVertices(const void* vertices, std::size_t count, std::size_t stride);
 
 // Returns the grid with EXT_meshopt_compression: plain positions, octahedral normals in 8 bits, exponential
 // UVs, indices as triangles.
 GltfBuilder meshoptScene();
 
 // Encodes without loss; the input has four bytes for each pixel.
-Bytes encodeWebp(const Bytes& rgba8, int width, int height);
+base::Bytes encodeWebp(const base::Bytes& rgba8, int width, int height);
 
 // Returns a material whose base colour is a WebP image in a buffer view, 2 x 1 pixels: kWebpPixels.
 GltfBuilder webpScene();

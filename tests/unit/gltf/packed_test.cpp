@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kDracoPointer = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression";
 
 void expectError(const GltfBuilder& builder, std::string_view id, const std::string& pointer,
-                 std::string_view part = "", const ImportOptions& options = {}) {
-    const Result<Scene> scene = import(builder, options);
+                 std::string_view part = "", const gltf::ImportOptions& options = {}) {
+    const Result<gltf::Scene> scene = import(builder, options);
     ASSERT_FALSE(scene.ok()) << id;
     EXPECT_EQ(scene.error().id, id) << toString(scene.error());
     EXPECT_TRUE(scene.error().where.ends_with("scene.gltf#" + pointer)) << scene.error().where;
@@ -36,10 +36,10 @@ Json& meshoptOf(GltfBuilder& builder, std::size_t view) {
 
 // Returns triangles as corners by position, rotated so that the smallest comes first. The result does not
 // depend on the order.
-std::set<std::vector<Float3>> triangleSet(const Primitive& primitive) {
-    std::set<std::vector<Float3>> triangles;
+std::set<std::vector<gltf::Float3>> triangleSet(const gltf::Primitive& primitive) {
+    std::set<std::vector<gltf::Float3>> triangles;
     for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
-        std::vector<Float3> corners;
+        std::vector<gltf::Float3> corners;
         for (std::size_t k = i; k < i + 3; ++k) {
             corners.push_back(primitive.positions[primitive.indices[k]]);
         }
@@ -49,9 +49,9 @@ std::set<std::vector<Float3>> triangleSet(const Primitive& primitive) {
     return triangles;
 }
 
-void expectGrid(const Primitive& read) {
+void expectGrid(const gltf::Primitive& read) {
     const Grid grid = makeGrid();
-    Primitive expected;
+    gltf::Primitive expected;
     expected.positions = grid.positions;
     expected.indices = grid.indices;
     EXPECT_EQ(triangleSet(read), triangleSet(expected));
@@ -59,7 +59,7 @@ void expectGrid(const Primitive& read) {
     ASSERT_EQ(read.normals.size(), grid.positions.size());
     ASSERT_EQ(read.texCoords0.size(), grid.positions.size());
     for (std::size_t i = 0; i < read.positions.size(); ++i) {
-        EXPECT_EQ(read.normals[i], (Float3{0, 0, 1}));
+        EXPECT_EQ(read.normals[i], (gltf::Float3{0, 0, 1}));
         EXPECT_NEAR(read.texCoords0[i][0], read.positions[i][0] / kGridCells, 1e-4F);
         EXPECT_NEAR(read.texCoords0[i][1], read.positions[i][1] / kGridCells, 1e-4F);
     }
@@ -67,7 +67,7 @@ void expectGrid(const Primitive& read) {
 
 TEST(GltfDraco, RoundTrips) {
     for (const DracoMethod method : {DracoMethod::Sequential, DracoMethod::Edgebreaker}) {
-        const Result<Scene> scene = import(dracoScene(method));
+        const Result<gltf::Scene> scene = import(dracoScene(method));
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
         expectGrid(onlyPrimitive(scene));
@@ -79,8 +79,8 @@ TEST(GltfDraco, ReadsWhatIsNotCompressedFromItsAccessor) {
     std::vector<float> texCoords(std::size_t{2} * 25, 0.5F);
     builder.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] =
         builder.addAccessor<float>(texCoords, 2);
-    const Result<Scene> scene = import(builder);
-    EXPECT_EQ(onlyPrimitive(scene).texCoords1.at(24), (Float2{0.5F, 0.5F}));
+    const Result<gltf::Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).texCoords1.at(24), (gltf::Float2{0.5F, 0.5F}));
     dracoOf(builder)["attributes"].erase("NORMAL");
     expectError(builder, "attribute-data", "/meshes/0/primitives/0/attributes/NORMAL");
 }
@@ -111,7 +111,7 @@ TEST(GltfDraco, ComparesCounts) {
     expectError(points, "attribute-count", "/meshes/0/primitives/0/attributes/POSITION", "25");
     GltfBuilder triangles = dracoScene(DracoMethod::Edgebreaker);
     triangles.root["accessors"][3]["count"] = 99;
-    const Result<Scene> scene = import(triangles);
+    const Result<gltf::Scene> scene = import(triangles);
     EXPECT_EQ(onlyPrimitive(scene).indices.size(), 96U);
     EXPECT_EQ(countWarnings(*scene, "draco-count"), 1U);
 }
@@ -132,7 +132,8 @@ TEST(GltfDraco, RefusesHeadersThatClaimTooMuch) {
     // The header without metadata: "DRACO", version 2.2, a mesh, the method, no flags, then the counts as
     // varints (seven bits a byte, most significant first).
     const auto withCounts = [](bool sequential) {
-        Bytes bytes{'D', 'R', 'A', 'C', 'O', 2, 2, 1, static_cast<std::uint8_t>(sequential ? 0 : 1), 0, 0};
+        base::Bytes bytes{'D', 'R', 'A', 'C', 'O', 2, 2, 1, static_cast<std::uint8_t>(sequential ? 0 : 1),
+                          0,   0};
         if (!sequential) {
             bytes.push_back(0);
         }
@@ -144,7 +145,7 @@ TEST(GltfDraco, RefusesHeadersThatClaimTooMuch) {
     };
     for (const bool sequential : {false, true}) {
         GltfBuilder builder = dracoScene(DracoMethod::Sequential);
-        const Bytes bytes = withCounts(sequential);
+        const base::Bytes bytes = withCounts(sequential);
         dracoOf(builder)["bufferView"] = builder.addView(bytes.data(), bytes.size());
         expectError(builder, "draco-size", kDracoPointer, "200 bytes");
     }
@@ -156,14 +157,14 @@ TEST(GltfDraco, RefusesHeadersThatClaimTooMuch) {
 
 TEST(GltfDraco, RefusesAttributesThatTakeTooMuch) {
     constexpr std::uint8_t kFloat64 = 10;
-    const auto refuses = [](const Bytes& bytes) {
+    const auto refuses = [](const base::Bytes& bytes) {
         GltfBuilder builder = dracoScene(DracoMethod::Sequential);
         dracoOf(builder)["bufferView"] = builder.addView(bytes.data(), bytes.size());
         expectError(builder, "draco-size", kDracoPointer, "bytes of attributes");
     };
     // 200 triangles and 600 points, as varints, with plain indices of 16 bits; then 200 attributes of 255
     // components each, which would take 245 MB.
-    Bytes sequential{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0, 0xC8, 1, 0xD8, 4, 1};
+    base::Bytes sequential{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 0, 0, 0, 0xC8, 1, 0xD8, 4, 1};
     for (int corner = 0; corner < 600; ++corner) {
         sequential.push_back(static_cast<std::uint8_t>(corner));
         sequential.push_back(static_cast<std::uint8_t>(corner >> 8));
@@ -175,7 +176,7 @@ TEST(GltfDraco, RefusesAttributesThatTakeTooMuch) {
     sequential.resize(sequential.size() + 200);
     refuses(sequential);
     // Edgebreaker: 100 vertices, 16000 triangles, and 255 sets of attributes with seams of their own.
-    Bytes edgebreaker{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0, 0, 100, 0x80, 0x7D, 255};
+    base::Bytes edgebreaker{'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0, 0, 100, 0x80, 0x7D, 255};
     edgebreaker.resize(200);
     refuses(edgebreaker);
 }
@@ -183,7 +184,7 @@ TEST(GltfDraco, RefusesAttributesThatTakeTooMuch) {
 TEST(GltfMeshopt, RoundTrips) {
     const GltfBuilder builder = meshoptScene();
     for (const std::string& text : {builder.text(), builder.glb()}) {
-        const Result<Scene> scene = importText(text);
+        const Result<gltf::Scene> scene = importText(text);
         ASSERT_TRUE(scene.ok()) << toString(scene.error());
         EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
         expectGrid(onlyPrimitive(scene));
@@ -203,7 +204,7 @@ TEST(GltfMeshopt, ReadsTheNameOfTheKhronosExtension) {
 TEST(GltfMeshopt, ReadsIndexSequences) {
     meshopt_encodeIndexVersion(1);
     const std::vector<std::uint32_t> indices{2, 1, 0, 0, 1, 2};
-    Bytes packed(meshopt_encodeIndexSequenceBound(indices.size(), 3));
+    base::Bytes packed(meshopt_encodeIndexSequenceBound(indices.size(), 3));
     packed.resize(meshopt_encodeIndexSequence(packed.data(), packed.size(), indices.data(), indices.size()));
     for (const std::size_t stride : {2U, 4U}) {
         GltfBuilder builder;
@@ -221,7 +222,7 @@ TEST(GltfMeshopt, ReadsIndexSequences) {
 TEST(GltfMeshopt, DecodesQuaternionsAsTangents) {
     // A tangent of four 16-bit components has the form that the filter takes.
     const std::vector<std::array<float, 4>> unit(3, {0.0F, 0.6F, 0.0F, 0.8F});
-    Bytes filtered(unit.size() * 8);
+    base::Bytes filtered(unit.size() * 8);
     meshopt_encodeFilterQuat(filtered.data(), unit.size(), 8, 16, unit[0].data());
     meshopt_encodeVertexVersion(0);
     GltfBuilder builder;
@@ -235,8 +236,8 @@ TEST(GltfMeshopt, DecodesQuaternionsAsTangents) {
                                                                       {"count", 3},
                                                                       {"type", "VEC4"},
                                                                       {"normalized", true}});
-    const Result<Scene> scene = import(builder);
-    EXPECT_EQ(onlyPrimitive(scene).tangents.at(2), (Float4{0, 1, 0, 1}));
+    const Result<gltf::Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).tangents.at(2), (gltf::Float4{0, 1, 0, 1}));
 }
 
 TEST(GltfMeshopt, ExplainsContradictions) {

@@ -7,14 +7,14 @@ namespace glint::test {
 
 namespace {
 
-void appendBigEndian(Bytes& bytes, std::uint32_t value) {
+void appendBigEndian(base::Bytes& bytes, std::uint32_t value) {
     for (int shift = 24; shift >= 0; shift -= 8) {
         bytes.push_back(static_cast<std::uint8_t>(value >> static_cast<unsigned>(shift)));
     }
 }
 
 // The algorithm is in ISO 3309 and in PNG's annex D.
-std::uint32_t crc32(const Bytes& bytes) {
+std::uint32_t crc32(const base::Bytes& bytes) {
     std::uint32_t crc = 0xFFFFFFFFU;
     for (const std::uint8_t byte : bytes) {
         crc ^= byte;
@@ -25,18 +25,18 @@ std::uint32_t crc32(const Bytes& bytes) {
     return ~crc;
 }
 
-void appendChunk(Bytes& png, const std::string& type, const Bytes& content) {
+void appendChunk(base::Bytes& png, const std::string& type, const base::Bytes& content) {
     appendBigEndian(png, static_cast<std::uint32_t>(content.size()));
-    Bytes body(type.begin(), type.end());
+    base::Bytes body(type.begin(), type.end());
     body.insert(body.end(), content.begin(), content.end());
     png.insert(png.end(), body.begin(), body.end());
     appendBigEndian(png, crc32(body));
 }
 
 // The format is that of RFC 1950 and 1951, with stored blocks.
-Bytes storeZlib(const Bytes& data) {
+base::Bytes storeZlib(const base::Bytes& data) {
     constexpr std::size_t kLargestBlock = 65535;
-    Bytes stream{0x78, 0x01};
+    base::Bytes stream{0x78, 0x01};
     std::uint32_t a = 1;
     std::uint32_t b = 0;
     for (const std::uint8_t byte : data) {
@@ -59,9 +59,9 @@ Bytes storeZlib(const Bytes& data) {
 
 }  // namespace
 
-Bytes makePng(const PngSpec& spec) {
-    Bytes png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
-    Bytes header;
+base::Bytes makePng(const PngSpec& spec) {
+    base::Bytes png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+    base::Bytes header;
     appendBigEndian(header, spec.width);
     appendBigEndian(header, spec.height);
     header.insert(header.end(), {spec.bitDepth, static_cast<std::uint8_t>(spec.color), 0, 0, 0});
@@ -69,7 +69,7 @@ Bytes makePng(const PngSpec& spec) {
     for (const auto& [type, content] : spec.chunks) {
         appendChunk(png, type, content);
     }
-    Bytes filtered;
+    base::Bytes filtered;
     const std::size_t rowBytes = spec.rows.size() / spec.height;
     for (std::size_t row = 0; row < spec.height; ++row) {
         filtered.push_back(0);

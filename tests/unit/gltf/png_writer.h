@@ -18,11 +18,11 @@ struct PngSpec {
     std::uint8_t bitDepth = 8;
     PngColor color = PngColor::Rgba;
     // The chunks between IHDR and IDAT, type and content: PLTE, tRNS.
-    std::vector<std::pair<std::string, Bytes>> chunks;
-    Bytes rows;  // as PNG stores them, big-endian, without the filter byte of each row
+    std::vector<std::pair<std::string, base::Bytes>> chunks;
+    base::Bytes rows;  // as PNG stores them, big-endian, without the filter byte of each row
 };
 
 // The rows have width * channels * bitDepth / 8 bytes each, rounded up.
-Bytes makePng(const PngSpec& spec);
+base::Bytes makePng(const PngSpec& spec);
 
 }  // namespace glint::test

@@ -41,14 +41,14 @@ TYPED_TEST(GltfQuantization, PositionsAndTexCoords) {
                 builder.addAccessor<T>({kLargest, 5, kLeast, 0, 1, 2}, 2, normalized);
         }
         builder.addMesh(primitive);
-        const Result<Scene> scene = import(builder);
-        const Primitive& read = onlyPrimitive(scene);
+        const Result<gltf::Scene> scene = import(builder);
+        const gltf::Primitive& read = onlyPrimitive(scene);
         ASSERT_EQ(read.positions.size(), 3U);
-        EXPECT_EQ(read.positions[0], (Float3{kLargest / unit, 0.0F, 1.0F / unit}));
-        EXPECT_EQ(read.positions[1], (Float3{0.0F, least, 0.0F}));
+        EXPECT_EQ(read.positions[0], (gltf::Float3{kLargest / unit, 0.0F, 1.0F / unit}));
+        EXPECT_EQ(read.positions[1], (gltf::Float3{0.0F, least, 0.0F}));
         for (const auto* texCoords : {&read.texCoords0, &read.texCoords1}) {
-            EXPECT_EQ(texCoords->at(0), (Float2{kLargest / unit, 5.0F / unit}));
-            EXPECT_EQ(texCoords->at(1), (Float2{least, 0.0F}));
+            EXPECT_EQ(texCoords->at(0), (gltf::Float2{kLargest / unit, 5.0F / unit}));
+            EXPECT_EQ(texCoords->at(1), (gltf::Float2{least, 0.0F}));
         }
     }
 }
@@ -67,14 +67,14 @@ TYPED_TEST(GltfQuantizedFrames, NormalsAndTangentsAreUnit) {
     primitive["attributes"]["NORMAL"] = builder.addAccessor<T>({0, 0, kLargest, 0, 0, 1, 0, 3, 4}, 3, true);
     primitive["attributes"]["TANGENT"] = builder.addAccessor<T>(
         {kLargest, 0, 0, kLargest, kLargest, 0, 0, static_cast<T>(-kLargest), 4, 3, 0, kLargest}, 4, true);
-    const Result<Scene> scene = import(builder);
-    const Primitive& read = onlyPrimitive(scene);
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& read = onlyPrimitive(scene);
     ASSERT_EQ(read.normals.size(), 3U);
-    EXPECT_EQ(read.normals[0], (Float3{0, 0, 1}));
-    EXPECT_EQ(read.normals[1], (Float3{0, 0, 1}));
+    EXPECT_EQ(read.normals[0], (gltf::Float3{0, 0, 1}));
+    EXPECT_EQ(read.normals[1], (gltf::Float3{0, 0, 1}));
     EXPECT_FLOAT_EQ(read.normals[2][1], 0.6F);
-    EXPECT_EQ(read.tangents[0], (Float4{1, 0, 0, 1}));
-    EXPECT_EQ(read.tangents[1], (Float4{1, 0, 0, -1}));
+    EXPECT_EQ(read.tangents[0], (gltf::Float4{1, 0, 0, 1}));
+    EXPECT_EQ(read.tangents[1], (gltf::Float4{1, 0, 0, -1}));
     EXPECT_FLOAT_EQ(read.tangents[2][0], 0.8F);
     EXPECT_TRUE(scene->warnings.empty());
 }
@@ -90,9 +90,9 @@ TEST(GltfQuantizedTextures, KeepTheirTransform) {
     Json& primitive = builder.addTriangle();
     primitive["material"] = 0;
     primitive["attributes"]["TEXCOORD_0"] = builder.addAccessor<std::uint16_t>({0, 0, 4096, 0, 0, 2048}, 2);
-    const Result<Scene> scene = import(builder);
-    const Primitive& read = onlyPrimitive(scene);
-    const TextureInfo& info = scene->materials.at(0).texture("baseColorTexture");
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& read = onlyPrimitive(scene);
+    const materials::TextureInfo& info = scene->materials.at(0).texture("baseColorTexture");
     EXPECT_TRUE(info.hasTransform);
     EXPECT_EQ(read.texCoords0.at(1)[0] * info.transform.scale[0] + info.transform.offset[0], 1.25F);
     EXPECT_EQ(read.texCoords0.at(2)[1] * info.transform.scale[1] + info.transform.offset[1], 1.5F);

@@ -19,12 +19,12 @@ TEST(GltfRepair, NormalizesNormalsAndReplacesBrokenOnes) {
     GltfBuilder builder;
     Json& primitive = builder.addTriangle();
     primitive["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 3, 4, 0, 0, 0, kNan, 0, 1}, 3);
-    const Result<Scene> scene = import(builder);
-    const Primitive& read = onlyPrimitive(scene);
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& read = onlyPrimitive(scene);
     EXPECT_FLOAT_EQ(read.normals[0][1], 0.6F);
     EXPECT_FLOAT_EQ(read.normals[0][2], 0.8F);
-    EXPECT_EQ(read.normals[1], (Float3{0, 0, 1}));
-    EXPECT_EQ(read.normals[2], (Float3{0, 0, 1}));
+    EXPECT_EQ(read.normals[1], (gltf::Float3{0, 0, 1}));
+    EXPECT_EQ(read.normals[2], (gltf::Float3{0, 0, 1}));
     EXPECT_EQ(countWarnings(*scene, "normal-invalid"), 1U);
     EXPECT_EQ(findWarning(*scene, "normal-invalid").message.substr(0, 2), "2 ");
 }
@@ -36,7 +36,7 @@ TEST(GltfRepair, TakesTheTrianglesNormal) {
         builder.addAccessor<float>({0, 0, 0, 0, 1e-20F, 0, 0, 0, 1e-20F}, 3);
     primitive["attributes"]["NORMAL"] = builder.addAccessor<float>(std::vector<float>(9), 3);
     builder.addMesh(primitive);
-    EXPECT_EQ(onlyPrimitive(import(builder)).normals[1], (Float3{1, 0, 0}));
+    EXPECT_EQ(onlyPrimitive(import(builder)).normals[1], (gltf::Float3{1, 0, 0}));
 }
 
 TEST(GltfRepair, MakesTangentsUnitAndSigned) {
@@ -45,11 +45,11 @@ TEST(GltfRepair, MakesTangentsUnitAndSigned) {
     primitive["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 1, 0, 0}, 3);
     primitive["attributes"]["TANGENT"] =
         builder.addAccessor<float>({2, 0, 0, -3, 0, 5, 0, 1, 0, 0, 0, kNan}, 4);
-    const Result<Scene> scene = import(builder);
-    const Primitive& read = onlyPrimitive(scene);
-    EXPECT_EQ(read.tangents[0], (Float4{1, 0, 0, -1}));
-    EXPECT_EQ(read.tangents[1], (Float4{0, 1, 0, 1}));
-    const Float4& made = read.tangents[2];
+    const Result<gltf::Scene> scene = import(builder);
+    const gltf::Primitive& read = onlyPrimitive(scene);
+    EXPECT_EQ(read.tangents[0], (gltf::Float4{1, 0, 0, -1}));
+    EXPECT_EQ(read.tangents[1], (gltf::Float4{0, 1, 0, 1}));
+    const gltf::Float4& made = read.tangents[2];
     EXPECT_FLOAT_EQ(std::hypot(made[0], made[1], made[2]), 1.0F);
     EXPECT_FLOAT_EQ(made[0], 0.0F);  // +X, at right angles to its normal
     EXPECT_EQ(made[3], 1.0F);
@@ -60,7 +60,7 @@ TEST(GltfRepair, IgnoresTangentsWithoutNormals) {
     GltfBuilder builder;
     builder.addTriangle()["attributes"]["TANGENT"] =
         builder.addAccessor<float>(std::vector<float>(12, 1.0F), 4);
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     EXPECT_TRUE(onlyPrimitive(scene).tangents.empty());
     EXPECT_EQ(countWarnings(*scene, "tangent-without-normal"), 1U);
 }
@@ -73,9 +73,9 @@ TEST(GltfRepair, DropsTrianglesWithBrokenPositions) {
         builder.addAccessor<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, infinite, 0, 0}, 3);
     primitive["indices"] = builder.addAccessor<std::uint8_t>({0, 1, 2, 1, 3, 2, 3, 3, 3}, 1);
     builder.addMesh(primitive);
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     EXPECT_EQ(onlyPrimitive(scene).indices, (std::vector<std::uint32_t>{0, 1, 2}));
-    EXPECT_EQ(onlyPrimitive(scene).positions[3], (Float3{0, 0, 0}));
+    EXPECT_EQ(onlyPrimitive(scene).positions[3], (gltf::Float3{0, 0, 0}));
     const std::string message = findWarning(*scene, "position-not-finite").message;
     EXPECT_NE(message.find("1 positions"), std::string::npos) << message;
     EXPECT_NE(message.find("2 triangles"), std::string::npos) << message;
@@ -87,9 +87,9 @@ TEST(GltfRepair, ReplacesOtherValuesThatAreNotFinite) {
     primitive["attributes"]["TEXCOORD_0"] = builder.addAccessor<float>({0.5F, kNan, 1, 1, 2, 2}, 2);
     primitive["attributes"]["COLOR_0"] =
         builder.addAccessor<float>({kNan, 0, 0, 0.5F, 0.5F, 0.5F, 0, 0, 0}, 3);
-    const Result<Scene> scene = import(builder);
-    EXPECT_EQ(onlyPrimitive(scene).texCoords0[0], (Float2{0, 0}));
-    EXPECT_EQ(onlyPrimitive(scene).colors[0], (Float4{1, 1, 1, 1}));
+    const Result<gltf::Scene> scene = import(builder);
+    EXPECT_EQ(onlyPrimitive(scene).texCoords0[0], (gltf::Float2{0, 0}));
+    EXPECT_EQ(onlyPrimitive(scene).colors[0], (gltf::Float4{1, 1, 1, 1}));
     EXPECT_EQ(countWarnings(*scene, "attribute-not-finite"), 2U);
 }
 
@@ -97,7 +97,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
 constexpr float kHuge = 3e38F;
 
-bool isSound(const Primitive& primitive) {
+bool isSound(const gltf::Primitive& primitive) {
     const auto finite = [](const auto& values) {
         return std::all_of(values.begin(), values.end(), [](const auto& value) {
             return std::all_of(value.begin(), value.end(), [](float x) { return std::isfinite(x); });
@@ -135,8 +135,8 @@ TEST(GltfRepair, NoValueSpreads) {
                 primitive["indices"] =
                     builder.addAccessor<std::uint8_t>({0, 1, 2, 0, 0, 0, 1, 1, 1, 2, 2, 2}, 1);
                 builder.addMesh(primitive);
-                const Result<Scene> scene = import(builder);
-                const Primitive& read = onlyPrimitive(scene);
+                const Result<gltf::Scene> scene = import(builder);
+                const gltf::Primitive& read = onlyPrimitive(scene);
                 EXPECT_TRUE(isSound(read)) << broken << "[" << place << "] = " << value;
                 // A value that a float can hold is no damage, but the sign of a tangent must be 1 or -1.
                 const bool isDamage = !std::isfinite(value);
@@ -155,14 +155,14 @@ TEST(GltfRepair, VectorsOfAnyLengthBecomeUnit) {
             builder.addAccessor<float>({length, length, 0, 0, 0, -length, length, length, length}, 3);
         primitive["attributes"]["TANGENT"] = builder.addAccessor<float>(
             {0, 0, length, length, length, 0, 0, -length, length, -length, 0, length}, 4);
-        const Result<Scene> scene = import(builder);
-        const Primitive& read = onlyPrimitive(scene);
+        const Result<gltf::Scene> scene = import(builder);
+        const gltf::Primitive& read = onlyPrimitive(scene);
         EXPECT_TRUE(scene->warnings.empty()) << length;
         EXPECT_FLOAT_EQ(read.normals.at(0)[0], std::sqrt(0.5F));
-        EXPECT_EQ(read.normals[1], (Float3{0, 0, -1}));
+        EXPECT_EQ(read.normals[1], (gltf::Float3{0, 0, -1}));
         EXPECT_FLOAT_EQ(read.normals[2][2], std::sqrt(1.0F / 3.0F));
-        EXPECT_EQ(read.tangents[0], (Float4{0, 0, 1, 1}));
-        EXPECT_EQ(read.tangents[1], (Float4{1, 0, 0, -1}));
+        EXPECT_EQ(read.tangents[0], (gltf::Float4{0, 0, 1, 1}));
+        EXPECT_EQ(read.tangents[1], (gltf::Float4{1, 0, 0, -1}));
     }
 }
 
@@ -175,7 +175,7 @@ TEST(GltfRepair, SubstitutesAreUnitAtEveryScale) {
             builder.addAccessor<float>({-size, -size, 0, size, -size, 0, 0, size, 0}, 3);
         primitive["attributes"]["NORMAL"] = builder.addAccessor<float>(std::vector<float>(9, kNan), 3);
         builder.addMesh(primitive);
-        EXPECT_EQ(onlyPrimitive(import(builder)).normals.at(0), (Float3{0, 0, 1})) << size;
+        EXPECT_EQ(onlyPrimitive(import(builder)).normals.at(0), (gltf::Float3{0, 0, 1})) << size;
     }
 }
 
@@ -192,9 +192,9 @@ TEST(GltfRepair, SparseValuesAreRepairedToo) {
         {"count", 3},
         {"indices", {{"bufferView", indexView}, {"componentType", 5123}}},
         {"values", {{"bufferView", valueView}}}};
-    const Result<Scene> scene = import(builder);
+    const Result<gltf::Scene> scene = import(builder);
     EXPECT_TRUE(isSound(onlyPrimitive(scene)));
-    EXPECT_EQ(onlyPrimitive(scene).normals.at(2), (Float3{0, 1, 0}));
+    EXPECT_EQ(onlyPrimitive(scene).normals.at(2), (gltf::Float3{0, 1, 0}));
     EXPECT_EQ(findWarning(*scene, "normal-invalid").message.substr(0, 2), "2 ");
 }
 
@@ -205,7 +205,7 @@ TEST(GltfRepair, TransformsThatOverflowAreRefused) {
         builder.addTriangle();
         builder.root["nodes"] = Json::array({Json::parse(node)});
         builder.root["nodes"].push_back(Json::parse(R"({"children": [0], "scale": [1e30, 1e30, 1e30]})"));
-        const Result<Scene> scene = import(builder);
+        const Result<gltf::Scene> scene = import(builder);
         return scene ? std::string("imported") : scene.error().id;
     };
     EXPECT_EQ(idOf(R"({"mesh": 0, "scale": [1e30, 1, 1]})"), "node-transform");
@@ -214,7 +214,7 @@ TEST(GltfRepair, TransformsThatOverflowAreRefused) {
     EXPECT_EQ(idOf(R"({"mesh": 0, "matrix": [1e39,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]})"), "json-range");
     EXPECT_EQ(idOf(R"({"mesh": 0, "scale": [1e-45, 1e-30, 0]})"), "imported");
     EXPECT_EQ(idOf(R"({"mesh": 0, "rotation": [1e38, 1e38, 1e38, 1e38]})"), "imported");
-    const Result<Scene> tooLarge =
+    const Result<gltf::Scene> tooLarge =
         importText(R"({"asset": {"version": "2.0"}, "nodes": [{"translation": [1e400, 0, 0]}]})");
     ASSERT_FALSE(tooLarge.ok());
     EXPECT_EQ(tooLarge.error().id, "json-syntax");

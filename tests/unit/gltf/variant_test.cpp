@@ -30,34 +30,34 @@ GltfBuilder withVariants() {
     return builder;
 }
 
-ImportOptions with(const std::string& variant) {
-    ImportOptions options;
+gltf::ImportOptions with(const std::string& variant) {
+    gltf::ImportOptions options;
     options.variant = variant;
     return options;
 }
 
-std::vector<int> materialsOf(const Scene& scene) {
+std::vector<int> materialsOf(const gltf::Scene& scene) {
     std::vector<int> materials;
-    for (const PrimitiveInputs& inputs : planningInputs(scene)) {
+    for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {
         materials.push_back(inputs.material);
     }
     return materials;
 }
 
 TEST(GltfVariants, DecideTheMaterialsOfPrimitives) {
-    const Result<Scene> day = import(withVariants(), with("Day"));
+    const Result<gltf::Scene> day = import(withVariants(), with("Day"));
     ASSERT_TRUE(day.ok()) << toString(day.error());
     EXPECT_EQ(materialsOf(*day), (std::vector<int>{1, 0, 1}));
     EXPECT_EQ(day->variant, "Day");
     // No primitive remains without a material.
     EXPECT_EQ(day->defaultMaterial, -1);
-    const Result<Scene> night = import(withVariants(), with("Night"));
+    const Result<gltf::Scene> night = import(withVariants(), with("Night"));
     ASSERT_TRUE(night.ok()) << toString(night.error());
     EXPECT_EQ(materialsOf(*night), (std::vector<int>{2, 2, 1}));
 }
 
 TEST(GltfVariants, WithoutOneTheDefaultsHold) {
-    const Result<Scene> scene = import(withVariants());
+    const Result<gltf::Scene> scene = import(withVariants());
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
     EXPECT_EQ(materialsOf(*scene), (std::vector<int>{0, 0, 3}));
     EXPECT_EQ(scene->defaultMaterial, 3);
@@ -67,7 +67,7 @@ TEST(GltfVariants, WithoutOneTheDefaultsHold) {
 }
 
 TEST(GltfVariants, AnUnknownNameListsThoseOfTheFile) {
-    const Result<Scene> scene = import(withVariants(), with("Nihgt"));
+    const Result<gltf::Scene> scene = import(withVariants(), with("Nihgt"));
     ASSERT_FALSE(scene.ok());
     EXPECT_EQ(scene.error().id, "variant-unknown");
     EXPECT_NE(scene.error().message.find("did you mean Night?"), std::string::npos);
@@ -75,7 +75,7 @@ TEST(GltfVariants, AnUnknownNameListsThoseOfTheFile) {
     EXPECT_TRUE(scene.error().where.ends_with("#/extensions/KHR_materials_variants/variants"));
     GltfBuilder without;
     without.addTriangle();
-    const Result<Scene> none = import(without, with("Day"));
+    const Result<gltf::Scene> none = import(without, with("Day"));
     ASSERT_FALSE(none.ok());
     EXPECT_EQ(none.error().id, "variant-unknown");
     EXPECT_NE(none.error().message.find("KHR_materials_variants"), std::string::npos);
@@ -86,7 +86,7 @@ TEST(GltfVariants, AreChecked) {
         GltfBuilder builder = withVariants();
         change(builder.root,
                builder.root["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]);
-        const Result<Scene> scene = import(builder, with("Day"));
+        const Result<gltf::Scene> scene = import(builder, with("Day"));
         return scene ? std::string("imported") : scene.error().id;
     };
     EXPECT_EQ(idAfter([](Json&, Json& mappings) { mappings["mappings"][0]["material"] = 3; }), "index-range");

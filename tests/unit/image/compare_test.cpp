@@ -14,15 +14,15 @@ LinearImage grey(std::uint32_t width, std::uint32_t height, float value) {
     return image;
 }
 
-ImageDifference compared(const LinearImage& image, const LinearImage& reference) {
-    Result<ImageDifference> difference = compareImages(image, reference, "a", "b");
+image::ImageDifference compared(const LinearImage& image, const LinearImage& reference) {
+    Result<image::ImageDifference> difference = image::compareImages(image, reference, "a", "b");
     EXPECT_TRUE(difference);
     return difference.value();
 }
 
 TEST(Compare, EqualImagesHaveNoError) {
     const LinearImage image = grey(3, 2, 0.5F);
-    const ImageDifference difference = compared(image, image);
+    const image::ImageDifference difference = compared(image, image);
     EXPECT_EQ(difference.absolute.value, 0.0);
     EXPECT_EQ(difference.relative.value, 0.0);
     EXPECT_EQ(difference.rmse, 0.0);
@@ -32,7 +32,7 @@ TEST(Compare, EqualImagesHaveNoError) {
 }
 
 TEST(Compare, OffsetGivesTheTextbookValues) {
-    const ImageDifference difference = compared(grey(4, 4, 0.75F), grey(4, 4, 0.5F));
+    const image::ImageDifference difference = compared(grey(4, 4, 0.75F), grey(4, 4, 0.5F));
     EXPECT_DOUBLE_EQ(difference.mean, 0.25);
     EXPECT_DOUBLE_EQ(difference.rmse, 0.25);
     EXPECT_NEAR(difference.relMse, 0.0625 / 0.26, 1e-14);
@@ -41,7 +41,7 @@ TEST(Compare, OffsetGivesTheTextbookValues) {
 }
 
 TEST(Compare, PeakOfPsnrFollowsABrightReference) {
-    const ImageDifference difference = compared(grey(1, 1, 9.0F), grey(1, 1, 10.0F));
+    const image::ImageDifference difference = compared(grey(1, 1, 9.0F), grey(1, 1, 10.0F));
     EXPECT_NEAR(difference.psnr, 20.0, 1e-12);
 }
 
@@ -51,7 +51,7 @@ TEST(Compare, FindsWhereTheLargestErrorsAre) {
     image.pixels[7][1] = 0.5F;  // (2, 1), the largest relative error
     image.pixels[13][2] = 102.0F;
     reference.pixels[13][2] = 100.0F;  // (3, 2), the largest absolute error
-    const ImageDifference difference = compared(image, reference);
+    const image::ImageDifference difference = compared(image, reference);
     EXPECT_DOUBLE_EQ(difference.absolute.value, 2.0);
     EXPECT_EQ(difference.absolute.x, 3U);
     EXPECT_EQ(difference.absolute.y, 2U);
@@ -68,7 +68,7 @@ TEST(Compare, CountsWhatIsNotFiniteAndLeavesItOut) {
     LinearImage reference = grey(2, 2, 0.5F);
     image.pixels[0][0] = std::numeric_limits<float>::quiet_NaN();
     reference.pixels[1][2] = std::numeric_limits<float>::infinity();
-    const ImageDifference difference = compared(image, reference);
+    const image::ImageDifference difference = compared(image, reference);
     EXPECT_EQ(difference.nonFinite, 1U);
     EXPECT_EQ(difference.referenceNonFinite, 1U);
     EXPECT_EQ(difference.pixels, 2U);
@@ -82,7 +82,8 @@ TEST(Compare, AlphaIsNoError) {
 }
 
 TEST(Compare, RefusesOtherSizes) {
-    const Result<ImageDifference> difference = compareImages(grey(2, 3, 0), grey(3, 2, 0), "a.png", "b.png");
+    const Result<image::ImageDifference> difference =
+        image::compareImages(grey(2, 3, 0), grey(3, 2, 0), "a.png", "b.png");
     ASSERT_FALSE(difference);
     EXPECT_EQ(difference.error().id, "image-mismatch");
     EXPECT_EQ(difference.error().where, "a.png");
@@ -97,7 +98,7 @@ TEST(DifferenceMap, IsBlackWhereEqualBrighterWithErrorGreenWhereNotFinite) {
     image.pixels[2][0] = 0.1F;
     image.pixels[3][0] = 5.0F;
     image.pixels[4][0] = std::numeric_limits<float>::quiet_NaN();
-    const DisplayImage map = differenceMap(image, reference);
+    const image::DisplayImage map = image::differenceMap(image, reference);
     const auto brightness = [&](std::size_t i) {
         return map.pixels[i][0] + map.pixels[i][1] + map.pixels[i][2];
     };

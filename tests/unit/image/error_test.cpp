@@ -15,7 +15,7 @@ LinearImage constant(float value, std::uint32_t width = 40, std::uint32_t height
 }
 
 TEST(ImageErrors, AreNothingForTheReferenceItself) {
-    const ImageErrors errors = measureErrors(constant(0.5F), constant(0.5F), 1.0);
+    const image::ImageErrors errors = image::measureErrors(constant(0.5F), constant(0.5F), 1.0);
     EXPECT_EQ(errors.relMse, 0.0);
     EXPECT_EQ(errors.rmse, 0.0);
     EXPECT_EQ(errors.p999, 0.0);
@@ -27,7 +27,7 @@ TEST(ImageErrors, AreNothingForTheReferenceItself) {
 
 TEST(ImageErrors, AreThoseOfTheirFormulas) {
     // Exposed by two stops, this compares 0.4 with 0.8.
-    const ImageErrors errors = measureErrors(constant(0.1F), constant(0.2F), 2.0);
+    const image::ImageErrors errors = image::measureErrors(constant(0.1F), constant(0.2F), 2.0);
     EXPECT_NEAR(errors.rmse, 0.4, 1e-6);
     EXPECT_NEAR(errors.relMse, 0.16 / (0.64 + 0.01), 1e-6);
     EXPECT_NEAR(errors.trimmed, errors.relMse, 1e-9);
@@ -41,18 +41,18 @@ TEST(ImageErrors, OfInliersLeaveOutTheWorstPixels) {
     const LinearImage reference = constant(0.5F);
     LinearImage image = reference;
     image.pixels[7] = {1000.0F, 1000.0F, 1000.0F, 1.0F};  // one of 1000
-    const ImageErrors errors = measureErrors(image, reference, 0.0);
+    const image::ImageErrors errors = image::measureErrors(image, reference, 0.0);
     EXPECT_GT(errors.relMse, 1000.0);
     EXPECT_EQ(errors.trimmed, 0.0);
     EXPECT_EQ(errors.p999, 0.0);
     image.pixels[8] = image.pixels[7];
-    EXPECT_GT(measureErrors(image, reference, 0.0).p999, 100.0);
+    EXPECT_GT(image::measureErrors(image, reference, 0.0).p999, 100.0);
 }
 
 TEST(MeanImage, SaysHowCertainItIs) {
     std::mt19937_64 random(3);
     std::normal_distribution<float> noise(2.0F, 0.5F);
-    MeanImage sum(100, 100);
+    image::MeanImage sum(100, 100);
     constexpr int kBlocks = 16;
     for (int block = 0; block < kBlocks; ++block) {
         LinearImage image{100, 100, {}};
@@ -68,14 +68,14 @@ TEST(MeanImage, SaysHowCertainItIs) {
     }
     EXPECT_NEAR(squares / 1e4, 0.25 / kBlocks, 0.03 * 0.25 / kBlocks);
     // The stated errors must match those that the mean really has.
-    const ImageErrors stated = noiseOf(sum.mean(), error, 0.0);
-    const ImageErrors real = measureErrors(sum.mean(), constant(2.0F, 100, 100), 0.0);
+    const image::ImageErrors stated = image::noiseOf(sum.mean(), error, 0.0);
+    const image::ImageErrors real = image::measureErrors(sum.mean(), constant(2.0F, 100, 100), 0.0);
     EXPECT_NEAR(real.relMse / stated.relMse, 1.0, 0.05);
 }
 
 TEST(MeanImage, GoesOnWhereItWasLeft) {
-    MeanImage whole(2, 1);
-    MeanImage part(2, 1);
+    image::MeanImage whole(2, 1);
+    image::MeanImage part(2, 1);
     for (int i = 0; i < 6; ++i) {
         const LinearImage block = constant(static_cast<float>(i * i), 2, 1);
         whole.add(block);
@@ -83,7 +83,7 @@ TEST(MeanImage, GoesOnWhereItWasLeft) {
             part.add(block);
         }
     }
-    MeanImage restored = MeanImage::restore(part.mean(), part.standardError(), part.blocks());
+    image::MeanImage restored = image::MeanImage::restore(part.mean(), part.standardError(), part.blocks());
     restored.add(constant(16.0F, 2, 1));
     restored.add(constant(25.0F, 2, 1));
     EXPECT_EQ(restored.blocks(), whole.blocks());

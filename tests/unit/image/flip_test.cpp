@@ -13,7 +13,7 @@
 namespace glint::testing {
 namespace {
 
-LinearImage constant(const Rgb& color, std::uint32_t width = 24, std::uint32_t height = 16) {
+LinearImage constant(const image::Rgb& color, std::uint32_t width = 24, std::uint32_t height = 16) {
     LinearImage image{width, height, {}};
     image.pixels.assign(std::size_t{width} * height, {color[0], color[1], color[2], 1.0F});
     return image;
@@ -76,22 +76,22 @@ LinearImage blurred(const LinearImage& image, int radius) {
 }
 
 double mean(const LinearImage& image, const LinearImage& reference) {
-    return flipMean(flipMap(image, reference));
+    return image::flipMean(image::flipMap(image, reference));
 }
 
 TEST(Flip, EqualPicturesDoNotDiffer) {
     const LinearImage image = picture(40, 30);
-    for (const float value : flipMap(image, image)) {
+    for (const float value : image::flipMap(image, image)) {
         ASSERT_EQ(value, 0.0F);
     }
 }
 
 TEST(Flip, TakesPicturesOfAnySize) {
-    EXPECT_TRUE(flipMap({0, 0, {}}, {0, 0, {}}).empty());
-    EXPECT_EQ(flipMean({}), 0.0);
+    EXPECT_TRUE(image::flipMap({0, 0, {}}, {0, 0, {}}).empty());
+    EXPECT_EQ(image::flipMean({}), 0.0);
     for (const auto& [width, height] : {std::pair{1U, 1U}, {1U, 50U}, {50U, 1U}, {3U, 2U}}) {
-        const std::vector<float> map =
-            flipMap(constant({0.0F, 0.0F, 1.0F}, width, height), constant({0.0F, 1.0F, 0.0F}, width, height));
+        const std::vector<float> map = image::flipMap(constant({0.0F, 0.0F, 1.0F}, width, height),
+                                                      constant({0.0F, 1.0F, 0.0F}, width, height));
         ASSERT_EQ(map.size(), std::size_t{width} * height);
         for (const float value : map) {
             EXPECT_NEAR(value, 1.0F, 1e-6F);
@@ -103,7 +103,7 @@ TEST(Flip, TakesPicturesOfAnySize) {
 // the range. The values were computed without this code, with the matrix of ITU-R BT.709.
 TEST(Flip, ConstantPicturesHaveTheDifferenceOfTheirColors) {
     struct Row {
-        Rgb a, b;
+        image::Rgb a, b;
         double expected;
     };
     const Row rows[] = {
@@ -116,7 +116,7 @@ TEST(Flip, ConstantPicturesHaveTheDifferenceOfTheirColors) {
         {{0.18F, 0.18F, 0.18F}, {0.0F, 0.0F, 0.0F}, 0.883404773},
     };
     for (const Row& row : rows) {
-        for (const float value : flipMap(constant(row.a), constant(row.b))) {
+        for (const float value : image::flipMap(constant(row.a), constant(row.b))) {
             ASSERT_NEAR(value, row.expected, 1e-6) << row.a[0] << ' ' << row.a[1] << ' ' << row.a[2];
         }
     }
@@ -124,10 +124,10 @@ TEST(Flip, ConstantPicturesHaveTheDifferenceOfTheirColors) {
 
 TEST(Flip, AgreesWithThePlainEvaluation) {
     const LinearImage reference = picture(37, 29);
-    for (const double perDegree : {20.0, kFlipPixelsPerDegree}) {
+    for (const double perDegree : {20.0, image::kFlipPixelsPerDegree}) {
         for (const LinearImage& image :
              {withNoise(reference, 0.2F), blurred(reference, 2), constant({0.3F, 0.3F, 0.3F}, 37, 29)}) {
-            const std::vector<float> map = flipMap(image, reference, perDegree);
+            const std::vector<float> map = image::flipMap(image, reference, perDegree);
             const std::vector<double> plain = plainFlip(image, reference, perDegree);
             for (std::size_t i = 0; i < map.size(); ++i) {
                 ASSERT_NEAR(map[i], plain[i], 1e-4) << "pixel " << i << " at " << perDegree;
@@ -139,8 +139,8 @@ TEST(Flip, AgreesWithThePlainEvaluation) {
 TEST(Flip, IsSymmetricAndWithinItsRange) {
     const LinearImage reference = picture(40, 30);
     const LinearImage image = withNoise(reference, 0.5F);
-    const std::vector<float> map = flipMap(image, reference);
-    EXPECT_EQ(map, flipMap(reference, image));
+    const std::vector<float> map = image::flipMap(image, reference);
+    EXPECT_EQ(map, image::flipMap(reference, image));
     for (const float value : map) {
         ASSERT_GE(value, 0.0F);
         ASSERT_LE(value, 1.0F);
@@ -169,7 +169,7 @@ TEST(Flip, NearerPixelsAreSeenBetter) {
     LinearImage image = reference;
     image.pixels[20 * 41 + 20] = {1.0F, 1.0F, 1.0F, 1.0F};
     const auto largest = [&](double perDegree) {
-        const std::vector<float> map = flipMap(image, reference, perDegree);
+        const std::vector<float> map = image::flipMap(image, reference, perDegree);
         return *std::max_element(map.begin(), map.end());
     };
     EXPECT_GT(largest(20.0), largest(40.0));

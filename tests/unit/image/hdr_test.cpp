@@ -39,7 +39,8 @@ INSTANTIATE_TEST_SUITE_P(Encodings, Hdr, ::testing::Values(HdrEncoding::Flat, Hd
 
 TEST_P(Hdr, ReadsWhatWasWritten) {
     const auto pixels = exactPixels();
-    const Result<LinearImage> image = decodeHdr(encodeHdr(kWidth, kHeight, pixels, GetParam()), "a.hdr");
+    const Result<LinearImage> image =
+        image::decodeHdr(encodeHdr(kWidth, kHeight, pixels, GetParam()), "a.hdr");
     ASSERT_TRUE(image) << toString(image.error());
     ASSERT_EQ(image->width, 150U);
     ASSERT_EQ(image->height, 5U);
@@ -57,7 +58,7 @@ TEST_P(Hdr, ReadsWhatWasWritten) {
 TEST_P(Hdr, RefusesEveryTruncation) {
     const std::vector<std::uint8_t> whole = encodeHdr(kWidth, kHeight, exactPixels(), GetParam());
     for (std::size_t size = 0; size < whole.size(); ++size) {
-        const Result<LinearImage> image = decodeHdr({whole.data(), size}, "a.hdr");
+        const Result<LinearImage> image = image::decodeHdr({whole.data(), size}, "a.hdr");
         ASSERT_FALSE(image) << size << " of " << whole.size();
         EXPECT_EQ(image.error().where, "a.hdr");
     }
@@ -71,7 +72,7 @@ TEST_P(Hdr, SurvivesBrokenBytes) {
         for (const int value : {0, 127, 255}) {
             std::vector<std::uint8_t> broken = whole;
             broken[i] = static_cast<std::uint8_t>(value);
-            const Result<LinearImage> image = decodeHdr(broken, "a.hdr");
+            const Result<LinearImage> image = image::decodeHdr(broken, "a.hdr");
             refused += image ? 0 : 1;
             if (image) {
                 ASSERT_EQ(image->pixels.size(), std::size_t{image->width} * image->height);
@@ -84,7 +85,7 @@ TEST_P(Hdr, SurvivesBrokenBytes) {
 TEST(HdrHeader, RefusesOtherFilesAndSizesThatTheFileCanNotHold) {
     const auto errorOf = [](const std::string& text) {
         const Result<LinearImage> image =
-            decodeHdr({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "a.hdr");
+            image::decodeHdr({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "a.hdr");
         return image ? std::string() : image.error().id + ": " + image.error().message;
     };
     EXPECT_NE(errorOf("").find("image-format"), std::string::npos);
@@ -96,13 +97,13 @@ TEST(HdrHeader, RefusesOtherFilesAndSizesThatTheFileCanNotHold) {
 }
 
 TEST(RadianceFiles, AreKnownByTheirExtension) {
-    EXPECT_EQ(*radianceFormat("a.hdr"), RadianceFormat::Hdr);
-    EXPECT_EQ(*radianceFormat("folder.png/a.EXR"), RadianceFormat::Exr);
+    EXPECT_EQ(*image::radianceFormat("a.hdr"), image::RadianceFormat::Hdr);
+    EXPECT_EQ(*image::radianceFormat("folder.png/a.EXR"), image::RadianceFormat::Exr);
     for (const char* name : {"a.png", "a", "hdr"}) {
-        ASSERT_FALSE(radianceFormat(name)) << name;
-        EXPECT_EQ(radianceFormat(name).error().id, "image-extension");
+        ASSERT_FALSE(image::radianceFormat(name)) << name;
+        EXPECT_EQ(image::radianceFormat(name).error().id, "image-extension");
     }
-    EXPECT_EQ(readRadiance("none.hdr").error().id, "file-open");
+    EXPECT_EQ(image::readRadiance("none.hdr").error().id, "file-open");
 }
 
 }  // namespace

@@ -49,8 +49,8 @@ LinearImage ramp(std::uint32_t width, std::uint32_t height) {
 
 TEST_F(ImageFile, ExrKeepsEveryBit) {
     const LinearImage image = ramp(13, 7);
-    ASSERT_TRUE(writeImage(path("a.exr"), image, 3.0));
-    const Result<LinearImage> read = readImage(path("a.exr"));
+    ASSERT_TRUE(image::writeImage(path("a.exr"), image, 3.0));
+    const Result<LinearImage> read = image::readImage(path("a.exr"));
     ASSERT_TRUE(read) << toString(read.error());
     EXPECT_EQ(read->width, 13U);
     EXPECT_EQ(read->height, 7U);
@@ -61,46 +61,46 @@ TEST_F(ImageFile, ExrKeepsNanAndInfinity) {
     LinearImage image{2, 1, {}};
     image.pixels = {{std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F},
                     {std::numeric_limits<float>::infinity(), 0.0F, 0.0F, 1.0F}};
-    ASSERT_TRUE(writeImage(path("a.exr"), image, 0.0));
-    const Result<LinearImage> read = readImage(path("a.exr"));
+    ASSERT_TRUE(image::writeImage(path("a.exr"), image, 0.0));
+    const Result<LinearImage> read = image::readImage(path("a.exr"));
     ASSERT_TRUE(read);
     EXPECT_TRUE(std::isnan(read->pixels[0][0]));
     EXPECT_TRUE(std::isinf(read->pixels[1][0]));
 }
 
 TEST_F(ImageFile, PngRoundTripsDisplayColours) {
-    DisplayImage image{16, 16, {}};
+    image::DisplayImage image{16, 16, {}};
     for (int i = 0; i < 256; ++i) {
         const auto level = static_cast<std::uint8_t>(i);
         image.pixels.push_back({level, static_cast<std::uint8_t>(255 - i), 7});
     }
     ASSERT_TRUE(writeImage(path("a.png"), image));
-    const Result<LinearImage> read = readImage(path("a.png"));
+    const Result<LinearImage> read = image::readImage(path("a.png"));
     ASSERT_TRUE(read) << toString(read.error());
     for (std::size_t i = 0; i < 256; ++i) {
-        EXPECT_NEAR(linearToSrgb(read->pixels[i][0]) * 255.0F, image.pixels[i][0], 0.01F);
-        EXPECT_NEAR(linearToSrgb(read->pixels[i][1]) * 255.0F, image.pixels[i][1], 0.01F);
+        EXPECT_NEAR(image::linearToSrgb(read->pixels[i][0]) * 255.0F, image.pixels[i][0], 0.01F);
+        EXPECT_NEAR(image::linearToSrgb(read->pixels[i][1]) * 255.0F, image.pixels[i][1], 0.01F);
         EXPECT_EQ(read->pixels[i][3], 1.0F);
     }
 }
 
 TEST_F(ImageFile, PngIsToneMapped) {
     LinearImage image{1, 1, {{0.5F, 0.3F, 0.2F, 1.0F}}};
-    ASSERT_TRUE(writeImage(path("a.PNG"), image, -1.0));
-    const Result<LinearImage> read = readImage(path("a.PNG"));
+    ASSERT_TRUE(image::writeImage(path("a.PNG"), image, -1.0));
+    const Result<LinearImage> read = image::readImage(path("a.PNG"));
     ASSERT_TRUE(read);
-    const Rgb expected = toneMapNeutral({0.25F, 0.15F, 0.1F});
+    const image::Rgb expected = image::toneMapNeutral({0.25F, 0.15F, 0.1F});
     EXPECT_NEAR(read->pixels[0][0], expected[0], 4e-3F);
     EXPECT_NEAR(read->pixels[0][2], expected[2], 4e-3F);
 }
 
 TEST_F(ImageFile, WritesTheSameBytesEveryTime) {
     for (const char* name : {"a.png", "a.exr"}) {
-        ASSERT_TRUE(writeImage(path(name), ramp(33, 17), 0.0));
-        const Result<Bytes> first = readFile(path(name));
+        ASSERT_TRUE(image::writeImage(path(name), ramp(33, 17), 0.0));
+        const Result<base::Bytes> first = base::readFile(path(name));
         fs::remove(path(name));
-        ASSERT_TRUE(writeImage(path(name), ramp(33, 17), 0.0));
-        const Result<Bytes> second = readFile(path(name));
+        ASSERT_TRUE(image::writeImage(path(name), ramp(33, 17), 0.0));
+        const Result<base::Bytes> second = base::readFile(path(name));
         ASSERT_TRUE(first && second);
         EXPECT_EQ(*first, *second) << name;
     }
@@ -108,19 +108,20 @@ TEST_F(ImageFile, WritesTheSameBytesEveryTime) {
 
 TEST_F(ImageFile, RefusesUnknownExtensions) {
     for (const char* name : {"a.jpg", "a", "a.png.bak"}) {
-        const Status status = writeImage(path(name), ramp(2, 2), 0.0);
+        const Status status = image::writeImage(path(name), ramp(2, 2), 0.0);
         ASSERT_FALSE(status) << name;
         EXPECT_EQ(status.error().id, "image-extension");
         EXPECT_FALSE(fs::exists(path(name)));
     }
-    EXPECT_EQ(writeImage(path("a.exr"), DisplayImage{1, 1, {{1, 2, 3}}}).error().id, "image-extension");
+    EXPECT_EQ(writeImage(path("a.exr"), image::DisplayImage{1, 1, {{1, 2, 3}}}).error().id,
+              "image-extension");
 }
 
 TEST_F(ImageFile, RefusesMissingAndBrokenFiles) {
-    EXPECT_EQ(readImage(path("none.png")).error().id, "file-open");
+    EXPECT_EQ(image::readImage(path("none.png")).error().id, "file-open");
     for (const char* name : {"a.png", "a.exr"}) {
-        ASSERT_TRUE(writeFile(path(name), std::string_view("not an image at all")));
-        const Result<LinearImage> read = readImage(path(name));
+        ASSERT_TRUE(base::writeFile(path(name), std::string_view("not an image at all")));
+        const Result<LinearImage> read = image::readImage(path(name));
         ASSERT_FALSE(read) << name;
         EXPECT_EQ(read.error().id, "image-format");
         EXPECT_EQ(read.error().where, path(name).string());
@@ -130,14 +131,14 @@ TEST_F(ImageFile, RefusesMissingAndBrokenFiles) {
 // A file that is cut anywhere is refused or, if only trailing bytes are missing, read. It never crashes.
 TEST_F(ImageFile, SurvivesTruncation) {
     for (const char* name : {"a.png", "a.exr"}) {
-        ASSERT_TRUE(writeImage(path(name), ramp(9, 9), 0.0));
-        const Result<Bytes> whole = readFile(path(name));
+        ASSERT_TRUE(image::writeImage(path(name), ramp(9, 9), 0.0));
+        const Result<base::Bytes> whole = base::readFile(path(name));
         ASSERT_TRUE(whole);
         int refused = 0;
         for (std::size_t size = 0; size < whole->size(); size += 7) {
-            const Bytes part(whole->begin(), whole->begin() + static_cast<std::ptrdiff_t>(size));
-            ASSERT_TRUE(writeFile(path(name), part));
-            refused += readImage(path(name)) ? 0 : 1;
+            const base::Bytes part(whole->begin(), whole->begin() + static_cast<std::ptrdiff_t>(size));
+            ASSERT_TRUE(base::writeFile(path(name), part));
+            refused += image::readImage(path(name)) ? 0 : 1;
         }
         EXPECT_GT(refused, 10) << name;
     }
@@ -152,7 +153,7 @@ std::string little(std::uint32_t word) {
 TEST(PngBounds, ChunksLieInTheFile) {
     const auto excessOf = [](const std::string& chunks) {
         const std::string header("\x89PNG\r\n\x1A\n\0\0\0\x0DIHDR\0\0\0\2\0\0\0\2\x08\6\0\0\0\0\0\0\0", 33);
-        return findPngExcess(asBytes(header + chunks), 2, 2);
+        return base::findPngExcess(base::asBytes(header + chunks), 2, 2);
     };
     // The header of a chunk of 651 MB, with which the file ends, and a part of its data.
     EXPECT_NE(excessOf("\x26\xD0\x04\x49IDAT").find("651166793 bytes"), std::string::npos);
@@ -176,7 +177,7 @@ TEST(ExrBounds, BlocksOfPixelsAreSmall) {
         return attribute("channels", "chlist", list + '\0');
     };
     const auto excessOf = [&](const std::string& attributes) {
-        return findExrExcess(asBytes(little(20000630) + little(2) + attributes + '\0'));
+        return image::findExrExcess(base::asBytes(little(20000630) + little(2) + attributes + '\0'));
     };
     const auto tiles = [&](std::uint32_t width, std::uint32_t height) {
         return attribute("tiles", "tiledesc", little(width) + little(height) + '\0');
@@ -199,12 +200,12 @@ TEST(ExrBounds, BlocksOfPixelsAreSmall) {
 }
 
 TEST(ImageSize, HasLimits) {
-    EXPECT_TRUE(checkImageSize(1, 1, ""));
-    EXPECT_TRUE(checkImageSize(16384, 4096, ""));
-    EXPECT_FALSE(checkImageSize(0, 4, ""));
-    EXPECT_FALSE(checkImageSize(16385, 1, ""));
-    EXPECT_FALSE(checkImageSize(16384, 4097, ""));
-    EXPECT_FALSE(checkImageSize(std::int64_t{1} << 40, std::int64_t{1} << 40, ""));
+    EXPECT_TRUE(image::checkImageSize(1, 1, ""));
+    EXPECT_TRUE(image::checkImageSize(16384, 4096, ""));
+    EXPECT_FALSE(image::checkImageSize(0, 4, ""));
+    EXPECT_FALSE(image::checkImageSize(16385, 1, ""));
+    EXPECT_FALSE(image::checkImageSize(16384, 4097, ""));
+    EXPECT_FALSE(image::checkImageSize(std::int64_t{1} << 40, std::int64_t{1} << 40, ""));
 }
 
 }  // namespace

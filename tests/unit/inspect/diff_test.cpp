@@ -10,41 +10,41 @@ namespace glint::inspect {
 namespace {
 
 using Key = std::vector<std::string>;
-using Kind = ShaderChangeKind;
+using Kind = inspect::ShaderChangeKind;
 
 constexpr package::ModuleKey kShade{package::ModuleRole::ShadeCase, 0, package::kTracerRayQuery};
 
-DiffCase makeCase(const std::string& name, const std::set<Key>& keys, std::uint64_t code) {
-    DiffCase shader{name, keys};
+inspect::DiffCase makeCase(const std::string& name, const std::set<Key>& keys, std::uint64_t code) {
+    inspect::DiffCase shader{name, keys};
     shader.modules[kShade] = {name + ".spv", code, {}};
     return shader;
 }
 
-DiffPackage makePackage(std::map<int, DiffCase> cases) {
-    DiffPackage package;
+inspect::DiffPackage makePackage(std::map<int, inspect::DiffCase> cases) {
+    inspect::DiffPackage package;
     package.scenes = {"room"};
     package.cases = std::move(cases);
     return package;
 }
 
-ShaderChange only(const PackageDiff& diff) {
+inspect::ShaderChange only(const inspect::PackageDiff& diff) {
     EXPECT_EQ(diff.shaders.size(), 1U);
-    return diff.shaders.empty() ? ShaderChange{} : diff.shaders.front();
+    return diff.shaders.empty() ? inspect::ShaderChange{} : diff.shaders.front();
 }
 
 TEST(DiffCompare, OneCaseWithOneOther) {
-    const DiffPackage before = makePackage({{0, makeCase("A", {{"a"}, {"b"}}, 1)}});
+    const inspect::DiffPackage before = makePackage({{0, makeCase("A", {{"a"}, {"b"}}, 1)}});
     EXPECT_TRUE(comparePackages(before, before).isEmpty());
 
-    const DiffPackage moved = makePackage({{2, makeCase("B", {{"a"}, {"b"}}, 1)}});
+    const inspect::DiffPackage moved = makePackage({{2, makeCase("B", {{"a"}, {"b"}}, 1)}});
     EXPECT_EQ(only(comparePackages(before, moved)).kind, Kind::Moved);
     EXPECT_EQ(comparePackages(before, moved).sameModules, 1U);
 
-    const DiffPackage renamed = makePackage({{0, makeCase("B", {{"a"}, {"b"}}, 1)}});
+    const inspect::DiffPackage renamed = makePackage({{0, makeCase("B", {{"a"}, {"b"}}, 1)}});
     EXPECT_EQ(only(comparePackages(before, renamed)).kind, Kind::Renamed);
 
-    const DiffPackage grown = makePackage({{0, makeCase("A", {{"b"}, {"c"}}, 2)}});
-    const PackageDiff diff = comparePackages(before, grown);
+    const inspect::DiffPackage grown = makePackage({{0, makeCase("A", {{"b"}, {"c"}}, 2)}});
+    const inspect::PackageDiff diff = comparePackages(before, grown);
     EXPECT_EQ(only(diff).kind, Kind::Keys);
     EXPECT_EQ(only(diff).keysAdded, std::vector<Key>{{"c"}});
     EXPECT_EQ(only(diff).keysRemoved, std::vector<Key>{{"a"}});
@@ -52,20 +52,20 @@ TEST(DiffCompare, OneCaseWithOneOther) {
     EXPECT_EQ(diff.modules[0].before->hash, 1U);
     EXPECT_EQ(diff.modules[0].after->hash, 2U);
 
-    const DiffPackage code = makePackage({{0, makeCase("A", {{"a"}, {"b"}}, 9)}});
+    const inspect::DiffPackage code = makePackage({{0, makeCase("A", {{"a"}, {"b"}}, 9)}});
     EXPECT_TRUE(comparePackages(before, code).shaders.empty());
     EXPECT_EQ(comparePackages(before, code).modules.size(), 1U);
 }
 
 TEST(DiffCompare, SeveralCasesWithSeveral) {
-    const DiffPackage two =
+    const inspect::DiffPackage two =
         makePackage({{0, makeCase("A", {{"a"}, {"b"}}, 1)}, {1, makeCase("C", {{"c"}, {"d"}}, 2)}});
-    const DiffPackage one = makePackage({{0, makeCase("All", {{"a"}, {"b"}, {"c"}, {"d"}}, 3)}});
+    const inspect::DiffPackage one = makePackage({{0, makeCase("All", {{"a"}, {"b"}, {"c"}, {"d"}}, 3)}});
     EXPECT_EQ(only(comparePackages(two, one)).kind, Kind::Merged);
     EXPECT_EQ(only(comparePackages(one, two)).kind, Kind::Split);
-    const DiffPackage crossed =
+    const inspect::DiffPackage crossed =
         makePackage({{1, makeCase("A", {{"a"}, {"c"}}, 1)}, {4, makeCase("C", {{"b"}, {"d"}}, 2)}});
-    const PackageDiff diff = comparePackages(two, crossed);
+    const inspect::PackageDiff diff = comparePackages(two, crossed);
     EXPECT_EQ(only(diff).kind, Kind::Regrouped);
     EXPECT_EQ(only(diff).before, (std::vector<int>{0, 1}));
     EXPECT_EQ(only(diff).after, (std::vector<int>{1, 4}));
@@ -78,12 +78,12 @@ TEST(DiffCompare, SeveralCasesWithSeveral) {
 
 // A chain of common keys is one group. Cases without common keys are added or removed.
 TEST(DiffCompare, GroupsAreWhatKeysConnect) {
-    const DiffPackage before = makePackage({{0, makeCase("A", {{"a"}}, 1)},
-                                            {1, makeCase("B", {{"b"}, {"c"}}, 2)},
-                                            {2, makeCase("X", {{"x"}}, 3)}});
-    const DiffPackage after = makePackage(
+    const inspect::DiffPackage before = makePackage({{0, makeCase("A", {{"a"}}, 1)},
+                                                     {1, makeCase("B", {{"b"}, {"c"}}, 2)},
+                                                     {2, makeCase("X", {{"x"}}, 3)}});
+    const inspect::DiffPackage after = makePackage(
         {{0, makeCase("A", {{"a"}, {"b"}}, 1)}, {1, makeCase("B", {{"c"}}, 2)}, {7, makeCase("Y", {{}}, 4)}});
-    const PackageDiff diff = comparePackages(before, after);
+    const inspect::PackageDiff diff = comparePackages(before, after);
     ASSERT_EQ(diff.shaders.size(), 3U);
     EXPECT_EQ(diff.shaders[0].kind, Kind::Added);
     EXPECT_EQ(diff.shaders[0].after, std::vector<int>{7});
@@ -93,12 +93,12 @@ TEST(DiffCompare, GroupsAreWhatKeysConnect) {
 }
 
 TEST(DiffCompare, MaterialsAreKnownByNameAndSceneWhereThereAreSeveral) {
-    DiffPackage before = makePackage({});
+    inspect::DiffPackage before = makePackage({});
     before.materials = {{{"room", "Stone", 0}, {0}}, {{"room", "Stone", 1}, {1}}};
-    DiffPackage after = before;
+    inspect::DiffPackage after = before;
     after.scenes = {"hall"};
     after.materials = {{{"hall", "Stone", 0}, {0}}, {{"hall", "Stone", 1}, {0, 1}}};
-    const PackageDiff diff = comparePackages(before, after);
+    const inspect::PackageDiff diff = comparePackages(before, after);
     EXPECT_EQ(diff.sameMaterials, 1U);
     ASSERT_EQ(diff.materials.size(), 1U);
     EXPECT_EQ(diff.materials[0].material.sameNamed, 1);

@@ -16,9 +16,9 @@ namespace {
 using namespace glint;
 
 // Glint's own declarations with one more.
-Result<MaterialModel> modelWith(const std::string& text) {
-    std::vector<DeclarationFile> files;
-    for (const BuiltinFile& file : declarationFiles()) {
+Result<materials::MaterialModel> modelWith(const std::string& text) {
+    std::vector<materials::DeclarationFile> files;
+    for (const base::BuiltinFile& file : materials::declarationFiles()) {
         files.push_back({file.name, file.text});
     }
     files.push_back({"materials/wet/wet.json", text});
@@ -26,7 +26,7 @@ Result<MaterialModel> modelWith(const std::string& text) {
 }
 
 std::string refusal(const std::string& text) {
-    const Result<MaterialModel> model = modelWith(text);
+    const Result<materials::MaterialModel> model = modelWith(text);
     EXPECT_FALSE(model.ok()) << text;
     if (model) {
         return {};
@@ -36,62 +36,64 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(Declarations, OfGlintAreComplete) {
-    const MaterialModel& model = builtinMaterialModel();
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
     EXPECT_EQ(model.features.size(), 43U);
     EXPECT_EQ(model.order.size(), model.features.size());
     std::set<std::string> shortNames;
-    for (const Feature& feature : model.features) {
+    for (const materials::Feature& feature : model.features) {
         EXPECT_FALSE(feature.gltf.empty()) << feature.name;
         EXPECT_TRUE(shortNames.insert(feature.shortName).second) << feature.shortName;
-        EXPECT_TRUE(!feature.neutral.empty() || feature.stage == Stage::Base || feature.texture >= 0)
+        EXPECT_TRUE(!feature.neutral.empty() || feature.stage == materials::Stage::Base ||
+                    feature.texture >= 0)
             << feature.name;
     }
-    for (const MaterialTexture& texture : model.textures) {
+    for (const materials::MaterialTexture& texture : model.textures) {
         EXPECT_FALSE(texture.places.empty()) << texture.name;
         EXPECT_EQ(model.features[static_cast<std::size_t>(texture.feature)].name, texture.name);
     }
 }
 
 TEST(Declarations, DoNotDependOnTheOrderOfFiles) {
-    std::vector<DeclarationFile> files;
-    for (const BuiltinFile& file : declarationFiles()) {
+    std::vector<materials::DeclarationFile> files;
+    for (const base::BuiltinFile& file : materials::declarationFiles()) {
         files.push_back({file.name, file.text});
     }
     std::ranges::reverse(files);
-    const Result<MaterialModel> model = readDeclarations(files);
+    const Result<materials::MaterialModel> model = readDeclarations(files);
     ASSERT_TRUE(model.ok()) << toString(model.error());
-    EXPECT_EQ(model->featureDefines(), builtinMaterialModel().featureDefines());
-    EXPECT_EQ(model->order, builtinMaterialModel().order);
+    EXPECT_EQ(model->featureDefines(), materials::builtinMaterialModel().featureDefines());
+    EXPECT_EQ(model->order, materials::builtinMaterialModel().order);
     for (std::size_t i = 0; i < model->parameters.size(); ++i) {
-        EXPECT_EQ(model->parameters[i].name, builtinMaterialModel().parameters[i].name);
+        EXPECT_EQ(model->parameters[i].name, materials::builtinMaterialModel().parameters[i].name);
     }
 }
 
 // A user's feature is in keys like Glint's own, from one file alone.
 TEST(Declarations, OneFileAddsAFeature) {
-    const Result<MaterialModel> model = modelWith(R"({
+    const Result<materials::MaterialModel> model = modelWith(R"({
         "name": "wet", "extension": "EXT_wet", "stage": "layer",
         "parameters": [{"name": "wetness", "type": "float", "default": 0, "range": [0, 1]}],
         "textures": [{"name": "wetTexture", "scales": ["wetness"]}],
         "neutral": [{"when": "wetness == 0", "because": "wetness is 0"}],
         "effects": [{"does": "reflects", "when": "wetness > 0", "roughness": "0.02", "text": "is wet"}]})");
     ASSERT_TRUE(model.ok()) << toString(model.error());
-    const FeatureMask wet = model->mask("wet");
-    EXPECT_NE(wet & kLobeMask, 0U);
+    const materials::FeatureMask wet = model->mask("wet");
+    EXPECT_NE(wet & materials::kLobeMask, 0U);
     EXPECT_NE(model->featureDefines().find("#define GLINT_WET_TEXTURE "), std::string::npos);
-    Material material(*model);
+    materials::Material material(*model);
     material["metallicFactor"] = 0.0F;
-    PrimitiveInputs primitive;
+    materials::PrimitiveInputs primitive;
     primitive.hasTexCoords0 = true;
-    const EffectDeclaration& reflection = builtinMaterialModel().effects[2];
-    EXPECT_EQ(makeKey(material, primitive, {}) & wet, 0U);
-    EXPECT_FALSE(sendsRays(reflection, material, primitive, 0.3F));
+    const materials::EffectDeclaration& reflection = materials::builtinMaterialModel().effects[2];
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}) & wet, 0U);
+    EXPECT_FALSE(compiler::sendsRays(reflection, material, primitive, 0.3F));
     material["wetness"] = 0.5F;
     material.texture("wetTexture").texture = 0;
-    EXPECT_EQ(makeKey(material, primitive, {}), wet | model->mask("wetTexture") | model->mask("texCoord0"));
-    EXPECT_TRUE(sendsRays(reflection, material, primitive, 0.3F));
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}),
+              wet | model->mask("wetTexture") | model->mask("texCoord0"));
+    EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
     // Existing features keep their bits.
-    for (const Feature& feature : builtinMaterialModel().features) {
+    for (const materials::Feature& feature : materials::builtinMaterialModel().features) {
         EXPECT_EQ(model->mask(feature.name), feature.mask()) << feature.name;
     }
 }
@@ -147,16 +149,16 @@ std::string glowWith(std::string_view part, std::string_view other) {
 }
 
 TEST(Declarations, OfEffectsAreRead) {
-    const DeclarationFile file{"packs/glow/glow.json", kGlow, true};
-    const Result<MaterialModel> model = readDeclarations({&file, 1});
+    const materials::DeclarationFile file{"packs/glow/glow.json", kGlow, true};
+    const Result<materials::MaterialModel> model = materials::readDeclarations({&file, 1});
     ASSERT_TRUE(model) << toString(model.error());
     ASSERT_EQ(model->effects.size(), 1U);
-    const EffectDeclaration& glow = model->effects[0];
+    const materials::EffectDeclaration& glow = model->effects[0];
     EXPECT_EQ(glow.sample, "packs/glow/glow.glsl");
-    EXPECT_EQ(glow.call.behaviour, Behaviour::Emits);
+    EXPECT_EQ(glow.call.behaviour, materials::Behaviour::Emits);
     EXPECT_EQ(glow.function(), "Glow");
     EXPECT_EQ(glow.abilities(), 0U);
-    EffectDeclaration named;
+    materials::EffectDeclaration named;
     named.name = "ambient-occlusion";
     EXPECT_EQ(named.function(), "AmbientOcclusion");
     EXPECT_EQ(named.macro(), "AMBIENT_OCCLUSION");
@@ -192,14 +194,14 @@ TEST(Declarations, OfEffectsSayWhatIsWrongAndWhere) {
 
 // Damaged declarations are refused, or read; they never crash.
 TEST(Declarations, DamagedFilesAreRefusedOrRead) {
-    for (const BuiltinFile& file : declarationFiles()) {
+    for (const base::BuiltinFile& file : materials::declarationFiles()) {
         const std::string text(file.text);
         for (std::size_t place = 0; place < text.size(); place += 7) {
             for (const char other : {'"', '0', '{', ' '}) {
                 std::string damaged = text;
                 damaged[place] = other;
-                const DeclarationFile alone{"materials/x/x.json", damaged};
-                const Result<MaterialModel> model = readDeclarations({&alone, 1});
+                const materials::DeclarationFile alone{"materials/x/x.json", damaged};
+                const Result<materials::MaterialModel> model = materials::readDeclarations({&alone, 1});
                 if (!model) {
                     ASSERT_EQ(model.error().id, "declaration") << damaged;
                 }

@@ -24,16 +24,16 @@ class MaterialPacks : public ::testing::Test {
 protected:
     void write(const std::string& name, std::string_view text) const {
         fs::create_directories((folder_.path() / name).parent_path());
-        ASSERT_TRUE(writeFile(folder_.path() / name, text));
+        ASSERT_TRUE(base::writeFile(folder_.path() / name, text));
     }
 
-    Result<const MaterialModel*> load() const {
-        return loadMaterialModel(std::vector{folder_.path().string()});
+    Result<const materials::MaterialModel*> load() const {
+        return materials::loadMaterialModel(std::vector{folder_.path().string()});
     }
 
     // Expects that the pack is refused with this error at a place that ends so.
     void expectError(std::string_view id, std::string_view place, std::string_view message) const {
-        const Result<const MaterialModel*> model = load();
+        const Result<const materials::MaterialModel*> model = load();
         ASSERT_FALSE(model);
         EXPECT_EQ(model.error().id, id);
         EXPECT_TRUE(model.error().where.ends_with(place)) << model.error().where;
@@ -55,28 +55,29 @@ constexpr std::string_view kMud = R"({
 TEST_F(MaterialPacks, AddFeaturesAfterThoseOfGlint) {
     write("mud/mud.json", kMud);
     write("mud/mud.glsl", "// mud\n");
-    const Result<const MaterialModel*> model = load();
+    const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
-    for (const Feature& feature : builtinMaterialModel().features) {
+    for (const materials::Feature& feature : materials::builtinMaterialModel().features) {
         EXPECT_EQ((*model)->mask(feature.name), feature.mask()) << feature.name;
     }
-    Material material(**model);
-    EXPECT_EQ(makeKey(material, {}, {}) & (*model)->mask("mud"), 0U);
+    materials::Material material(**model);
+    EXPECT_EQ(compiler::makeKey(material, {}, {}) & (*model)->mask("mud"), 0U);
     material["mudAmount"] = 0.5F;
-    EXPECT_NE(makeKey(material, {}, {}) & (*model)->mask("mud"), 0U);
+    EXPECT_NE(compiler::makeKey(material, {}, {}) & (*model)->mask("mud"), 0U);
     ASSERT_EQ((*model)->sources.size(), 1U);
     EXPECT_EQ((*model)->sources.front().text, "// mud\n");
 }
 
 TEST_F(MaterialPacks, WithoutFoldersTheModelIsThatOfGlint) {
-    const Result<const MaterialModel*> model = loadMaterialModel({});
+    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel({});
     ASSERT_TRUE(model);
-    EXPECT_EQ(*model, &builtinMaterialModel());
+    EXPECT_EQ(*model, &materials::builtinMaterialModel());
 }
 
 TEST_F(MaterialPacks, AFolderMustHaveADeclaration) {
     expectError("materials-folder", folder_.path().filename().string(), "holds no declaration");
-    const Result<const MaterialModel*> none = loadMaterialModel(std::vector<std::string>{"/nowhere"});
+    const Result<const materials::MaterialModel*> none =
+        materials::loadMaterialModel(std::vector<std::string>{"/nowhere"});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().id, "materials-folder");
 }
@@ -124,10 +125,10 @@ TEST_F(MaterialPacks, AttributesOfVerticesAreAnApplicationsOwn) {
     write("mud/mud.glsl", "");
     write("mud/mud.json",
           withAttributes(R"([{"name": "wet", "at": "_WET", "type": "vec3", "default": [1, 2, 3]}])"));
-    const Result<const MaterialModel*> model = load();
+    const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
     ASSERT_EQ((*model)->attributes.size(), 1U);
-    const VertexAttribute& wet = (*model)->attributes.front();
+    const materials::VertexAttribute& wet = (*model)->attributes.front();
     EXPECT_EQ(wet.channels, 3);
     EXPECT_EQ(wet.fallback, (std::array<float, 4>{1, 2, 3, 0}));
     EXPECT_EQ((*model)->features[static_cast<std::size_t>(wet.feature)].name, "mud");
@@ -155,14 +156,14 @@ TEST_F(MaterialPacks, NeedsAreFramesAndCoordinates) {
     mud.insert(mud.find("\"parameters\""), R"("needs": ["tangents", "texCoord0"], )");
     write("mud/mud.json", mud);
     write("mud/mud.glsl", "");
-    const Result<const MaterialModel*> model = load();
+    const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
-    Material material(**model);
+    materials::Material material(**model);
     material["mudAmount"] = 0.5F;
-    PrimitiveInputs inputs;
-    EXPECT_EQ(makeKey(material, inputs, {}) & (*model)->mask("mud"), 0U);
+    materials::PrimitiveInputs inputs;
+    EXPECT_EQ(compiler::makeKey(material, inputs, {}) & (*model)->mask("mud"), 0U);
     inputs.hasTexCoords0 = true;
-    EXPECT_EQ(makeKey(material, inputs, {}) & ((*model)->mask("mud") | (*model)->mask("texCoord0")),
+    EXPECT_EQ(compiler::makeKey(material, inputs, {}) & ((*model)->mask("mud") | (*model)->mask("texCoord0")),
               (*model)->mask("mud") | (*model)->mask("texCoord0"));
     mud.replace(mud.find("texCoord0"), 9, "texCoord7");
     write("mud/mud.json", mud);
@@ -176,14 +177,14 @@ TEST_F(MaterialPacks, OpacityKeepsMasks) {
                               "parameters": [{"name": "mudAmount", "at": "mud", "type": "float", "default": 0}],
                               "neutral": [{"when": "mudAmount == 0", "because": "there is no mud"}]})");
     write("mud/mud.glsl", "");
-    const Result<const MaterialModel*> model = load();
+    const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
-    Material material(**model);
-    material.alphaMode = AlphaMode::Mask;
-    const KeyOptions tested{.alpha = AlphaPolicy::Tested};
-    EXPECT_EQ(makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
+    materials::Material material(**model);
+    material.alphaMode = materials::AlphaMode::Mask;
+    const materials::KeyOptions tested{.alpha = package::AlphaPolicy::Tested};
+    EXPECT_EQ(compiler::makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
     material["mudAmount"] = 1.0F;
-    EXPECT_NE(makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
+    EXPECT_NE(compiler::makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
 }
 
 // A division by an interval with 0 is unknown, so it drops nothing.
@@ -192,29 +193,29 @@ TEST_F(MaterialPacks, DivisionByZeroDropsNothing) {
     mud.replace(mud.find("mudAmount == 0"), 14, "1 / mudAmount > 5");
     write("mud/mud.json", mud);
     write("mud/mud.glsl", "");
-    const Result<const MaterialModel*> model = load();
+    const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
-    EXPECT_NE(makeKey(Material(**model), {}, {}) & (*model)->mask("mud"), 0U);
+    EXPECT_NE(compiler::makeKey(materials::Material(**model), {}, {}) & (*model)->mask("mud"), 0U);
 }
 
 // Inputs that find no place among the inputs take bits of the lobes' word, and there is an end to these, too.
 TEST_F(MaterialPacks, FeaturesFillTheKey) {
-    const std::size_t room = kFeatureBits - builtinMaterialModel().features.size();
+    const std::size_t room = materials::kFeatureBits - materials::builtinMaterialModel().features.size();
     for (std::size_t i = 0; i < room; ++i) {
         write(fmt::format("f{}.json", i),
               fmt::format(R"({{"name": "f{}", "object": "extras", "stage": "surface", "short": "F{}"}})", i,
                           i));
     }
-    const Result<const MaterialModel*> model = load();
+    const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
-    FeatureMask all = 0;
-    for (const Feature& feature : (*model)->features) {
+    materials::FeatureMask all = 0;
+    for (const materials::Feature& feature : (*model)->features) {
         EXPECT_EQ(all & feature.mask(), 0U) << feature.name;
         EXPECT_EQ(feature.isLobe, ((*model)->lobes & feature.mask()) != 0) << feature.name;
         all |= feature.mask();
     }
-    EXPECT_EQ(all, ~FeatureMask{0});
-    EXPECT_EQ((*model)->lobes, builtinMaterialModel().lobes);
+    EXPECT_EQ(all, ~materials::FeatureMask{0});
+    EXPECT_EQ((*model)->lobes, materials::builtinMaterialModel().lobes);
     write("more.json", R"({"name": "more", "object": "extras", "stage": "surface", "short": "More"})");
     expectError("declaration", "#", "more features than");
 }

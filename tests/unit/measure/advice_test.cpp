@@ -7,14 +7,14 @@
 namespace glint::measure {
 namespace {
 
-Offer offer(double time, double error, double spread = 0.01) {
+measure::Offer offer(double time, double error, double spread = 0.01) {
     const auto around = [spread](double value) {
-        return Interval{value, value * (1.0 - spread), value * (1.0 + spread), value, value};
+        return measure::Interval{value, value * (1.0 - spread), value * (1.0 + spread), value, value};
     };
     return {around(time), around(error)};
 }
 
-const std::vector<Offer> kOffers{offer(10, 0.1), offer(5, 0.4), offer(20, 0.01), offer(9, 0.1005)};
+const std::vector<measure::Offer> kOffers{offer(10, 0.1), offer(5, 0.4), offer(20, 0.01), offer(9, 0.1005)};
 
 TEST(Advice, TakesTheLeastErrorWithinABudget) {
     EXPECT_EQ(advise(kOffers, {15.0, {}}), 3U);  // as exact as the first, and faster

@@ -14,8 +14,8 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-StrategyMeasure measured(const std::string& strategy, double ratio, std::uint64_t differing = 0) {
-    StrategyMeasure measure;
+measure::StrategyMeasure measured(const std::string& strategy, double ratio, std::uint64_t differing = 0) {
+    measure::StrategyMeasure measure;
     measure.strategy = strategy;
     for (const double noise : {0.99, 1.0, 1.01, 1.0, 0.99, 1.01}) {
         measure.times.push_back(8.0 * ratio * noise);
@@ -25,8 +25,8 @@ StrategyMeasure measured(const std::string& strategy, double ratio, std::uint64_
     return measure;
 }
 
-CalibrationEntry entryOf(std::vector<StrategyMeasure> strategies) {
-    CalibrationEntry entry;
+measure::CalibrationEntry entryOf(std::vector<measure::StrategyMeasure> strategies) {
+    measure::CalibrationEntry entry;
     entry.strategies = std::move(strategies);
     settleEntry(entry);
     return entry;
@@ -43,9 +43,11 @@ TEST(CalibrationEntry, NamesTheFastest) {
 
 TEST(CalibrationEntry, DoesNotCountWrongPictures) {
     // 1 in 1000 is accepted, because a ray that grazes an edge may differ; more is wrong.
-    const CalibrationEntry right = entryOf({measured("uber", 1.0), measured("visibility", 0.5, 100)});
+    const measure::CalibrationEntry right =
+        entryOf({measured("uber", 1.0), measured("visibility", 0.5, 100)});
     EXPECT_EQ(right.fastest, Names{"visibility"});
-    const CalibrationEntry wrong = entryOf({measured("uber", 1.0), measured("visibility", 0.5, 101)});
+    const measure::CalibrationEntry wrong =
+        entryOf({measured("uber", 1.0), measured("visibility", 0.5, 101)});
     EXPECT_EQ(wrong.fastest, Names{"uber"});
     ASSERT_EQ(wrong.point.times.size(), 1U);
     EXPECT_EQ(wrong.point.times[0].strategy, "uber");
@@ -53,10 +55,10 @@ TEST(CalibrationEntry, DoesNotCountWrongPictures) {
 }
 
 TEST(CalibrationEntry, TakesStrategiesThatDidNotRun) {
-    StrategyMeasure skipped;
+    measure::StrategyMeasure skipped;
     skipped.strategy = "hit-shaders";
     skipped.skipped = "out of memory";
-    CalibrationReport report;
+    measure::CalibrationReport report;
     report.entries = {entryOf({measured("uber", 1.0), skipped}), entryOf({skipped})};
     EXPECT_EQ(report.entries[0].fastest, Names{"uber"});
     EXPECT_TRUE(report.entries[1].fastest.empty());

@@ -20,7 +20,7 @@ TEST(HitTimes, CountsWhatStrategiesDifferIn) {
         {"i", 10.0, Pass::SortedUber},     {"j", 5.0, Pass::HitShaders},
         {"k", 60.0, Pass::ShadowDispatch}, {"trace", 400.0, Pass::CheckOrder},
     };
-    const HitTimes times = hitTimesOf(passes);
+    const measure::HitTimes times = hitTimesOf(passes);
     EXPECT_EQ(times.dispatch, 1.0);
     EXPECT_EQ(times.trace, 22.0);
     EXPECT_EQ(times.order, 7.0);
@@ -31,8 +31,8 @@ TEST(HitTimes, CountsWhatStrategiesDifferIn) {
 }
 
 TEST(HitTimes, Averages) {
-    HitTimes times{1.0, 2.0, 3.0, 4.0, 5.0};
-    times += HitTimes{3.0, 2.0, 1.0, 0.0, 1.0};
+    measure::HitTimes times{1.0, 2.0, 3.0, 4.0, 5.0};
+    times += measure::HitTimes{3.0, 2.0, 1.0, 0.0, 1.0};
     times /= 2.0;
     EXPECT_EQ(times.sum(), 11.0);
     EXPECT_EQ(times.dispatch, 2.0);

@@ -8,7 +8,7 @@
 namespace glint::measure {
 namespace {
 
-Configuration usual() {
+compiler::Configuration usual() {
     return {{"spp", "4"},
             {"shadow-spp", "1"},
             {"ao-spp", "4"},
@@ -34,8 +34,8 @@ Configuration usual() {
             {"batch-effects", "off"}};
 }
 
-BenchFacts rich() {
-    BenchFacts facts;
+compiler::BenchFacts rich() {
+    compiler::BenchFacts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.sizedLights = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
@@ -44,15 +44,15 @@ BenchFacts rich() {
     return facts;
 }
 
-const Setting& named(const std::vector<Setting>& settings, std::string_view name) {
-    return *std::ranges::find(settings, name, &Setting::name);
+const measure::Setting& named(const std::vector<measure::Setting>& settings, std::string_view name) {
+    return *std::ranges::find(settings, name, &measure::Setting::name);
 }
 
 TEST(BenchSettings, AreAllThereAndHaveTheirDefault) {
     for (const bool quick : {false, true}) {
-        const std::vector<Setting> settings = settingsFor(rich(), usual(), quick);
-        EXPECT_EQ(settings.size(), settingNames().size());
-        for (const Setting& setting : settings) {
+        const std::vector<measure::Setting> settings = settingsFor(rich(), usual(), quick);
+        EXPECT_EQ(settings.size(), compiler::settingNames().size());
+        for (const measure::Setting& setting : settings) {
             EXPECT_EQ(std::ranges::count(setting.values, setting.base), 1) << setting.name;
             EXPECT_GT(setting.values.size(), 1U) << setting.name;
             EXPECT_TRUE(setting.skipped.empty()) << setting.name;
@@ -62,7 +62,7 @@ TEST(BenchSettings, AreAllThereAndHaveTheirDefault) {
 }
 
 TEST(BenchSettings, TryEveryOrdering) {
-    const std::vector<Setting> settings = settingsFor(rich(), usual(), false);
+    const std::vector<measure::Setting> settings = settingsFor(rich(), usual(), false);
     std::vector<std::string> names{"auto"};
     for (const Named<package::Ordering>& ordering : package::kOrderingNames) {
         names.emplace_back(ordering.name);
@@ -71,25 +71,25 @@ TEST(BenchSettings, TryEveryOrdering) {
 }
 
 TEST(BenchSettings, KeepADefaultOfTheirOwnInItsPlace) {
-    Configuration base = usual();
+    compiler::Configuration base = usual();
     base["spp"] = "6";
     base["ssr"] = "12";
-    const std::vector<Setting> settings = settingsFor(rich(), base, false);
+    const std::vector<measure::Setting> settings = settingsFor(rich(), base, false);
     EXPECT_EQ(named(settings, "spp").values,
               (std::vector<std::string>{"1", "2", "4", "6", "8", "16", "32", "64"}));
     EXPECT_EQ(named(settings, "ssr").values, (std::vector<std::string>{"off", "8", "12", "16", "32", "64"}));
 }
 
 TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
-    BenchFacts facts;
+    compiler::BenchFacts facts;
     facts.effects = {"shadow"};
-    const std::vector<Setting> settings = settingsFor(facts, usual(), false);
+    const std::vector<measure::Setting> settings = settingsFor(facts, usual(), false);
     for (const char* const name :
          {"shadow-spp", "ao-spp", "max-roughness", "ssr", "max-interfaces", "hit-lobes", "texture-lod",
           "alpha", "precision", "strategy", "ordering", "binning", "position-fetch", "clamp"}) {
-        const Setting& setting = named(settings, name);
+        const measure::Setting& setting = named(settings, name);
         EXPECT_EQ(setting.values, std::vector<std::string>{setting.base}) << name;
-        EXPECT_TRUE(std::ranges::none_of(setting.skipped, [](const SkippedValue& value) {
+        EXPECT_TRUE(std::ranges::none_of(setting.skipped, [](const measure::SkippedValue& value) {
             return value.reason.empty();
         })) << name;
     }
@@ -97,7 +97,7 @@ TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
 }
 
 TEST(BenchSettings, TryEffectsWithoutEachOfThem) {
-    BenchFacts facts = rich();
+    compiler::BenchFacts facts = rich();
     facts.effects = {"reflection", "shadow"};
     EXPECT_EQ(named(settingsFor(facts, usual(), true), "effects").values,
               (std::vector<std::string>{"auto", "shadow", "reflection"}));
@@ -112,28 +112,28 @@ TEST(BenchSettings, ScaleTheClampByWhite) {
 }
 
 TEST(BenchSettings, OfTheReferenceApproximateNothing) {
-    const Configuration exact = exactValues(rich());
+    const compiler::Configuration exact = exactValues(rich());
     EXPECT_EQ(exact.at("texture-lod"), "mip0");
     EXPECT_EQ(exact.at("hit-lobes"), "all");
-    EXPECT_EQ(exact.at("alpha"), "tested");
+    EXPECT_EQ(exact.at("alpha"), "stochastic");
     EXPECT_EQ(exact.at("max-roughness"), "1");
     EXPECT_EQ(exact.at("ssr"), "off");
     EXPECT_FALSE(exact.contains("strategy"));
     EXPECT_FALSE(exact.contains("effects"));
     EXPECT_FALSE(exact.contains("spp"));
-    BenchFacts still = rich();
+    compiler::BenchFacts still = rich();
     still.effects = {"shadow"};
     EXPECT_FALSE(exactValues(still).contains("max-roughness"));
 }
 
 TEST(BenchSettings, DropWhatHasNoEffectBesideOthers) {
-    const Configuration base = usual();
-    EXPECT_EQ(simplified({{"spp", "4"}, {"ssr", "16"}}, base), (Configuration{{"ssr", "16"}}));
+    const compiler::Configuration base = usual();
+    EXPECT_EQ(simplified({{"spp", "4"}, {"ssr", "16"}}, base), (compiler::Configuration{{"ssr", "16"}}));
     EXPECT_EQ(simplified({{"strategy", "uber"}, {"ordering", "wave-loop"}, {"hit-record", "packed"}}, base),
-              (Configuration{{"strategy", "uber"}}));
-    EXPECT_EQ(simplified({{"position-fetch", "on"}}, base), Configuration{});
+              (compiler::Configuration{{"strategy", "uber"}}));
+    EXPECT_EQ(simplified({{"position-fetch", "on"}}, base), compiler::Configuration{});
     EXPECT_EQ(nameOf({{"ssr", "16"}, {"spp", "8"}}), "spp 8, ssr 16");
-    EXPECT_EQ(nameOf(Configuration{}), "default");
+    EXPECT_EQ(nameOf(compiler::Configuration{}), "default");
 }
 
 }  // namespace

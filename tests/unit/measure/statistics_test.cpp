@@ -24,7 +24,7 @@ TEST(Interval, IsOfOrderStatistics) {
         double low;
     };
     for (const Row row : {Row{6, 1}, {8, 1}, {9, 2}, {10, 2}, {15, 4}, {20, 6}, {101, 41}}) {
-        const Interval interval = intervalOf(upTo(row.count));
+        const measure::Interval interval = intervalOf(upTo(row.count));
         EXPECT_EQ(interval.low, row.low) << row.count;
         EXPECT_EQ(interval.high, row.count + 1 - row.low) << row.count;
         EXPECT_EQ(interval.median, 0.5 * (row.count + 1)) << row.count;
@@ -32,13 +32,13 @@ TEST(Interval, IsOfOrderStatistics) {
 }
 
 TEST(Interval, IsTheRangeOfFewValues) {
-    const Interval interval = intervalOf(std::vector<double>{3, 1, 2});
+    const measure::Interval interval = intervalOf(std::vector<double>{3, 1, 2});
     EXPECT_EQ(interval.low, 1);
     EXPECT_EQ(interval.high, 3);
     EXPECT_EQ(interval.median, 2);
     EXPECT_EQ(interval.q1, 1.5);
     EXPECT_EQ(interval.q3, 2.5);
-    const Interval one = intervalOf(std::vector<double>{7});
+    const measure::Interval one = intervalOf(std::vector<double>{7});
     EXPECT_EQ(one.low, 7);
     EXPECT_EQ(one.high, 7);
     EXPECT_EQ(one.q3, 7);
@@ -57,7 +57,7 @@ TEST(Interval, HoldsTheMedianAsOftenAsItSays) {
                 const double uniform = (static_cast<double>(random() >> 11U) + 0.5) * 0x1p-53;
                 values.push_back(-std::log(uniform));
             }
-            const Interval interval = intervalOf(values);
+            const measure::Interval interval = intervalOf(values);
             held += interval.low <= truth && truth <= interval.high ? 1 : 0;
         }
         // The bound is four standard errors below what is promised.
@@ -68,15 +68,15 @@ TEST(Interval, HoldsTheMedianAsOftenAsItSays) {
 TEST(MeanInterval, IsThatOfStudent) {
     // The two-sided 95 % quantiles of t are 2.776 for 4 degrees, 2.228 for 10, 12.706 for 1.
     const std::vector<double> five{1, 2, 3, 4, 5};
-    const MeanInterval interval = meanOf(five);
+    const measure::MeanInterval interval = meanOf(five);
     EXPECT_EQ(interval.mean, 3);
     EXPECT_NEAR(interval.high - 3, 2.776 * std::sqrt(2.5 / 5), 2e-3);
     EXPECT_NEAR(3 - interval.low, 2.776 * std::sqrt(2.5 / 5), 2e-3);
-    const MeanInterval eleven = meanOf(upTo(11));
+    const measure::MeanInterval eleven = meanOf(upTo(11));
     EXPECT_NEAR(eleven.high - 6, 2.228 * std::sqrt(11.0 / 11), 1e-3);
-    const MeanInterval two = meanOf(std::vector<double>{0, 2});
+    const measure::MeanInterval two = meanOf(std::vector<double>{0, 2});
     EXPECT_NEAR(two.high - 1, 12.706, 1e-3);
-    const MeanInterval one = meanOf(std::vector<double>{4});
+    const measure::MeanInterval one = meanOf(std::vector<double>{4});
     EXPECT_EQ(one.low, 4);
     EXPECT_EQ(one.high, 4);
 }

@@ -76,12 +76,12 @@ TEST(LeastSquares, BearsColumnsThatSayNothingNew) {
     EXPECT_NEAR((*x)[0] + 2.0 * (*x)[1], 2.0, 1e-9);
     EXPECT_EQ((*x)[2], 0.0);
     EXPECT_FALSE(nonNegativeLeastSquares({}, {}, 3));
-    EXPECT_FALSE(nonNegativeLeastSquares(rows, values, kMostUnknowns + 1));
+    EXPECT_FALSE(nonNegativeLeastSquares(rows, values, measure::kMostUnknowns + 1));
 }
 
-CalibrationPoint makePoint(std::uint32_t cases, const std::string& cost, const std::string& coherence,
-                           double rays) {
-    CalibrationPoint point;
+measure::CalibrationPoint makePoint(std::uint32_t cases, const std::string& cost,
+                                    const std::string& coherence, double rays) {
+    measure::CalibrationPoint point;
     point.cases = cases;
     point.cost = cost;
     point.coherence = coherence;
@@ -95,8 +95,8 @@ CalibrationPoint makePoint(std::uint32_t cases, const std::string& cost, const s
     return point;
 }
 
-std::vector<CalibrationPoint> makePoints() {
-    std::vector<CalibrationPoint> points;
+std::vector<measure::CalibrationPoint> makePoints() {
+    std::vector<measure::CalibrationPoint> points;
     for (const std::uint32_t cases : {1U, 4U, 16U, 64U, 256U}) {
         for (const char* cost : {"cheap", "expensive"}) {
             for (const char* coherence : {"coherent", "incoherent"}) {
@@ -110,7 +110,7 @@ std::vector<CalibrationPoint> makePoints() {
 }
 
 // The constants are in the order of CostTerm. Terms that a strategy lacks have no effect.
-const std::vector<StrategyCosts> kPlanted{
+const std::vector<compiler::StrategyCosts> kPlanted{
     {"uber", {0.02, 0.0, 0.4, 0.3, 0.0, 0.15, 0.1, 0.001}},
     {"sorted-uber", {0.08, 0.001, 0.9, 0.3, 0.02, 0.16, 0.0, 0.002}},
     {"visibility", {0.06, 0.004, 0.9, 0.25, 0.02, 0.12, 0.0, 0.0}},
@@ -119,11 +119,11 @@ const std::vector<StrategyCosts> kPlanted{
 constexpr double kSubgroup = 32.0;
 
 // Measures the planted device, with each time off by up to `noise` of itself.
-void measure(std::vector<CalibrationPoint>& points, double noise) {
+void measure(std::vector<measure::CalibrationPoint>& points, double noise) {
     std::mt19937 random(3);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same noise in every run
     std::uniform_real_distribution<double> uniform(-noise, noise);
-    for (CalibrationPoint& point : points) {
-        for (const StrategyCosts& costs : kPlanted) {
+    for (measure::CalibrationPoint& point : points) {
+        for (const compiler::StrategyCosts& costs : kPlanted) {
             const double ms = estimatedMs(roundOf(point), costs, kSubgroup) * (1.0 + uniform(random));
             point.times.push_back({costs.strategy, ms});
         }
@@ -131,14 +131,14 @@ void measure(std::vector<CalibrationPoint>& points, double noise) {
 }
 
 TEST(StrategyFit, FindsThePlantedConstants) {
-    std::vector<CalibrationPoint> points = makePoints();
+    std::vector<measure::CalibrationPoint> points = makePoints();
     measure(points, 0.0);
-    const DeviceFit fit = fitStrategies(points, kSubgroup);
+    const measure::DeviceFit fit = fitStrategies(points, kSubgroup);
     EXPECT_TRUE(fit.omitted.empty());
     ASSERT_EQ(fit.strategies.size(), kPlanted.size());
     for (std::size_t i = 0; i < kPlanted.size(); ++i) {
         EXPECT_EQ(fit.strategies[i].strategy, kPlanted[i].strategy);
-        for (const CostTermInfo& info : costTerms()) {
+        for (const compiler::CostTermInfo& info : compiler::costTerms()) {
             const auto term = static_cast<std::size_t>(info.term);
             EXPECT_NEAR(fit.strategies[i].constants[term], kPlanted[i].constants[term],
                         1e-6 * kPlanted[i].constants[term] + 1e-12)
@@ -154,11 +154,11 @@ TEST(StrategyFit, FindsThePlantedConstants) {
 }
 
 TEST(StrategyFit, BearsNoise) {
-    std::vector<CalibrationPoint> points = makePoints();
+    std::vector<measure::CalibrationPoint> points = makePoints();
     measure(points, 0.03);
-    const DeviceFit fit = fitStrategies(points, kSubgroup);
+    const measure::DeviceFit fit = fitStrategies(points, kSubgroup);
     ASSERT_EQ(fit.quality.strategies.size(), kPlanted.size());
-    for (const StrategyQuality& quality : fit.quality.strategies) {
+    for (const measure::StrategyQuality& quality : fit.quality.strategies) {
         EXPECT_GT(quality.medianError, 0.001) << quality.strategy;
         EXPECT_LT(quality.medianError, 0.05) << quality.strategy;
         EXPECT_FALSE(quality.worstPoint.empty());
@@ -169,16 +169,16 @@ TEST(StrategyFit, BearsNoise) {
 
 TEST(StrategyFit, ErrorsAreOfPointsThatTheFitHasNotSeen) {
     // No model can follow this group, so the constants of the others must not depend on it.
-    std::vector<CalibrationPoint> points = makePoints();
+    std::vector<measure::CalibrationPoint> points = makePoints();
     measure(points, 0.0);
-    for (CalibrationPoint& point : points) {
+    for (measure::CalibrationPoint& point : points) {
         if (point.cases == 16 && point.cost == "cheap" && point.coherence == "coherent") {
-            for (StrategyTime& time : point.times) {
+            for (measure::StrategyTime& time : point.times) {
                 time.ms *= time.strategy == "uber" ? 3.0 : 1.0;
             }
         }
     }
-    const DeviceFit fit = fitStrategies(points, kSubgroup);
+    const measure::DeviceFit fit = fitStrategies(points, kSubgroup);
     // The estimate is what the planted constants give: a third of the measured time.
     EXPECT_NEAR(fit.quality.strategies.front().worstError, 2.0 / 3.0, 1e-4);
     EXPECT_NE(fit.quality.strategies.front().worstPoint.find("16 cases, cheap, coherent"), std::string::npos);
@@ -187,19 +187,19 @@ TEST(StrategyFit, ErrorsAreOfPointsThatTheFitHasNotSeen) {
 }
 
 TEST(StrategyFit, LeavesOutWhatWasNotMeasured) {
-    std::vector<CalibrationPoint> points = makePoints();
+    std::vector<measure::CalibrationPoint> points = makePoints();
     measure(points, 0.0);
-    for (CalibrationPoint& point : points) {
-        std::erase_if(point.times, [&](const StrategyTime& time) {
+    for (measure::CalibrationPoint& point : points) {
+        std::erase_if(point.times, [&](const measure::StrategyTime& time) {
             return time.strategy == "hit-shaders" || (time.strategy == "visibility" && point.cases != 4);
         });
     }
     // There are twelve points, but with one number of cases: launches and cases can't be told apart, only
     // their sum is known.
-    const DeviceFit fit = fitStrategies(points, kSubgroup);
+    const measure::DeviceFit fit = fitStrategies(points, kSubgroup);
     ASSERT_EQ(fit.strategies.size(), 3U);
     EXPECT_EQ(fit.strategies[2].strategy, "visibility");
-    const CalibrationPoint known = points[12];
+    const measure::CalibrationPoint known = points[12];
     ASSERT_EQ(known.cases, 4U);
     EXPECT_NEAR(estimatedMs(roundOf(known), fit.strategies[2], kSubgroup),
                 estimatedMs(roundOf(known), kPlanted[2], kSubgroup), 1e-6);
@@ -209,14 +209,14 @@ TEST(StrategyFit, LeavesOutWhatWasNotMeasured) {
 
 TEST(StrategyFit, SaysWhatItCanNotUse) {
     EXPECT_TRUE(fitStrategies({}, kSubgroup).strategies.empty());
-    std::vector<CalibrationPoint> points = makePoints();
+    std::vector<measure::CalibrationPoint> points = makePoints();
     points.resize(4);
     measure(points, 0.0);
     points[0].rays = std::numeric_limits<double>::quiet_NaN();
     points[1].times[0].ms = 0.0;
     points[2].work.clear();
     points[3].times.push_back({"magic", 1.0});
-    const DeviceFit fit = fitStrategies(points, kSubgroup);
+    const measure::DeviceFit fit = fitStrategies(points, kSubgroup);
     EXPECT_TRUE(fit.strategies.empty());
     std::string all;
     for (const std::string& sentence : fit.omitted) {

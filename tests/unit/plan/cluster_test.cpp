@@ -17,13 +17,13 @@ namespace {
 
 using namespace glint;
 
-const FeatureMask kClusterBase = bit("normals");
+const materials::FeatureMask kClusterBase = bit("normals");
 
 // Calls use(partition) for every partition of n keys into at most `most` clusters.
 template <typename Use>
 void forEachPartition(std::vector<int>& labels, std::size_t index, int used, int most, const Use& use) {
     if (index == labels.size()) {
-        std::vector<Cluster> clusters(static_cast<std::size_t>(used));
+        std::vector<compiler::Cluster> clusters(static_cast<std::size_t>(used));
         for (std::size_t key = 0; key < labels.size(); ++key) {
             clusters[static_cast<std::size_t>(labels[key])].keys.push_back(static_cast<int>(key));
         }
@@ -36,10 +36,10 @@ void forEachPartition(std::vector<int>& labels, std::size_t index, int used, int
     }
 }
 
-std::vector<WeightedKey> randomClusterKeys(std::mt19937& random, int count) {
-    std::vector<WeightedKey> keys;
+std::vector<compiler::WeightedKey> randomClusterKeys(std::mt19937& random, int count) {
+    std::vector<compiler::WeightedKey> keys;
     for (int i = 0; i < count; ++i) {
-        FeatureMask mask = kClusterBase;
+        materials::FeatureMask mask = kClusterBase;
         for (const char* const feature :
              {"clearcoat", "sheen", "baseColorTexture", "normalTexture", "doubleSided", "unlit"}) {
             mask |= random() % 3 == 0 ? bit(feature) : 0;
@@ -47,20 +47,20 @@ std::vector<WeightedKey> randomClusterKeys(std::mt19937& random, int count) {
         keys.push_back({mask, static_cast<double>(random() % 100)});
     }
     double sum = 0.0;
-    for (const WeightedKey& key : keys) {
+    for (const compiler::WeightedKey& key : keys) {
         sum += key.share;
     }
-    for (WeightedKey& key : keys) {
+    for (compiler::WeightedKey& key : keys) {
         key.share /= sum;
     }
     return keys;
 }
 
 // Returns the distinct keys of randomClusterKeys(), ascending, as planning has them.
-std::vector<WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
-    std::map<FeatureMask, double> weights;
+std::vector<compiler::WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
+    std::map<materials::FeatureMask, double> weights;
     while (weights.size() < count) {
-        for (const WeightedKey& key : randomClusterKeys(random, 16)) {
+        for (const compiler::WeightedKey& key : randomClusterKeys(random, 16)) {
             if (weights.size() < count) {
                 weights[key.mask] = key.share + 1e-3;
             }
@@ -69,8 +69,8 @@ std::vector<WeightedKey> distinctKeys(std::mt19937& random, std::size_t count) {
     return glint::testing::toKeys(weights);
 }
 
-std::vector<Cluster> oneEach(std::size_t count) {
-    std::vector<Cluster> clusters;
+std::vector<compiler::Cluster> oneEach(std::size_t count) {
+    std::vector<compiler::Cluster> clusters;
     for (std::size_t i = 0; i < count; ++i) {
         clusters.push_back({{static_cast<int>(i)}});
     }
@@ -86,15 +86,15 @@ TEST(Cluster, IsNearTheBestOfAllPartitions) {
     constexpr int kScenes = 60;
     double ratios = 0.0;
     for (int i = 0; i < kScenes; ++i) {
-        const std::vector<WeightedKey> keys = randomClusterKeys(random, 7);
+        const std::vector<compiler::WeightedKey> keys = randomClusterKeys(random, 7);
         const int budget = 1 + static_cast<int>(random() % 7);
-        const std::vector<Cluster> merged = agglomerate(oneEach(keys.size()), keys, budget);
-        const std::vector<Cluster> clusters = moveKeys(merged, keys, budget);
+        const std::vector<compiler::Cluster> merged = agglomerate(oneEach(keys.size()), keys, budget);
+        const std::vector<compiler::Cluster> clusters = moveKeys(merged, keys, budget);
         ASSERT_LE(clusters.size(), static_cast<std::size_t>(budget));
         EXPECT_LE(totalCost(clusters, keys), totalCost(merged, keys));
         double best = std::numeric_limits<double>::infinity();
         std::vector<int> labels(keys.size());
-        forEachPartition(labels, 0, 0, budget, [&](const std::vector<Cluster>& partition) {
+        forEachPartition(labels, 0, 0, budget, [&](const std::vector<compiler::Cluster>& partition) {
             best = std::min(best, totalCost(partition, keys));
         });
         const double cost = totalCost(clusters, keys);
@@ -109,14 +109,14 @@ TEST(Cluster, IsNearTheBestOfAllPartitions) {
 TEST(Cluster, TakesTheCheapestPairEachTime) {
     std::mt19937 random(20250319);
     for (int i = 0; i < 20; ++i) {
-        const std::vector<WeightedKey> keys = randomClusterKeys(random, 24);
-        std::vector<Cluster> expected = oneEach(keys.size());
+        const std::vector<compiler::WeightedKey> keys = randomClusterKeys(random, 24);
+        std::vector<compiler::Cluster> expected = oneEach(keys.size());
         for (int left = 23; left >= 3; --left) {
             double least = std::numeric_limits<double>::infinity();
-            std::vector<Cluster> next;
+            std::vector<compiler::Cluster> next;
             for (std::size_t a = 0; a < expected.size(); ++a) {
                 for (std::size_t b = a + 1; b < expected.size(); ++b) {
-                    std::vector<Cluster> tried = expected;
+                    std::vector<compiler::Cluster> tried = expected;
                     tried[a].keys.insert(tried[a].keys.end(), tried[b].keys.begin(), tried[b].keys.end());
                     std::ranges::sort(tried[a].keys);
                     tried.erase(tried.begin() + static_cast<std::ptrdiff_t>(b));
@@ -130,29 +130,29 @@ TEST(Cluster, TakesTheCheapestPairEachTime) {
             }
             expected = std::move(next);
         }
-        const std::vector<Cluster> clusters = agglomerate(oneEach(keys.size()), keys, 3);
+        const std::vector<compiler::Cluster> clusters = agglomerate(oneEach(keys.size()), keys, 3);
         ASSERT_LE(clusters.size(), 3U);
         EXPECT_LE(totalCost(clusters, keys), totalCost(expected, keys) + 1e-6);
     }
 }
 
 // Returns ascending keys with any features, whose hits span five orders of magnitude.
-std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
-    FeatureMask known = 0;
-    for (const Feature& info : builtinMaterialModel().features) {
+std::vector<compiler::WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
+    materials::FeatureMask known = 0;
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         known |= info.mask();
     }
-    const auto word = [&] { return FeatureMask{random()} << 32U | random(); };
-    std::map<FeatureMask, double> weights;
+    const auto word = [&] { return materials::FeatureMask{random()} << 32U | random(); };
+    std::map<materials::FeatureMask, double> weights;
     while (weights.size() < count) {
-        const FeatureMask some = word();
+        const materials::FeatureMask some = word();
         weights[some & word() & known] = std::exp2(static_cast<double>(random() % 17));
     }
     double sum = 0.0;
     for (const auto& [mask, weight] : weights) {
         sum += weight;
     }
-    std::vector<WeightedKey> keys;
+    std::vector<compiler::WeightedKey> keys;
     keys.reserve(weights.size());
     for (const auto& [mask, weight] : weights) {
         keys.push_back({mask, weight / sum});
@@ -160,10 +160,10 @@ std::vector<WeightedKey> wildKeys(std::mt19937& random, std::size_t count) {
     return keys;
 }
 
-std::vector<Cluster> clustersOf(const std::vector<CaseKeys>& cases) {
-    std::vector<Cluster> clusters;
+std::vector<compiler::Cluster> clustersOf(const std::vector<compiler::CaseKeys>& cases) {
+    std::vector<compiler::Cluster> clusters;
     clusters.reserve(cases.size());
-    for (const CaseKeys& shaderCase : cases) {
+    for (const compiler::CaseKeys& shaderCase : cases) {
         clusters.push_back({shaderCase.keys});
     }
     return clusters;
@@ -176,14 +176,16 @@ TEST(Planner, AutoCostsNoMoreThanAnyOtherPolicyWithinTheBudget) {
     int compared = 0;
     for (int i = 0; i < 120; ++i) {
         const std::size_t count = 1 + random() % 40;
-        const std::vector<WeightedKey> keys =
+        const std::vector<compiler::WeightedKey> keys =
             i % 2 == 0 ? wildKeys(random, count) : distinctKeys(random, count);
         for (const int budget : {1, 3, 8, 32, 100}) {
-            const std::vector<CaseKeys> planned = mergeKeys(keys, MergePolicy::Auto, budget);
+            const std::vector<compiler::CaseKeys> planned =
+                mergeKeys(keys, compiler::MergePolicy::Auto, budget);
             EXPECT_LE(planned.size(), static_cast<std::size_t>(budget));
             const double cost = totalCost(clustersOf(planned), keys);
-            for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
-                const std::vector<CaseKeys> other = mergeKeys(keys, merge, budget);
+            for (const compiler::MergePolicy merge :
+                 {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::All}) {
+                const std::vector<compiler::CaseKeys> other = mergeKeys(keys, merge, budget);
                 if (other.size() <= static_cast<std::size_t>(budget)) {
                     EXPECT_LE(cost, totalCost(clustersOf(other), keys) * (1.0 + 1e-12))
                         << nameOf(merge) << ", " << count << " keys, " << budget;
@@ -198,18 +200,18 @@ TEST(Planner, AutoCostsNoMoreThanAnyOtherPolicyWithinTheBudget) {
 // This also covers more keys than the number of clusters that merging starts with.
 TEST(Planner, AutoIsNoWorseThanNoneWithManyKeys) {
     std::mt19937 random(20250323);
-    const std::vector<WeightedKey> keys = wildKeys(random, kMaxStart + 60);
-    const std::vector<CaseKeys> planned = mergeKeys(keys, MergePolicy::Auto, 1000);
-    EXPECT_LE(totalCost(clustersOf(planned), keys), kCaseCost * static_cast<double>(keys.size()));
+    const std::vector<compiler::WeightedKey> keys = wildKeys(random, compiler::kMaxStart + 60);
+    const std::vector<compiler::CaseKeys> planned = mergeKeys(keys, compiler::MergePolicy::Auto, 1000);
+    EXPECT_LE(totalCost(clustersOf(planned), keys), compiler::kCaseCost * static_cast<double>(keys.size()));
 }
 
 TEST(Planner, MoreCasesNeverCostMore) {
     std::mt19937 random(20250324);
     for (int i = 0; i < 10; ++i) {
-        const std::vector<WeightedKey> keys = distinctKeys(random, 30);
-        const double one = totalCost(clustersOf(mergeKeys(keys, MergePolicy::Auto, 1)), keys);
-        const double some = totalCost(clustersOf(mergeKeys(keys, MergePolicy::Auto, 6)), keys);
-        const double all = totalCost(clustersOf(mergeKeys(keys, MergePolicy::Auto, 30)), keys);
+        const std::vector<compiler::WeightedKey> keys = distinctKeys(random, 30);
+        const double one = totalCost(clustersOf(mergeKeys(keys, compiler::MergePolicy::Auto, 1)), keys);
+        const double some = totalCost(clustersOf(mergeKeys(keys, compiler::MergePolicy::Auto, 6)), keys);
+        const double all = totalCost(clustersOf(mergeKeys(keys, compiler::MergePolicy::Auto, 30)), keys);
         EXPECT_LE(some, one);
         EXPECT_LE(all, some);
     }
@@ -217,12 +219,12 @@ TEST(Planner, MoreCasesNeverCostMore) {
 
 TEST(Planner, OrderOfEqualHitsIsThatOfTheKeys) {
     std::mt19937 random(20250325);
-    std::vector<WeightedKey> keys = wildKeys(random, 70);
-    for (WeightedKey& key : keys) {
+    std::vector<compiler::WeightedKey> keys = wildKeys(random, 70);
+    for (compiler::WeightedKey& key : keys) {
         key.share = 1.0 / 70.0;
     }
-    const std::vector<CaseKeys> once = mergeKeys(keys, MergePolicy::Auto, 9);
-    const std::vector<CaseKeys> again = mergeKeys(keys, MergePolicy::Auto, 9);
+    const std::vector<compiler::CaseKeys> once = mergeKeys(keys, compiler::MergePolicy::Auto, 9);
+    const std::vector<compiler::CaseKeys> again = mergeKeys(keys, compiler::MergePolicy::Auto, 9);
     ASSERT_EQ(once.size(), again.size());
     for (std::size_t i = 0; i < once.size(); ++i) {
         EXPECT_EQ(once[i].keys, again[i].keys);
@@ -231,8 +233,8 @@ TEST(Planner, OrderOfEqualHitsIsThatOfTheKeys) {
 }
 
 // Returns how many keys share a case with `key`, itself included.
-std::size_t companyOf(const std::vector<CaseKeys>& cases, int key) {
-    for (const CaseKeys& shaderCase : cases) {
+std::size_t companyOf(const std::vector<compiler::CaseKeys>& cases, int key) {
+    for (const compiler::CaseKeys& shaderCase : cases) {
         if (std::ranges::binary_search(shaderCase.keys, key)) {
             return shaderCase.keys.size();
         }
@@ -247,18 +249,18 @@ TEST(Planner, MoreHitsOfAKeyRarelyMergeItWithMoreKeys) {
     int joined = 0;
     int steps = 0;
     for (int i = 0; i < 12; ++i) {
-        const std::vector<WeightedKey> start = distinctKeys(random, 20);
+        const std::vector<compiler::WeightedKey> start = distinctKeys(random, 20);
         for (int key = 0; key < 20; ++key) {
             std::size_t last = start.size();
             for (int step = 0; step < 10; ++step) {
                 const double weight = 1e-4 * std::pow(4.0, step);
-                std::vector<WeightedKey> keys = start;
+                std::vector<compiler::WeightedKey> keys = start;
                 keys[static_cast<std::size_t>(key)].share = weight;
                 const double sum = 1.0 - start[static_cast<std::size_t>(key)].share + weight;
-                for (WeightedKey& each : keys) {
+                for (compiler::WeightedKey& each : keys) {
                     each.share /= sum;
                 }
-                const std::size_t company = companyOf(mergeKeys(keys, MergePolicy::Auto, 32), key);
+                const std::size_t company = companyOf(mergeKeys(keys, compiler::MergePolicy::Auto, 32), key);
                 joined += company > last ? 1 : 0;
                 ++steps;
                 parted += company < last ? 1 : 0;
@@ -274,10 +276,10 @@ TEST(Planner, MoreHitsOfAKeyRarelyMergeItWithMoreKeys) {
 
 TEST(Planner, FiveHundredKeysKeepToTheBudget) {
     std::mt19937 random(20250327);
-    const std::vector<WeightedKey> keys = wildKeys(random, 512);
+    const std::vector<compiler::WeightedKey> keys = wildKeys(random, 512);
     double last = std::numeric_limits<double>::infinity();
     for (const int budget : {1, 32, 512}) {
-        const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, budget);
+        const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, compiler::MergePolicy::Auto, budget);
         EXPECT_LE(cases.size(), static_cast<std::size_t>(budget));
         const double cost = totalCost(clustersOf(cases), keys);
         EXPECT_LT(cost, last);

@@ -15,37 +15,39 @@ namespace {
 using namespace glint;
 using namespace glint::package;
 
-constexpr EffectRequest kAuto{true, 0};
-constexpr SceneLights kLit{true};
-constexpr SceneLights kDark{false};
+constexpr compiler::EffectRequest kAuto{true, 0};
+constexpr compiler::SceneLights kLit{true};
+constexpr compiler::SceneLights kDark{false};
 
-Material rough() {
-    Material material;
+materials::Material rough() {
+    materials::Material material;
     material.name = "Plaster";
     material["metallicFactor"] = 0.0F;
     return material;
 }
 
 // A primitive with one UV set, so that textures can be read.
-PrimitiveInputs primitiveOf(int material) {
-    PrimitiveInputs primitive;
+materials::PrimitiveInputs primitiveOf(int material) {
+    materials::PrimitiveInputs primitive;
     primitive.material = material;
     primitive.hasTexCoords0 = true;
     return primitive;
 }
 
-std::uint32_t effectsOf(const std::vector<Material>& materials, const SceneLights& lights = kLit,
-                        const EffectRequest& request = kAuto) {
-    std::vector<PrimitiveInputs> primitives;
+std::uint32_t effectsOf(const std::vector<materials::Material>& materials,
+                        const compiler::SceneLights& lights = kLit,
+                        const compiler::EffectRequest& request = kAuto) {
+    std::vector<materials::PrimitiveInputs> primitives;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         primitives.push_back(primitiveOf(static_cast<int>(i)));
     }
     return decideEffects(materials, primitives, lights, request).effects.all;
 }
 
-std::string reasonOf(const Material& material, Effect effect, const EffectRequest& request = kAuto,
-                     const SceneLights& lights = kLit) {
-    const PrimitiveInputs primitive = primitiveOf(0);
+std::string reasonOf(const materials::Material& material, Effect effect,
+                     const compiler::EffectRequest& request = kAuto,
+                     const compiler::SceneLights& lights = kLit) {
+    const materials::PrimitiveInputs primitive = primitiveOf(0);
     return decideEffects({&material, 1}, {&primitive, 1}, lights, request)
         .decisions[effectNumber(effect)]
         .reason;
@@ -54,7 +56,7 @@ std::string reasonOf(const Material& material, Effect effect, const EffectReques
 TEST(Effects, ShadowNeedsALightAndSomethingLit) {
     EXPECT_EQ(effectsOf({rough()}), kEffectShadow);
     EXPECT_EQ(effectsOf({rough()}, kDark), 0U);
-    Material unlit = rough();
+    materials::Material unlit = rough();
     unlit.give("KHR_materials_unlit");
     EXPECT_EQ(effectsOf({unlit}), 0U);
     EXPECT_EQ(effectsOf({unlit, rough()}), kEffectShadow);
@@ -64,7 +66,7 @@ TEST(Effects, ShadowNeedsALightAndSomethingLit) {
 }
 
 TEST(Effects, ReflectionNeedsSomethingSmooth) {
-    Material material = rough();
+    materials::Material material = rough();
     material["roughnessFactor"] = 0.31F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
     EXPECT_NE(effectsOf({material}, kLit, {true, 0, 0.31F}) & kEffectReflection, 0U);
@@ -80,31 +82,31 @@ TEST(Effects, ReflectionNeedsSomethingSmooth) {
 }
 
 TEST(Effects, ATextureMayBeSmootherThanItsFactor) {
-    Material material = rough();
+    materials::Material material = rough();
     material.texture("metallicRoughnessTexture").texture = 0;
     EXPECT_NE(effectsOf({material}) & kEffectReflection, 0U);
 }
 
 // Planning of effects and of keys share one truth: a texture without UVs makes no part of a metal dielectric.
 TEST(Effects, ATextureThatCannotBeReadChangesNothing) {
-    Material material = rough();
+    materials::Material material = rough();
     material["metallicFactor"] = 1.0F;
     material["transmissionFactor"] = 1.0F;
     material.texture("metallicRoughnessTexture").texture = 0;
-    PrimitiveInputs primitive;
+    materials::PrimitiveInputs primitive;
     const auto effects = [&] {
         return decideEffects({&material, 1}, {&primitive, 1}, kLit, kAuto).effects.all &
                (kEffectRefraction | kEffectReflection);
     };
     EXPECT_EQ(effects(), 0U);
-    EXPECT_EQ(makeKey(material, primitive, {}) & bit("transmission"), 0U);
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}) & bit("transmission"), 0U);
     primitive.hasTexCoords0 = true;
     EXPECT_EQ(effects(), kEffectRefraction | kEffectReflection);
-    EXPECT_NE(makeKey(material, primitive, {}) & bit("transmission"), 0U);
+    EXPECT_NE(compiler::makeKey(material, primitive, {}) & bit("transmission"), 0U);
 }
 
 TEST(Effects, ACoatReflectsIfItCoversSomething) {
-    Material material = rough();
+    materials::Material material = rough();
     material.give("KHR_materials_clearcoat");
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
     material["clearcoatFactor"] = 0.1F;
@@ -116,7 +118,7 @@ TEST(Effects, ACoatReflectsIfItCoversSomething) {
 }
 
 TEST(Effects, GlossinessIsRoughnessTurnedAround) {
-    Material material = rough();
+    materials::Material material = rough();
     material.give("KHR_materials_pbrSpecularGlossiness");
     material["glossinessFactor"] = 0.5F;
     EXPECT_EQ(effectsOf({material}) & kEffectReflection, 0U);
@@ -130,16 +132,16 @@ TEST(Effects, GlossinessIsRoughnessTurnedAround) {
 }
 
 TEST(Effects, RefractionNeedsLightThatPasses) {
-    Material material = rough();
+    materials::Material material = rough();
     material.give("KHR_materials_transmission");
     EXPECT_EQ(effectsOf({material}) & kEffectRefraction, 0U);
     material["transmissionFactor"] = 0.5F;
     EXPECT_NE(effectsOf({material}) & kEffectRefraction, 0U);
     EXPECT_EQ(reasonOf(material, kEffectRefraction), "material \"Plaster\" transmits 0.5 of the light");
-    Material metal = material;
+    materials::Material metal = material;
     metal["metallicFactor"] = 1.0F;
     EXPECT_EQ(effectsOf({metal}) & kEffectRefraction, 0U);
-    Material black = material;
+    materials::Material black = material;
     black["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 1.0F};
     EXPECT_EQ(effectsOf({black}) & kEffectRefraction, 0U);
     material.give("KHR_materials_unlit");
@@ -154,23 +156,24 @@ TEST(Effects, RefinementsAreThereWhenNamed) {
 }
 
 TEST(Effects, WhatIsAskedForIsThereEvenIfUnusable) {
-    const Material material = rough();
-    const PrimitiveInputs primitive = primitiveOf(0);
-    const EffectPlan plan = decideEffects({&material, 1}, {&primitive, 1}, kDark, {false, kEffectRefraction});
+    const materials::Material material = rough();
+    const materials::PrimitiveInputs primitive = primitiveOf(0);
+    const compiler::EffectPlan plan =
+        decideEffects({&material, 1}, {&primitive, 1}, kDark, {false, kEffectRefraction});
     EXPECT_EQ(plan.effects.all, kEffectRefraction);
     EXPECT_EQ(plan.effects.walks, kEffectRefraction);
-    ASSERT_EQ(plan.decisions.size(), builtinMaterialModel().effects.size());
-    const EffectDecision& decision = plan.decisions[effectNumber(kEffectRefraction)];
+    ASSERT_EQ(plan.decisions.size(), materials::builtinMaterialModel().effects.size());
+    const compiler::EffectDecision& decision = plan.decisions[effectNumber(kEffectRefraction)];
     EXPECT_TRUE(decision.chosen);
     EXPECT_FALSE(decision.usable);
     EXPECT_EQ(decision.reason, "asked for, though no material transmits light");
-    for (const EffectDecision& each : plan.decisions) {
+    for (const compiler::EffectDecision& each : plan.decisions) {
         EXPECT_FALSE(each.reason.empty()) << each.name;
     }
 }
 
 TEST(Effects, SlotsCountEffectsWithRays) {
-    const std::vector<EffectDeclaration>& effects = builtinMaterialModel().effects;
+    const std::vector<materials::EffectDeclaration>& effects = materials::builtinMaterialModel().effects;
     const EffectSet some = effectSetOf(effects, kEffectShadow | kEffectReflection | kEffectIndirectDiffuse);
     EXPECT_EQ(some.lights, kEffectShadow);
     EXPECT_EQ(some.rays, kEffectReflection | kEffectIndirectDiffuse);
@@ -185,7 +188,7 @@ TEST(Effects, SlotsCountEffectsWithRays) {
 }
 
 TEST(Effects, BitsAreThoseOfTheDeclarations) {
-    const std::vector<EffectDeclaration>& effects = builtinMaterialModel().effects;
+    const std::vector<materials::EffectDeclaration>& effects = materials::builtinMaterialModel().effects;
     EXPECT_EQ(findEffect(effects, "shadow"), kEffectShadow);
     EXPECT_EQ(findEffect(effects, "ambient-occlusion"), kEffectAmbientOcclusion);
     EXPECT_EQ(findEffect(effects, "reflection"), kEffectReflection);

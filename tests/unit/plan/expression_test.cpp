@@ -16,56 +16,57 @@ namespace {
 using namespace glint;
 
 // The symbols a, b (numbers), c (three channels), p, q (conditions), and has(p).
-std::optional<Symbol> resolve(std::string_view function, const std::vector<std::string_view>& names) {
+std::optional<materials::Symbol> resolve(std::string_view function,
+                                         const std::vector<std::string_view>& names) {
     if (function == "has" && names.size() == 1 && names[0] == "p") {
-        return Symbol{3, true, 1};
+        return materials::Symbol{3, true, 1};
     }
     if (!function.empty()) {
         return std::nullopt;
     }
     if (names[0] == "a" || names[0] == "b") {
-        return Symbol{names[0] == "a" ? 0 : 1, false, 1};
+        return materials::Symbol{names[0] == "a" ? 0 : 1, false, 1};
     }
     if (names[0] == "c") {
-        return Symbol{2, false, 3};
+        return materials::Symbol{2, false, 3};
     }
     if (names[0] == "p" || names[0] == "q") {
-        return Symbol{names[0] == "p" ? 3 : 4, true, 1};
+        return materials::Symbol{names[0] == "p" ? 3 : 4, true, 1};
     }
     return std::nullopt;
 }
 
-class GivenFacts final : public Facts {
+class GivenFacts final : public materials::Facts {
 public:
-    std::array<ValueInterval, 2> numbers{};
-    Channels color{{}, 3};
-    std::array<Certainty, 2> conditions{};
+    std::array<materials::ValueInterval, 2> numbers{};
+    materials::Channels color{{}, 3};
+    std::array<materials::Certainty, 2> conditions{};
 
-    Channels number(int symbol) const override {
-        return symbol == 2 ? color : Channels{{numbers[static_cast<std::size_t>(symbol)]}, 1};
+    materials::Channels number(int symbol) const override {
+        return symbol == 2 ? color : materials::Channels{{numbers[static_cast<std::size_t>(symbol)]}, 1};
     }
-    Certainty condition(int symbol) const override {
+    materials::Certainty condition(int symbol) const override {
         return conditions[static_cast<std::size_t>(symbol - 3)];
     }
 };
 
-Expression expressionOf(const std::string& text) {
-    ExpressionError error;
-    std::optional<Expression> expression = Expression::parse(text, resolve, error);
+materials::Expression expressionOf(const std::string& text) {
+    materials::ExpressionError error;
+    std::optional<materials::Expression> expression = materials::Expression::parse(text, resolve, error);
     EXPECT_TRUE(expression) << text << ": " << error.message;
-    return expression ? *expression : *Expression::parse("0 == 0", resolve, error);
+    return expression ? *expression : *materials::Expression::parse("0 == 0", resolve, error);
 }
 
 std::string refusal(const std::string& text) {
-    ExpressionError error;
-    EXPECT_FALSE(Expression::parse(text, resolve, error)) << text;
+    materials::ExpressionError error;
+    EXPECT_FALSE(materials::Expression::parse(text, resolve, error)) << text;
     return fmt::format("{}: {}", error.offset, error.message);
 }
 
 double exactValue(const std::string& text, double a = 0.0, double b = 0.0) {
     GivenFacts facts;
-    facts.numbers = {ValueInterval{a, a}, ValueInterval{b, b}};
-    const Channels number = expressionOf(text).number(facts);
+    facts.numbers = {materials::ValueInterval{a, a}, materials::ValueInterval{b, b}};
+    const materials::Channels number = expressionOf(text).number(facts);
     EXPECT_TRUE(number.of[0].isExact()) << text;
     return number.of[0].low;
 }
@@ -87,29 +88,30 @@ TEST(Expression, ComputesAsDoubleArithmeticDoes) {
 
 TEST(Expression, ChannelsAreDoneOneByOne) {
     GivenFacts facts;
-    facts.color = {{ValueInterval{0.0, 0.0}, {0.5, 0.5}, {1.0, 1.0}}, 3};
+    facts.color = {{materials::ValueInterval{0.0, 0.0}, {0.5, 0.5}, {1.0, 1.0}}, 3};
     facts.numbers[0] = {2.0, 2.0};
-    const Channels product = expressionOf("c * a + 1").number(facts);
+    const materials::Channels product = expressionOf("c * a + 1").number(facts);
     ASSERT_EQ(product.count, 3);
     EXPECT_EQ(product.of[1].low, 2.0);
     EXPECT_EQ(expressionOf("c.gb").number(facts).of[1].low, 1.0);
     // A comparison holds if it holds for every channel; a != b is not (a == b).
-    EXPECT_EQ(expressionOf("c >= 0").holds(facts), Certainty::True);
-    EXPECT_EQ(expressionOf("c > 0").holds(facts), Certainty::False);
-    EXPECT_EQ(expressionOf("c == 0").holds(facts), Certainty::False);
-    EXPECT_EQ(expressionOf("c != 0").holds(facts), Certainty::True);
-    EXPECT_EQ(expressionOf("c.r == 0").holds(facts), Certainty::True);
+    EXPECT_EQ(expressionOf("c >= 0").holds(facts), materials::Certainty::True);
+    EXPECT_EQ(expressionOf("c > 0").holds(facts), materials::Certainty::False);
+    EXPECT_EQ(expressionOf("c == 0").holds(facts), materials::Certainty::False);
+    EXPECT_EQ(expressionOf("c != 0").holds(facts), materials::Certainty::True);
+    EXPECT_EQ(expressionOf("c.r == 0").holds(facts), materials::Certainty::True);
 }
 
 // All three values of two conditions.
 TEST(Expression, ConditionsHaveThreeValues) {
-    const Certainty all[] = {Certainty::False, Certainty::True, Certainty::Unknown};
-    for (const Certainty p : all) {
-        for (const Certainty q : all) {
+    const materials::Certainty all[] = {materials::Certainty::False, materials::Certainty::True,
+                                        materials::Certainty::Unknown};
+    for (const materials::Certainty p : all) {
+        for (const materials::Certainty q : all) {
             GivenFacts facts;
             facts.conditions = {p, q};
-            const auto isIn = [](Certainty certainty, bool value) {
-                return certainty == Certainty::Unknown || certainty == certain(value);
+            const auto isIn = [](materials::Certainty certainty, bool value) {
+                return certainty == materials::Certainty::Unknown || certainty == materials::certain(value);
             };
             // A result is certain exactly if it is the same for all values that the operands can have.
             for (const char* const operation : {"and", "or"}) {
@@ -124,7 +126,8 @@ TEST(Expression, ConditionsHaveThreeValues) {
                         }
                     }
                 }
-                const Certainty expected = canHold && canFail ? Certainty::Unknown : certain(canHold);
+                const materials::Certainty expected =
+                    canHold && canFail ? materials::Certainty::Unknown : materials::certain(canHold);
                 EXPECT_EQ(expressionOf(fmt::format("p {} q", operation)).holds(facts), expected);
                 EXPECT_EQ(expressionOf(fmt::format("not (p {} q)", operation)).holds(facts), !expected);
             }
@@ -158,26 +161,26 @@ TEST(Expression, IntervalsContainEveryValue) {
         for (const double low : grid) {
             for (const double high : grid) {
                 if (low <= high) {
-                    use(ValueInterval{low, high});
+                    use(materials::ValueInterval{low, high});
                 }
             }
         }
     };
     for (const char* const text : numbers) {
-        const Expression expression = expressionOf(text);
-        forEachInterval([&](ValueInterval a) {
-            forEachInterval([&](ValueInterval b) {
+        const materials::Expression expression = expressionOf(text);
+        forEachInterval([&](materials::ValueInterval a) {
+            forEachInterval([&](materials::ValueInterval b) {
                 GivenFacts facts;
                 facts.numbers = {a, b};
-                const ValueInterval whole = expression.number(facts).of[0];
+                const materials::ValueInterval whole = expression.number(facts).of[0];
                 ASSERT_LE(whole.low, whole.high) << text;
                 for (const double x : grid) {
                     for (const double y : grid) {
                         if (x < a.low || x > a.high || y < b.low || y > b.high) {
                             continue;
                         }
-                        facts.numbers = {ValueInterval{x, x}, ValueInterval{y, y}};
-                        const ValueInterval part = expression.number(facts).of[0];
+                        facts.numbers = {materials::ValueInterval{x, x}, materials::ValueInterval{y, y}};
+                        const materials::ValueInterval part = expression.number(facts).of[0];
                         ASSERT_LE(whole.low, part.low) << text << " at " << x << ", " << y;
                         ASSERT_GE(whole.high, part.high) << text << " at " << x << ", " << y;
                     }
@@ -186,17 +189,17 @@ TEST(Expression, IntervalsContainEveryValue) {
         });
     }
     for (const char* const text : comparisons) {
-        const Expression expression = expressionOf(text);
-        forEachInterval([&](ValueInterval a) {
-            forEachInterval([&](ValueInterval b) {
+        const materials::Expression expression = expressionOf(text);
+        forEachInterval([&](materials::ValueInterval a) {
+            forEachInterval([&](materials::ValueInterval b) {
                 GivenFacts facts;
                 facts.numbers = {a, b};
-                const Certainty whole = expression.holds(facts);
+                const materials::Certainty whole = expression.holds(facts);
                 for (const double x : {a.low, a.high}) {
                     for (const double y : {b.low, b.high}) {
-                        facts.numbers = {ValueInterval{x, x}, ValueInterval{y, y}};
-                        const Certainty part = expression.holds(facts);
-                        ASSERT_TRUE(whole == Certainty::Unknown || whole == part)
+                        facts.numbers = {materials::ValueInterval{x, x}, materials::ValueInterval{y, y}};
+                        const materials::Certainty part = expression.holds(facts);
+                        ASSERT_TRUE(whole == materials::Certainty::Unknown || whole == part)
                             << text << " at " << x << ", " << y;
                     }
                 }
@@ -207,12 +210,12 @@ TEST(Expression, IntervalsContainEveryValue) {
 
 TEST(Expression, WhatHasNoValueIsUnknown) {
     GivenFacts facts;
-    facts.numbers = {ValueInterval{-1.0, -1.0}, ValueInterval{0.0, 0.0}};
+    facts.numbers = {materials::ValueInterval{-1.0, -1.0}, materials::ValueInterval{0.0, 0.0}};
     for (const char* const text :
          {"1 / b == 1", "b / b == 1", "sqrt(a) > 0", "ln(a) < 0", "infinity - infinity == 0"}) {
-        EXPECT_EQ(expressionOf(text).holds(facts), Certainty::Unknown) << text;
+        EXPECT_EQ(expressionOf(text).holds(facts), materials::Certainty::Unknown) << text;
     }
-    EXPECT_EQ(expressionOf("b * infinity == 0").holds(facts), Certainty::True);
+    EXPECT_EQ(expressionOf("b * infinity == 0").holds(facts), materials::Certainty::True);
 }
 
 TEST(Expression, SaysWhatItRefusesAndWhere) {
@@ -247,8 +250,9 @@ TEST(Expression, AnyTextIsRefusedOrEvaluates) {
             text += words[random() % std::size(words)];
             text += ' ';
         }
-        ExpressionError error;
-        const std::optional<Expression> expression = Expression::parse(text, resolve, error);
+        materials::ExpressionError error;
+        const std::optional<materials::Expression> expression =
+            materials::Expression::parse(text, resolve, error);
         ASSERT_EQ(expression.has_value(), error.message.empty()) << text;
         if (!expression) {
             ASSERT_LE(error.offset, text.size()) << text;
@@ -256,13 +260,13 @@ TEST(Expression, AnyTextIsRefusedOrEvaluates) {
         }
         ++accepted;
         GivenFacts facts;
-        facts.numbers = {ValueInterval{0.0, 1.0}, ValueInterval{-1.0, 2.0}};
+        facts.numbers = {materials::ValueInterval{0.0, 1.0}, materials::ValueInterval{-1.0, 2.0}};
         if (expression->isCondition()) {
             expression->holds(facts);
         } else {
-            const Channels number = expression->number(facts);
+            const materials::Channels number = expression->number(facts);
             for (int channel = 0; channel < number.count; ++channel) {
-                const ValueInterval interval = number.of[static_cast<std::size_t>(channel)];
+                const materials::ValueInterval interval = number.of[static_cast<std::size_t>(channel)];
                 ASSERT_LE(interval.low, interval.high) << text;
             }
         }

@@ -12,20 +12,20 @@ namespace glint::testing {
 
 using Dropped = std::vector<std::pair<std::string, std::string>>;
 
-inline constexpr KeyOptions kTested{AlphaPolicy::Tested};
+inline constexpr materials::KeyOptions kTested{package::AlphaPolicy::Tested};
 
 // Returns a primitive with every attribute, so that the material alone decides.
-inline PrimitiveInputs fullPrimitive() {
-    PrimitiveInputs primitive;
+inline materials::PrimitiveInputs fullPrimitive() {
+    materials::PrimitiveInputs primitive;
     primitive.hasNormals = true;
     primitive.hasTangents = true;
     primitive.hasTexCoords0 = true;
     primitive.hasTexCoords1 = true;
-    primitive.colors = ColorContent::Varying;
+    primitive.colors = materials::ColorContent::Varying;
     return primitive;
 }
 
-inline void setLobes(Material& material) {
+inline void setLobes(materials::Material& material) {
     material.give("KHR_materials_ior");
     material["ior"] = 1.33F;
     material.give("KHR_materials_specular");
@@ -61,17 +61,17 @@ inline void setLobes(Material& material) {
 
 // Returns a material with every feature except Unlit and SpecularGlossiness, which exclude others, and
 // ClearcoatSharesNormal.
-inline Material fullMaterial() {
-    Material material;
+inline materials::Material fullMaterial() {
+    materials::Material material;
     material["metallicFactor"] = 0.5F;
     material["roughnessFactor"] = 0.5F;
     material["emissiveFactor"] = {1.0F, 0.5F, 0.25F};
     material["emissiveStrength"] = 4.0F;
     material.give("KHR_materials_emissive_strength");
     material.doubleSided = true;
-    material.alphaMode = AlphaMode::Mask;
+    material.alphaMode = materials::AlphaMode::Mask;
     setLobes(material);
-    for (int slot = 0; slot < static_cast<int>(builtinMaterialModel().textures.size()); ++slot) {
+    for (int slot = 0; slot < static_cast<int>(materials::builtinMaterialModel().textures.size()); ++slot) {
         material.textures[slot].texture = slot;
     }
     material.texture("occlusionTexture").texCoord = 1;

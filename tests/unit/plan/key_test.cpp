@@ -15,9 +15,9 @@ using namespace glint;
 using namespace glint::testing;
 
 TEST(FeatureTable, IsConsistent) {
-    FeatureMask seen = 0;
+    materials::FeatureMask seen = 0;
     std::vector<std::string_view> names;
-    for (const Feature& info : builtinMaterialModel().features) {
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         EXPECT_EQ(seen & info.mask(), 0U) << info.name << " shares its bit";
         seen |= info.mask();
         for (const std::string_view text : {info.name, info.shortName, info.macro, info.gltf}) {
@@ -28,24 +28,28 @@ TEST(FeatureTable, IsConsistent) {
             EXPECT_NE(other, info.name);
         }
         names.push_back(info.name);
-        EXPECT_NE(builtinMaterialModel().featureDefines().find(std::string(info.macro) + " 0x"),
+        EXPECT_NE(materials::builtinMaterialModel().featureDefines().find(std::string(info.macro) + " 0x"),
                   std::string::npos);
     }
-    EXPECT_EQ(builtinMaterialModel().names(seen).size(), builtinMaterialModel().features.size());
+    EXPECT_EQ(materials::builtinMaterialModel().names(seen).size(),
+              materials::builtinMaterialModel().features.size());
 }
 
 TEST(FeatureTable, DefinesNumberBitsWithinTheirWord) {
-    EXPECT_NE(builtinMaterialModel().featureDefines().find("#define GLINT_UNLIT 0x1u\n"), std::string::npos);
-    EXPECT_NE(builtinMaterialModel().featureDefines().find("#define GLINT_BASE_COLOR_TEXTURE 0x1u\n"),
+    EXPECT_NE(materials::builtinMaterialModel().featureDefines().find("#define GLINT_UNLIT 0x1u\n"),
               std::string::npos);
-    EXPECT_NE(builtinMaterialModel().featureDefines().find("#define GLINT_METALLIC_ROUGHNESS_TEXTURE 0x2u\n"),
+    EXPECT_NE(
+        materials::builtinMaterialModel().featureDefines().find("#define GLINT_BASE_COLOR_TEXTURE 0x1u\n"),
+        std::string::npos);
+    EXPECT_NE(materials::builtinMaterialModel().featureDefines().find(
+                  "#define GLINT_METALLIC_ROUGHNESS_TEXTURE 0x2u\n"),
               std::string::npos);
 }
 
 TEST(Key, HasEveryFeatureThatMatters) {
     Dropped dropped;
-    const FeatureMask key = makeKey(fullMaterial(), fullPrimitive(), kTested, &dropped);
-    for (const Feature& info : builtinMaterialModel().features) {
+    const materials::FeatureMask key = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, &dropped);
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         const bool excluded =
             info.name == "unlit" || info.name == "specularGlossiness" || info.name == "clearcoatSharesNormal";
         EXPECT_EQ((key & info.mask()) != 0, !excluded) << info.name;
@@ -55,7 +59,7 @@ TEST(Key, HasEveryFeatureThatMatters) {
 
 TEST(Key, OfTheDefaultMaterialIsEmpty) {
     Dropped dropped;
-    EXPECT_EQ(makeKey(Material{}, PrimitiveInputs{}, kTested, &dropped), 0U);
+    EXPECT_EQ(compiler::makeKey(materials::Material{}, materials::PrimitiveInputs{}, kTested, &dropped), 0U);
     EXPECT_TRUE(dropped.empty());
 }
 
@@ -63,99 +67,134 @@ TEST(Key, OfTheDefaultMaterialIsEmpty) {
 // HasEveryFeatureThatMatters keeps the feature.
 struct NeutralCase {
     std::string feature;
-    std::function<void(Material&, PrimitiveInputs&)> neutralise;
+    std::function<void(materials::Material&, materials::PrimitiveInputs&)> neutralise;
     const char* gone;
 };
 
 class NeutralValue : public ::testing::TestWithParam<NeutralCase> {};
 
 TEST_P(NeutralValue, LeavesTheKeyWithAReason) {
-    Material material = fullMaterial();
-    PrimitiveInputs primitive = fullPrimitive();
+    materials::Material material = fullMaterial();
+    materials::PrimitiveInputs primitive = fullPrimitive();
     GetParam().neutralise(material, primitive);
     Dropped dropped;
-    const FeatureMask key = makeKey(material, primitive, kTested, &dropped);
+    const materials::FeatureMask key = compiler::makeKey(material, primitive, kTested, &dropped);
     EXPECT_EQ(key & bit(GetParam().gone), 0U);
     EXPECT_FALSE(reasonFor(dropped, GetParam().feature).empty());
 }
 
-void clearBase(Material& material) {
+void clearBase(materials::Material& material) {
     material["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 1.0F};
-    material.alphaMode = AlphaMode::Opaque;
+    material.alphaMode = materials::AlphaMode::Opaque;
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, NeutralValue,
-    ::testing::Values(
-        NeutralCase{"baseColorTexture", [](Material& m, PrimitiveInputs&) { clearBase(m); },
-                    "baseColorTexture"},
-        NeutralCase{"baseColorTexture",
-                    [](Material&, PrimitiveInputs& p) {
-                        p.hasTexCoords0 = false;
-                        p.hasTexCoords1 = false;
-                    },
-                    "baseColorTexture"},
-        NeutralCase{"baseColorTexture",
-                    [](Material& m, PrimitiveInputs&) { m.texture("baseColorTexture").texCoord = 2; },
-                    "baseColorTexture"},
-        NeutralCase{"metallicRoughnessTexture",
-                    [](Material& m, PrimitiveInputs&) {
-                        m["metallicFactor"] = 0.0F;
-                        m["roughnessFactor"] = 0.0F;
-                    },
-                    "metallicRoughnessTexture"},
-        NeutralCase{"normalTexture", [](Material& m, PrimitiveInputs&) { m["normalScale"] = 0.0F; },
-                    "normalTexture"},
-        NeutralCase{"tangents",
-                    [](Material& m, PrimitiveInputs&) {
-                        m["normalScale"] = 0.0F;
-                        m["clearcoatNormalScale"] = 0.0F;
-                        m["anisotropyStrength"] = 0.0F;
-                    },
-                    "tangents"},
-        NeutralCase{"tangents", [](Material&, PrimitiveInputs& p) { p.hasNormals = false; }, "tangents"},
-        NeutralCase{"occlusionTexture", [](Material& m, PrimitiveInputs&) { m["occlusionStrength"] = 0.0F; },
-                    "occlusionTexture"},
-        NeutralCase{"emissiveTexture",
-                    [](Material& m, PrimitiveInputs&) {
-                        m["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
-                    },
-                    "emissiveTexture"},
-        NeutralCase{"emissiveTexture", [](Material& m, PrimitiveInputs&) { m["emissiveStrength"] = 0.0F; },
-                    "emissiveTexture"},
-        NeutralCase{"emissiveStrength", [](Material& m, PrimitiveInputs&) { m["emissiveStrength"] = 1.0F; },
-                    "emissiveStrength"},
-        NeutralCase{"emissiveStrength",
-                    [](Material& m, PrimitiveInputs&) {
-                        m["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
-                    },
-                    "emissiveStrength"},
-        NeutralCase{
-            "textureTransform",
-            [](Material& m, PrimitiveInputs&) { m.texture("baseColorTexture").transform.rotation = 0; },
-            "textureTransform"},
-        NeutralCase{"textureTransform", [](Material& m, PrimitiveInputs&) { clearBase(m); },
-                    "textureTransform"},
-        NeutralCase{"vertexColor", [](Material&, PrimitiveInputs& p) { p.colors = ColorContent::White; },
-                    "vertexColor"},
-        NeutralCase{"vertexColor", [](Material& m, PrimitiveInputs&) { clearBase(m); }, "vertexColor"},
-        NeutralCase{"alphaMask", [](Material& m, PrimitiveInputs&) { m["alphaCutoff"] = 0.0F; }, "alphaMask"},
-        NeutralCase{"alphaMask",
-                    [](Material& m, PrimitiveInputs& p) {
-                        m.texture("baseColorTexture").texture = -1;
-                        p.colors = ColorContent::None;
-                    },
-                    "alphaMask"},
-        NeutralCase{"alphaMask", [](Material& m, PrimitiveInputs&) { m.alphaMode = AlphaMode::Blend; },
-                    "alphaMask"}));
+INSTANTIATE_TEST_SUITE_P(All, NeutralValue,
+                         ::testing::Values(
+                             NeutralCase{
+                                 "baseColorTexture",
+                                 [](materials::Material& m, materials::PrimitiveInputs&) { clearBase(m); },
+                                 "baseColorTexture"},
+                             NeutralCase{"baseColorTexture",
+                                         [](materials::Material&, materials::PrimitiveInputs& p) {
+                                             p.hasTexCoords0 = false;
+                                             p.hasTexCoords1 = false;
+                                         },
+                                         "baseColorTexture"},
+                             NeutralCase{"baseColorTexture",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m.texture("baseColorTexture").texCoord = 2;
+                                         },
+                                         "baseColorTexture"},
+                             NeutralCase{"metallicRoughnessTexture",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["metallicFactor"] = 0.0F;
+                                             m["roughnessFactor"] = 0.0F;
+                                         },
+                                         "metallicRoughnessTexture"},
+                             NeutralCase{"normalTexture",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["normalScale"] = 0.0F;
+                                         },
+                                         "normalTexture"},
+                             NeutralCase{"tangents",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["normalScale"] = 0.0F;
+                                             m["clearcoatNormalScale"] = 0.0F;
+                                             m["anisotropyStrength"] = 0.0F;
+                                         },
+                                         "tangents"},
+                             NeutralCase{"tangents",
+                                         [](materials::Material&, materials::PrimitiveInputs& p) {
+                                             p.hasNormals = false;
+                                         },
+                                         "tangents"},
+                             NeutralCase{"occlusionTexture",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["occlusionStrength"] = 0.0F;
+                                         },
+                                         "occlusionTexture"},
+                             NeutralCase{"emissiveTexture",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
+                                         },
+                                         "emissiveTexture"},
+                             NeutralCase{"emissiveTexture",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["emissiveStrength"] = 0.0F;
+                                         },
+                                         "emissiveTexture"},
+                             NeutralCase{"emissiveStrength",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["emissiveStrength"] = 1.0F;
+                                         },
+                                         "emissiveStrength"},
+                             NeutralCase{"emissiveStrength",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
+                                         },
+                                         "emissiveStrength"},
+                             NeutralCase{"textureTransform",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m.texture("baseColorTexture").transform.rotation = 0;
+                                         },
+                                         "textureTransform"},
+                             NeutralCase{
+                                 "textureTransform",
+                                 [](materials::Material& m, materials::PrimitiveInputs&) { clearBase(m); },
+                                 "textureTransform"},
+                             NeutralCase{"vertexColor",
+                                         [](materials::Material&, materials::PrimitiveInputs& p) {
+                                             p.colors = materials::ColorContent::White;
+                                         },
+                                         "vertexColor"},
+                             NeutralCase{
+                                 "vertexColor",
+                                 [](materials::Material& m, materials::PrimitiveInputs&) { clearBase(m); },
+                                 "vertexColor"},
+                             NeutralCase{"alphaMask",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m["alphaCutoff"] = 0.0F;
+                                         },
+                                         "alphaMask"},
+                             NeutralCase{"alphaMask",
+                                         [](materials::Material& m, materials::PrimitiveInputs& p) {
+                                             m.texture("baseColorTexture").texture = -1;
+                                             p.colors = materials::ColorContent::None;
+                                         },
+                                         "alphaMask"},
+                             NeutralCase{"alphaMask",
+                                         [](materials::Material& m, materials::PrimitiveInputs&) {
+                                             m.alphaMode = materials::AlphaMode::Blend;
+                                         },
+                                         "alphaMask"}));
 
 // Only a base that is part metal, part dielectric pays for both.
 TEST(Key, HasBothBasesWhereMetalAndDielectricMix) {
     const auto hasBoth = [](float metallic, bool textured) {
-        Material material;
+        materials::Material material;
         material["metallicFactor"] = metallic;
         material.texture("metallicRoughnessTexture").texture = textured ? 0 : -1;
-        return (makeKey(material, fullPrimitive(), kTested) & bit("partialMetal")) != 0;
+        return (compiler::makeKey(material, fullPrimitive(), kTested) & bit("partialMetal")) != 0;
     };
     EXPECT_FALSE(hasBoth(0.0F, false));
     EXPECT_FALSE(hasBoth(0.0F, true));
@@ -164,42 +203,44 @@ TEST(Key, HasBothBasesWhereMetalAndDielectricMix) {
     EXPECT_FALSE(hasBoth(1.0F, false));
     EXPECT_TRUE(hasBoth(1.0F, true));
 
-    Material glossy;
+    materials::Material glossy;
     glossy["metallicFactor"] = 0.5F;
     glossy.give("KHR_materials_pbrSpecularGlossiness");
-    EXPECT_EQ(makeKey(glossy, fullPrimitive(), kTested) & bit("partialMetal"), 0U);
+    EXPECT_EQ(compiler::makeKey(glossy, fullPrimitive(), kTested) & bit("partialMetal"), 0U);
 }
 
 TEST(Key, RaysMeetAlphaMasksThatCanFail) {
-    Material material;
-    const PrimitiveInputs primitive = fullPrimitive();
-    const auto masked = [&] { return hasAlphaMasks({&material, 1}, {&primitive, 1}); };
-    EXPECT_FALSE(masked());
-    material.alphaMode = AlphaMode::Mask;
-    EXPECT_TRUE(masked());
+    materials::Material material;
+    const materials::PrimitiveInputs primitive = fullPrimitive();
+    using enum package::AlphaPolicy;
+    const auto needed = [&] { return compiler::neededAlphaPolicy({&material, 1}, {&primitive, 1}); };
+    EXPECT_EQ(needed(), Opaque);
+    material.alphaMode = materials::AlphaMode::Mask;
+    EXPECT_EQ(needed(), Tested);
     material["alphaCutoff"] = 0.0F;
-    EXPECT_FALSE(masked());
+    EXPECT_EQ(needed(), Opaque);
     material["alphaCutoff"] = 0.5F;
-    material.alphaMode = AlphaMode::Blend;
-    EXPECT_FALSE(masked());
+    material.alphaMode = materials::AlphaMode::Blend;
+    EXPECT_EQ(needed(), Stochastic);
 }
 
 TEST(Key, AStrengthOfZeroIsNotNeutralForALightSource) {
-    Material material = fullMaterial();
+    materials::Material material = fullMaterial();
     material["emissiveStrength"] = 0.0F;
-    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit("emissiveStrength"), 0U);
+    EXPECT_NE(compiler::makeKey(material, fullPrimitive(), kTested) & bit("emissiveStrength"), 0U);
 }
 
 TEST(Key, OfAnUnlitMaterialReadsTheBaseColorAlone) {
-    Material material = fullMaterial();
+    materials::Material material = fullMaterial();
     material.give("KHR_materials_unlit");
     Dropped dropped;
-    const FeatureMask key = makeKey(material, fullPrimitive(), kTested, &dropped);
-    const FeatureMask expected = bit("unlit") | bit("baseColorTexture") | bit("texCoord0") |
-                                 bit("textureTransform") | bit("vertexColor") | bit("alphaMask");
+    const materials::FeatureMask key = compiler::makeKey(material, fullPrimitive(), kTested, &dropped);
+    const materials::FeatureMask expected = bit("unlit") | bit("baseColorTexture") | bit("texCoord0") |
+                                            bit("textureTransform") | bit("vertexColor") | bit("alphaMask");
     EXPECT_EQ(key, expected);
-    for (const Feature& info : builtinMaterialModel().features) {
-        const bool lost = (makeKey(fullMaterial(), fullPrimitive(), kTested) & ~key & info.mask()) != 0;
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
+        const bool lost =
+            (compiler::makeKey(fullMaterial(), fullPrimitive(), kTested) & ~key & info.mask()) != 0;
         if (lost && info.name != "texCoord1") {
             EXPECT_FALSE(reasonFor(dropped, std::string(info.name)).empty()) << info.name;
         }
@@ -208,35 +249,36 @@ TEST(Key, OfAnUnlitMaterialReadsTheBaseColorAlone) {
 
 TEST(Key, ForcedOpaqueDropsAlphaModeAndSaysSo) {
     Dropped dropped;
-    const FeatureMask key = makeKey(fullMaterial(), fullPrimitive(), {AlphaPolicy::Opaque}, &dropped);
+    const materials::FeatureMask key =
+        compiler::makeKey(fullMaterial(), fullPrimitive(), {package::AlphaPolicy::Opaque}, &dropped);
     EXPECT_EQ(key & bit("alphaMask"), 0U);
     EXPECT_NE(reasonFor(dropped, "alphaMask").find("--alpha opaque"), std::string::npos);
 }
 
 TEST(Key, IgnoresNamesAndConstantValues) {
-    Material a = fullMaterial();
-    Material b = fullMaterial();
+    materials::Material a = fullMaterial();
+    materials::Material b = fullMaterial();
     b.name = "another";
     b["baseColorFactor"] = {0.1F, 0.2F, 0.3F, 0.4F};
     b["roughnessFactor"] = 0.25F;
     b["alphaCutoff"] = 0.7F;
     b.texture("normalTexture").texture = 17;
-    EXPECT_EQ(makeKey(a, fullPrimitive(), kTested), makeKey(b, fullPrimitive(), kTested));
+    EXPECT_EQ(compiler::makeKey(a, fullPrimitive(), kTested), compiler::makeKey(b, fullPrimitive(), kTested));
 }
 
 TEST(Key, NamesExtensionsThatAreNotShaded) {
-    Material material;
+    materials::Material material;
     material.unsupportedExtensions = {"KHR_materials_future"};
     Dropped dropped;
-    makeKey(material, PrimitiveInputs{}, kTested, &dropped);
+    compiler::makeKey(material, materials::PrimitiveInputs{}, kTested, &dropped);
     EXPECT_FALSE(reasonFor(dropped, "KHR_materials_future").empty());
 }
 
 TEST(Key, ReadsOnlyTheUvSetsOfLiveTextures) {
-    Material material;
+    materials::Material material;
     material.texture("baseColorTexture").texture = 0;
     material.texture("baseColorTexture").texCoord = 1;
-    const FeatureMask key = makeKey(material, fullPrimitive(), kTested);
+    const materials::FeatureMask key = compiler::makeKey(material, fullPrimitive(), kTested);
     EXPECT_EQ(key & bit("texCoord0"), 0U);
     EXPECT_NE(key & bit("texCoord1"), 0U);
 }

@@ -12,28 +12,28 @@ using namespace glint;
 using namespace glint::testing;
 
 TEST(LobeKey, ValuesDecideWhateverTheFileGives) {
-    Material material;
+    materials::Material material;
     material["clearcoatFactor"] = 1.0F;
     material["ior"] = 2.0F;
     material["metallicFactor"] = 0.0F;
     Dropped dropped;
-    EXPECT_EQ(makeKey(material, {}, {}, &dropped), bit("clearcoat") | bit("ior"));
+    EXPECT_EQ(compiler::makeKey(material, {}, {}, &dropped), bit("clearcoat") | bit("ior"));
     EXPECT_TRUE(dropped.empty());
 }
 
 TEST(LobeKey, SpecularStaysWhereItsFactorIsZero) {
-    Material material = fullMaterial();
+    materials::Material material = fullMaterial();
     material["specularFactor"] = 0.0F;
-    EXPECT_NE(makeKey(material, fullPrimitive(), kTested) & bit("specular"), 0U);
+    EXPECT_NE(compiler::makeKey(material, fullPrimitive(), kTested) & bit("specular"), 0U);
 }
 
 TEST(LobeKey, SpecularGlossinessExcludesTheOthersButNotTheCore) {
-    Material material = fullMaterial();
+    materials::Material material = fullMaterial();
     material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
-    const FeatureMask key = makeKey(material, fullPrimitive(), kTested, &dropped);
-    EXPECT_EQ(key & kLobeMask, bit("specularGlossiness"));
-    for (const std::string_view lobe : builtinMaterialModel().names(kLobeMask)) {
+    const materials::FeatureMask key = compiler::makeKey(material, fullPrimitive(), kTested, &dropped);
+    EXPECT_EQ(key & materials::kLobeMask, bit("specularGlossiness"));
+    for (const std::string_view lobe : materials::builtinMaterialModel().names(materials::kLobeMask)) {
         const bool is = lobe == "unlit" || lobe == "specularGlossiness";
         EXPECT_EQ(reasonFor(dropped, std::string(lobe)).empty(), is) << lobe;
     }
@@ -44,12 +44,12 @@ TEST(LobeKey, SpecularGlossinessExcludesTheOthersButNotTheCore) {
 }
 
 TEST(LobeKey, SpecularGlossinessTextureIsNeutralWhereBothFactorsAreZero) {
-    Material material = fullMaterial();
+    materials::Material material = fullMaterial();
     material.give("KHR_materials_pbrSpecularGlossiness");
     material["glossySpecularFactor"] = {0.0F, 0.0F, 0.0F};
     material["glossinessFactor"] = 0.0F;
     const auto reads = [&] {
-        return (makeKey(material, fullPrimitive(), kTested) & bit("metallicRoughnessTexture")) != 0;
+        return (compiler::makeKey(material, fullPrimitive(), kTested) & bit("metallicRoughnessTexture")) != 0;
     };
     EXPECT_FALSE(reads());
     material["glossinessFactor"] = 0.5F;
@@ -61,27 +61,28 @@ TEST(LobeKey, SpecularGlossinessTextureIsNeutralWhereBothFactorsAreZero) {
 }
 
 TEST(LobeKey, UnlitWinsOverSpecularGlossiness) {
-    Material material = fullMaterial();
+    materials::Material material = fullMaterial();
     material.give("KHR_materials_unlit");
     material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
-    EXPECT_EQ(makeKey(material, fullPrimitive(), kTested, &dropped) & kLobeMask, bit("unlit"));
+    EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested, &dropped) & materials::kLobeMask,
+              bit("unlit"));
     EXPECT_FALSE(reasonFor(dropped, "specularGlossiness").empty());
 }
 
 // If the coat's normal texture equals the base's in every detail, it is read once.
 TEST(LobeKey, CoatSharesAnEqualNormalTexture) {
-    const FeatureMask shares = bit("clearcoatSharesNormal");
-    const FeatureMask own = bit("clearcoatNormalTexture");
-    Material equal = fullMaterial();
+    const materials::FeatureMask shares = bit("clearcoatSharesNormal");
+    const materials::FeatureMask own = bit("clearcoatNormalTexture");
+    materials::Material equal = fullMaterial();
     equal.texture("clearcoatNormalTexture") = equal.texture("normalTexture");
     equal["clearcoatNormalScale"] = float{equal["normalScale"]};
-    const auto keyOf = [&](const Material& material) {
-        return makeKey(material, fullPrimitive(), kTested) & (shares | own);
+    const auto keyOf = [&](const materials::Material& material) {
+        return compiler::makeKey(material, fullPrimitive(), kTested) & (shares | own);
     };
     EXPECT_EQ(keyOf(equal), shares);
     EXPECT_EQ(keyOf(fullMaterial()), own);
-    Material other = equal;
+    materials::Material other = equal;
     other.texture("clearcoatNormalTexture").texCoord = 1;
     EXPECT_EQ(keyOf(other), own);
     other = equal;
@@ -99,15 +100,15 @@ TEST(LobeKey, CoatSharesAnEqualNormalTexture) {
 }
 
 TEST(LobeKey, TangentsServeEachOfTheirReaders) {
-    const auto hasTangents = [](const Material& material) {
-        return (makeKey(material, fullPrimitive(), {}) & bit("tangents")) != 0;
+    const auto hasTangents = [](const materials::Material& material) {
+        return (compiler::makeKey(material, fullPrimitive(), {}) & bit("tangents")) != 0;
     };
-    Material material;
+    materials::Material material;
     EXPECT_FALSE(hasTangents(material));
     material["anisotropyStrength"] = 1.0F;
     material["roughnessFactor"] = 0.5F;
     EXPECT_TRUE(hasTangents(material));
-    material = Material();
+    material = materials::Material();
     material["clearcoatFactor"] = 1.0F;
     EXPECT_FALSE(hasTangents(material));
     material.texture("clearcoatNormalTexture").texture = 0;
@@ -115,70 +116,72 @@ TEST(LobeKey, TangentsServeEachOfTheirReaders) {
 }
 
 TEST(LobeKey, AnisotropyWithoutTangentsReadsTextureCoordinates) {
-    Material material;
+    materials::Material material;
     material["anisotropyStrength"] = 1.0F;
     material["roughnessFactor"] = 0.5F;
-    PrimitiveInputs primitive = fullPrimitive();
-    const FeatureMask sets = bit("texCoord0") | bit("texCoord1");
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, 0U);
+    materials::PrimitiveInputs primitive = fullPrimitive();
+    const materials::FeatureMask sets = bit("texCoord0") | bit("texCoord1");
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}) & sets, 0U);
     primitive.hasTangents = false;
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit("texCoord0"));
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}) & sets, bit("texCoord0"));
     primitive.hasTexCoords0 = false;
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit("texCoord1"));
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}) & sets, bit("texCoord1"));
     // The frame uses the set of a texture.
     primitive.hasTexCoords0 = true;
     material.texture("anisotropyTexture") = {0, 1, {}, false};
-    EXPECT_EQ(makeKey(material, primitive, {}) & sets, bit("texCoord1"));
+    EXPECT_EQ(compiler::makeKey(material, primitive, {}) & sets, bit("texCoord1"));
 }
 
 TEST(LobeKey, EveryTextureCountsForUvSetsAndTransforms) {
-    for (std::size_t slot = 0; slot < builtinMaterialModel().textures.size(); ++slot) {
-        Material material = fullMaterial();
-        for (TextureInfo& info : material.textures) {
+    for (std::size_t slot = 0; slot < materials::builtinMaterialModel().textures.size(); ++slot) {
+        materials::Material material = fullMaterial();
+        for (materials::TextureInfo& info : material.textures) {
             info.transform = {};
             info.texCoord = 0;
         }
-        const FeatureMask both = bit("texCoord1") | bit("textureTransform");
-        EXPECT_EQ(makeKey(material, fullPrimitive(), kTested) & both, 0U) << slot;
+        const materials::FeatureMask both = bit("texCoord1") | bit("textureTransform");
+        EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested) & both, 0U) << slot;
         material.textures[slot].texCoord = 1;
         material.textures[slot].transform.scale[0] = 2.0F;
-        EXPECT_EQ(makeKey(material, fullPrimitive(), kTested) & both, both) << slot;
+        EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested) & both, both) << slot;
     }
 }
 
 TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
-    for (const Feature& info : builtinMaterialModel().features) {
-        const FeatureMask lobe = info.mask() & kLobeMask;
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
+        const materials::FeatureMask lobe = info.mask() & materials::kLobeMask;
         if (lobe == 0 || info.name == "unlit" || info.name == "specularGlossiness") {
             continue;
         }
         Dropped dropped;
-        const FeatureMask whole = makeKey(fullMaterial(), fullPrimitive(), kTested);
-        const FeatureMask kept =
-            makeKey(fullMaterial(), fullPrimitive(), {AlphaPolicy::Tested, kLobeMask & ~lobe}, &dropped);
+        const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested);
+        const materials::FeatureMask kept =
+            compiler::makeKey(fullMaterial(), fullPrimitive(),
+                              {package::AlphaPolicy::Tested, materials::kLobeMask & ~lobe}, &dropped);
         EXPECT_EQ(kept & lobe, 0U) << info.name;
         EXPECT_EQ(kept & ~whole, 0U) << info.name;
         EXPECT_NE(reasonFor(dropped, std::string(info.name)).find("hits do not keep it"), std::string::npos);
-        for (const std::string_view name : builtinMaterialModel().names(whole & ~kept)) {
+        for (const std::string_view name : materials::builtinMaterialModel().names(whole & ~kept)) {
             EXPECT_NE(reasonFor(dropped, std::string(name)).find("--hit-lobes"), std::string::npos) << name;
         }
     }
 }
 
 TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
-    const KeyOptions none{AlphaPolicy::Tested, 0};
-    const FeatureMask core = makeKey(fullMaterial(), fullPrimitive(), none);
-    EXPECT_EQ(core & kLobeMask, 0U);
+    const materials::KeyOptions none{package::AlphaPolicy::Tested, 0};
+    const materials::FeatureMask core = compiler::makeKey(fullMaterial(), fullPrimitive(), none);
+    EXPECT_EQ(core & materials::kLobeMask, 0U);
     for (const char* const texture : {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",
                                       "occlusionTexture", "emissiveTexture"}) {
         EXPECT_NE(core & bit(texture), 0U);
     }
     EXPECT_EQ(core & (bit("clearcoatTexture") | bit("thicknessTexture")), 0U);
-    Material other = fullMaterial();
+    materials::Material other = fullMaterial();
     other.give("KHR_materials_pbrSpecularGlossiness");
-    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit("specularGlossiness"));
+    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::kLobeMask,
+              bit("specularGlossiness"));
     other.give("KHR_materials_unlit");
-    EXPECT_EQ(makeKey(other, fullPrimitive(), none) & kLobeMask, bit("unlit"));
+    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::kLobeMask, bit("unlit"));
 }
 
 }  // namespace

@@ -19,17 +19,18 @@ namespace {
 using namespace glint;
 
 constexpr unsigned kLockSeed = 20250621;
-const FeatureMask kLockNormals = bit("normals");
-const FeatureMask kUnlit = bit("unlit");
-const FeatureMask kLockTextured = kLockNormals | bit("baseColorTexture") | bit("texCoord0");
-const FeatureMask kLockCoated = kLockNormals | bit("clearcoat");
-constexpr MergePolicy kLockPolicies[] = {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
-                                         MergePolicy::Auto, MergePolicy::Profile};
+const materials::FeatureMask kLockNormals = bit("normals");
+const materials::FeatureMask kUnlit = bit("unlit");
+const materials::FeatureMask kLockTextured = kLockNormals | bit("baseColorTexture") | bit("texCoord0");
+const materials::FeatureMask kLockCoated = kLockNormals | bit("clearcoat");
+constexpr compiler::MergePolicy kLockPolicies[] = {compiler::MergePolicy::None, compiler::MergePolicy::Family,
+                                                   compiler::MergePolicy::All, compiler::MergePolicy::Auto,
+                                                   compiler::MergePolicy::Profile};
 
 // A material and the primitive that has it.
 struct Piece {
-    Material material;
-    PrimitiveInputs inputs;
+    materials::Material material;
+    materials::PrimitiveInputs inputs;
 };
 
 Piece randomPiece(std::mt19937& random) {
@@ -49,9 +50,9 @@ Piece randomPiece(std::mt19937& random) {
     return piece;
 }
 
-Plan planOf(const std::vector<Piece>& pieces, const PlanOptions& options) {
-    std::vector<Material> materials;
-    std::vector<PrimitiveInputs> primitives;
+compiler::Plan planOf(const std::vector<Piece>& pieces, const compiler::PlanOptions& options) {
+    std::vector<materials::Material> materials;
+    std::vector<materials::PrimitiveInputs> primitives;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         materials.push_back(pieces[i].material);
         primitives.push_back(pieces[i].inputs);
@@ -62,20 +63,20 @@ Plan planOf(const std::vector<Piece>& pieces, const PlanOptions& options) {
 }
 
 // Returns each case's keys as masks, by shader ID.
-std::map<int, std::set<FeatureMask>> keysById(const Plan& plan) {
-    std::map<int, std::set<FeatureMask>> byId;
-    for (const Key& key : plan.keys) {
+std::map<int, std::set<materials::FeatureMask>> keysById(const compiler::Plan& plan) {
+    std::map<int, std::set<materials::FeatureMask>> byId;
+    for (const compiler::Key& key : plan.keys) {
         byId[key.shaderId].insert(key.mask);
     }
     return byId;
 }
 
 // Checks what every plan promises about its IDs.
-void checkIds(const Plan& plan) {
+void checkIds(const compiler::Plan& plan) {
     ASSERT_EQ(caseCount(plan), keysById(plan).size());
     std::set<std::string> names;
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
-        const Case& shaderCase = plan.cases[i];
+        const compiler::Case& shaderCase = plan.cases[i];
         EXPECT_EQ(shaderCase.shaderId, static_cast<int>(i));
         EXPECT_TRUE(names.insert(shaderCase.name).second) << shaderCase.name;
         EXPECT_FALSE(shaderCase.isRetired() && (shaderCase.always | shaderCase.sometimes) != 0);
@@ -104,11 +105,11 @@ void change(std::vector<Piece>& pieces, std::mt19937& random) {
 }
 
 // A case keeps its ID if no other case has keys with that ID, and none of its keys has another ID.
-void checkSurvivors(const LockedIds& earlier, const Plan& plan) {
+void checkSurvivors(const compiler::LockedIds& earlier, const compiler::Plan& plan) {
     std::map<int, std::set<int>> successors;
     std::map<int, std::set<int>> predecessors;
     for (const auto& [id, keys] : keysById(plan)) {
-        for (const FeatureMask mask : keys) {
+        for (const materials::FeatureMask mask : keys) {
             if (const auto found = earlier.find(mask); found != earlier.end()) {
                 successors[found->second].insert(id);
                 predecessors[id].insert(found->second);
@@ -124,25 +125,26 @@ void checkSurvivors(const LockedIds& earlier, const Plan& plan) {
 
 TEST(Lock, IdsSurviveRandomChangesUnderEveryPolicy) {
     RecordProperty("seed", kLockSeed);
-    for (const MergePolicy merge : kLockPolicies) {
+    for (const compiler::MergePolicy merge : kLockPolicies) {
         SCOPED_TRACE(nameOf(merge));
         std::mt19937 random(kLockSeed);
         std::vector<Piece> pieces;
-        PlanOptions options{{}, merge};
-        options.maxShaders = merge == MergePolicy::Auto || merge == MergePolicy::Profile ? 6 : 0;
+        compiler::PlanOptions options{{}, merge};
+        options.maxShaders =
+            merge == compiler::MergePolicy::Auto || merge == compiler::MergePolicy::Profile ? 6 : 0;
         for (int step = 0; step < 150; ++step) {
             change(pieces, random);
             for (const Piece& piece : pieces) {
-                options.hits[makeKey(piece.material, piece.inputs, options.keys)] = random() % 50;
+                options.hits[compiler::makeKey(piece.material, piece.inputs, options.keys)] = random() % 50;
             }
-            const Plan plan = planOf(pieces, options);
+            const compiler::Plan plan = planOf(pieces, options);
             checkIds(plan);
             checkSurvivors(options.lockedIds, plan);
             EXPECT_EQ(keysById(plan), keysById(planOf(pieces, options))) << "not deterministic";
-            const LockUpdate update = updateLock(options.lockedIds, plan, false);
+            const compiler::LockUpdate update = updateLock(options.lockedIds, plan, false);
             options.lockedIds = update.ids;
             // Once the IDs are kept, planning again changes nothing.
-            const LockUpdate again = updateLock(update.ids, planOf(pieces, options), false);
+            const compiler::LockUpdate again = updateLock(update.ids, planOf(pieces, options), false);
             EXPECT_FALSE(again.changes(update.ids));
             EXPECT_TRUE(again.added.empty() && again.moved.empty());
             if (HasFailure()) {
@@ -157,12 +159,12 @@ TEST(Lock, KeysComeBackWithTheirIds) {
     RecordProperty("seed", kLockSeed);
     std::mt19937 random(kLockSeed);
     std::vector<Piece> pieces;
-    PlanOptions options{{}, MergePolicy::None};
-    LockedIds everSeen;
+    compiler::PlanOptions options{{}, compiler::MergePolicy::None};
+    compiler::LockedIds everSeen;
     for (int step = 0; step < 200; ++step) {
         change(pieces, random);
-        const Plan plan = planOf(pieces, options);
-        for (const Key& key : plan.keys) {
+        const compiler::Plan plan = planOf(pieces, options);
+        for (const compiler::Key& key : plan.keys) {
             EXPECT_EQ(everSeen.emplace(key.mask, key.shaderId).first->second, key.shaderId);
         }
         options.lockedIds = updateLock(options.lockedIds, plan, false).ids;
@@ -179,8 +181,8 @@ TEST(Lock, OrderOfMaterialsMeansNothing) {
         // The values are equal, so that sums of shares do not depend on their order.
         pieces.back().inputs.expectedHits = 1.0;
     }
-    for (const MergePolicy merge : kLockPolicies) {
-        PlanOptions options{{}, merge};
+    for (const compiler::MergePolicy merge : kLockPolicies) {
+        compiler::PlanOptions options{{}, merge};
         options.lockedIds = {{kLockNormals, 7}, {kLockTextured, 3}, {kLockCoated, 7}};
         const auto expected = keysById(planOf(pieces, options));
         std::ranges::shuffle(pieces, random);
@@ -206,87 +208,89 @@ Piece coated() {
 }
 
 TEST(Lock, RetiredIdsAreLeftAlone) {
-    PlanOptions options{{}, MergePolicy::None};
+    compiler::PlanOptions options{{}, compiler::MergePolicy::None};
     options.lockedIds = {{kUnlit, 0}, {kLockNormals, 4}};
-    const Plan plan = planOf({plain(), coated()}, options);
+    const compiler::Plan plan = planOf({plain(), coated()}, options);
     checkIds(plan);
     ASSERT_EQ(plan.cases.size(), 5U);
     EXPECT_EQ(caseCount(plan), 2U);
     EXPECT_EQ(plan.cases[0].name, "Retired_0");
     EXPECT_EQ(plan.cases[4].always, kLockNormals);
     EXPECT_EQ(plan.cases[1].always, kLockCoated);
-    const LockUpdate update = updateLock(options.lockedIds, plan, false);
-    EXPECT_EQ(update.ids, (LockedIds{{kUnlit, 0}, {kLockNormals, 4}, {kLockCoated, 1}}));
-    EXPECT_EQ(update.stale, std::vector<FeatureMask>{kUnlit});
-    EXPECT_EQ(update.added, std::vector<FeatureMask>{kLockCoated});
-    const LockUpdate pruned = updateLock(options.lockedIds, plan, true);
-    EXPECT_EQ(pruned.ids, (LockedIds{{kLockNormals, 4}, {kLockCoated, 1}}));
+    const compiler::LockUpdate update = updateLock(options.lockedIds, plan, false);
+    EXPECT_EQ(update.ids, (compiler::LockedIds{{kUnlit, 0}, {kLockNormals, 4}, {kLockCoated, 1}}));
+    EXPECT_EQ(update.stale, std::vector<materials::FeatureMask>{kUnlit});
+    EXPECT_EQ(update.added, std::vector<materials::FeatureMask>{kLockCoated});
+    const compiler::LockUpdate pruned = updateLock(options.lockedIds, plan, true);
+    EXPECT_EQ(pruned.ids, (compiler::LockedIds{{kLockNormals, 4}, {kLockCoated, 1}}));
     EXPECT_EQ(pruned.stale, update.stale);
 }
 
 TEST(Lock, MoreKeysThenMoreHitsDecideWhoKeepsAnId) {
-    std::vector<WeightedKey> keys{{1, 0.1}, {2, 0.1}, {4, 0.2}, {8, 0.6}};
-    const LockedIds all{{1, 5}, {2, 5}, {4, 5}, {8, 5}};
-    const std::vector<CaseKeys> pair{{{0, 1}}, {{2}}, {{3}}};
+    std::vector<compiler::WeightedKey> keys{{1, 0.1}, {2, 0.1}, {4, 0.2}, {8, 0.6}};
+    const compiler::LockedIds all{{1, 5}, {2, 5}, {4, 5}, {8, 5}};
+    const std::vector<compiler::CaseKeys> pair{{{0, 1}}, {{2}}, {{3}}};
     EXPECT_EQ(assignShaderIds(keys, pair, all), (std::vector<int>{5, 0, 1}));
-    const std::vector<CaseKeys> single{{{0}}, {{1}}, {{2}}, {{3}}};
+    const std::vector<compiler::CaseKeys> single{{{0}}, {{1}}, {{2}}, {{3}}};
     EXPECT_EQ(assignShaderIds(keys, single, all), (std::vector<int>{0, 1, 2, 5}));
-    for (WeightedKey& key : keys) {
+    for (compiler::WeightedKey& key : keys) {
         key.share = 0.25;
     }
     EXPECT_EQ(assignShaderIds(keys, single, all), (std::vector<int>{5, 0, 1, 2}));
     // If two IDs have one key each, the lower ID is taken. A case that loses one takes the other ID that it
     // has.
-    EXPECT_EQ(assignShaderIds(keys, {pair}, LockedIds{{1, 9}, {2, 6}}), (std::vector<int>{6, 0, 1}));
-    EXPECT_EQ(assignShaderIds(keys, std::vector<CaseKeys>{{{0, 1}}, {{2, 3}}},
-                              LockedIds{{1, 6}, {2, 6}, {4, 6}, {8, 7}}),
+    EXPECT_EQ(assignShaderIds(keys, {pair}, compiler::LockedIds{{1, 9}, {2, 6}}),
+              (std::vector<int>{6, 0, 1}));
+    EXPECT_EQ(assignShaderIds(keys, std::vector<compiler::CaseKeys>{{{0, 1}}, {{2, 3}}},
+                              compiler::LockedIds{{1, 6}, {2, 6}, {4, 6}, {8, 7}}),
               (std::vector<int>{6, 7}));
 }
 
 // Two branches gave different keys the same ID.
 TEST(Lock, SecondClaimOfAnIdGetsANewOne) {
-    PlanOptions options{{}, MergePolicy::None};
+    compiler::PlanOptions options{{}, compiler::MergePolicy::None};
     options.lockedIds = {{kLockNormals, 0}, {kLockTextured, 1}, {kLockCoated, 1}};
-    const Plan plan = planOf({plain(), textured(), coated()}, options);
-    const LockUpdate update = updateLock(options.lockedIds, plan, false);
+    const compiler::Plan plan = planOf({plain(), textured(), coated()}, options);
+    const compiler::LockUpdate update = updateLock(options.lockedIds, plan, false);
     ASSERT_EQ(update.moved.size(), 1U);
     EXPECT_EQ(update.moved[0].from, 1);
     EXPECT_EQ(update.moved[0].to, 2);
     EXPECT_TRUE(update.moved[0].lostId);
     EXPECT_TRUE(update.changes(options.lockedIds));
     // The keys of a family always share an ID; the lower of two stays.
-    options.merge = MergePolicy::Family;
-    const LockUpdate merged = updateLock(options.lockedIds, planOf({plain(), textured()}, options), false);
+    options.merge = compiler::MergePolicy::Family;
+    const compiler::LockUpdate merged =
+        updateLock(options.lockedIds, planOf({plain(), textured()}, options), false);
     ASSERT_EQ(merged.moved.size(), 1U);
     EXPECT_EQ(merged.moved[0].to, 0);
     EXPECT_FALSE(merged.moved[0].lostId);
 }
 
-LockText parsed(const std::string& text) {
-    const std::variant<LockText, LockTextError> result = parseLock(text);
-    if (const auto* error = std::get_if<LockTextError>(&result)) {
+compiler::LockText parsed(const std::string& text) {
+    const std::variant<compiler::LockText, compiler::LockTextError> result = compiler::parseLock(text);
+    if (const auto* error = std::get_if<compiler::LockTextError>(&result)) {
         ADD_FAILURE() << error->line << ": " << error->message;
         return {};
     }
-    return std::get<LockText>(result);
+    return std::get<compiler::LockText>(result);
 }
 
-LockTextError failed(const std::string& text) {
-    const std::variant<LockText, LockTextError> result = parseLock(text);
-    const auto* error = std::get_if<LockTextError>(&result);
+compiler::LockTextError failed(const std::string& text) {
+    const std::variant<compiler::LockText, compiler::LockTextError> result = compiler::parseLock(text);
+    const auto* error = std::get_if<compiler::LockTextError>(&result);
     EXPECT_NE(error, nullptr) << text;
-    return error != nullptr ? *error : LockTextError{};
+    return error != nullptr ? *error : compiler::LockTextError{};
 }
 
-LockedIds randomIds(std::mt19937& random, std::size_t count) {
-    FeatureMask known = 0;
-    for (const Feature& info : builtinMaterialModel().features) {
+compiler::LockedIds randomIds(std::mt19937& random, std::size_t count) {
+    materials::FeatureMask known = 0;
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         known |= info.mask();
     }
-    LockedIds ids;
+    compiler::LockedIds ids;
     while (ids.size() < count) {
-        const FeatureMask mask = (FeatureMask{random()} << 32U | random()) & known;
-        ids[mask & (FeatureMask{random()} << 32U | random())] = static_cast<int>(random() % 65536);
+        const materials::FeatureMask mask = (materials::FeatureMask{random()} << 32U | random()) & known;
+        ids[mask & (materials::FeatureMask{random()} << 32U | random())] = static_cast<int>(random() % 65536);
     }
     return ids;
 }
@@ -295,16 +299,17 @@ TEST(LockText, ReadsBackWhatItWrites) {
     RecordProperty("seed", kLockSeed);
     std::mt19937 random(kLockSeed);
     for (const std::size_t count : {0U, 1U, 2U, 30U, 500U}) {
-        const LockedIds ids = randomIds(random, count);
-        const LockText text = parsed(formatLock(ids));
+        const compiler::LockedIds ids = randomIds(random, count);
+        const compiler::LockText text = parsed(compiler::formatLock(ids));
         EXPECT_EQ(text.ids, ids);
         EXPECT_TRUE(text.repeated.empty());
     }
-    EXPECT_EQ(parsed(formatLock({{0, 3}})).ids, (LockedIds{{0, 3}}));
+    EXPECT_EQ(parsed(compiler::formatLock({{0, 3}})).ids, (compiler::LockedIds{{0, 3}}));
 }
 
 TEST(LockText, IsSortedByFeatures) {
-    const std::string text = formatLock({{kUnlit, 0}, {kLockTextured, 2}, {0, 9}, {kLockNormals, 1}});
+    const std::string text =
+        compiler::formatLock({{kUnlit, 0}, {kLockTextured, 2}, {0, 9}, {kLockNormals, 1}});
     const std::string keys = text.substr(text.find("version"));
     EXPECT_EQ(keys, "version 1\n9 -\n2 baseColorTexture texCoord0 normals\n1 normals\n0 unlit\n");
     EXPECT_TRUE(text.starts_with("# "));
@@ -312,16 +317,16 @@ TEST(LockText, IsSortedByFeatures) {
 
 // Such a file results from a merge that takes both sides, and from an editor of another system.
 TEST(LockText, OrderRepetitionAndLineEndsMeanNothing) {
-    const LockText text = parsed(
+    const compiler::LockText text = parsed(
         "\xEF\xBB\xBF# mine\r\nversion 1\r\n4 normals clearcoat\r\n\r\n# theirs\nversion 1\n"
         "  1\tnormals \n4 clearcoat normals\n0 unlit");
-    EXPECT_EQ(text.ids, (LockedIds{{kUnlit, 0}, {kLockNormals, 1}, {kLockCoated, 4}}));
+    EXPECT_EQ(text.ids, (compiler::LockedIds{{kUnlit, 0}, {kLockNormals, 1}, {kLockCoated, 4}}));
     EXPECT_TRUE(text.repeated.empty());
 }
 
 TEST(LockText, LowerOfTwoIdsOfAKeyCounts) {
-    const LockText text = parsed("version 1\n7 unlit\n3 unlit\n5 unlit\n");
-    EXPECT_EQ(text.ids, (LockedIds{{kUnlit, 3}}));
+    const compiler::LockText text = parsed("version 1\n7 unlit\n3 unlit\n5 unlit\n");
+    EXPECT_EQ(text.ids, (compiler::LockedIds{{kUnlit, 3}}));
     ASSERT_EQ(text.repeated.size(), 2U);
     EXPECT_EQ(text.repeated[0].line, 3);
     EXPECT_EQ(text.repeated[0].ignored, 7);
@@ -351,7 +356,7 @@ TEST(LockText, MistakesHaveTheirLines) {
         {"version 1\n0 unlit clearcaot\n", {2, "\"clearcaot\" is no feature"}},
     };
     for (const auto& [text, expected] : mistakes) {
-        const LockTextError error = failed(text);
+        const compiler::LockTextError error = failed(text);
         EXPECT_EQ(error.line, expected.first) << text;
         EXPECT_NE(error.message.find(expected.second), std::string::npos) << text << ": " << error.message;
         EXPECT_FALSE(error.hint.empty()) << text;
@@ -363,7 +368,7 @@ TEST(LockText, MistakesHaveTheirLines) {
 TEST(LockText, RandomEditsAreReadOrRefused) {
     RecordProperty("seed", kLockSeed);
     std::mt19937 random(kLockSeed);
-    const std::string whole = formatLock(randomIds(random, 20));
+    const std::string whole = compiler::formatLock(randomIds(random, 20));
     const std::string_view pieces[] = {"<<<<<<<",   "version 1\n", "version 9", "-",    "\n", "\r", " ",
                                        "999999999", "unlit",       "#",         "\xFF", "",   "0",  "\t"};
     int accepted = 0;
@@ -376,16 +381,16 @@ TEST(LockText, RandomEditsAreReadOrRefused) {
             text.replace(place, erased, pieces[random() % std::size(pieces)]);
         }
         text += random() % 8 == 0 ? std::string(1, '\0') : "";
-        const std::variant<LockText, LockTextError> result = parseLock(text);
-        if (const auto* error = std::get_if<LockTextError>(&result)) {
+        const std::variant<compiler::LockText, compiler::LockTextError> result = compiler::parseLock(text);
+        if (const auto* error = std::get_if<compiler::LockTextError>(&result)) {
             ++refused;
             const auto lines = 1 + std::ranges::count(text, '\n');
             ASSERT_TRUE(error->line >= 1 && error->line <= lines) << text;
             ASSERT_TRUE(std::ranges::all_of(error->message, [](char c) { return c >= ' ' && c <= '~'; }));
         } else {
             ++accepted;
-            const LockedIds& ids = std::get<LockText>(result).ids;
-            ASSERT_EQ(parsed(formatLock(ids)).ids, ids);
+            const compiler::LockedIds& ids = std::get<compiler::LockText>(result).ids;
+            ASSERT_EQ(parsed(compiler::formatLock(ids)).ids, ids);
         }
     }
     EXPECT_GT(accepted, 300);

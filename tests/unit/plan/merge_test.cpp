@@ -18,20 +18,22 @@ namespace {
 using namespace glint;
 
 constexpr unsigned kMergeSeed = 20250317;
-const FeatureMask kMergeBase = bit("normals");
-const FeatureMask kMergeTextured = kMergeBase | bit("baseColorTexture") | bit("texCoord0");
-const FeatureMask kMergeCoated = kMergeTextured | bit("clearcoat");
-const FeatureMask kDispersing = kMergeBase | bit("transmission") | bit("volume") | bit("dispersion");
+const materials::FeatureMask kMergeBase = bit("normals");
+const materials::FeatureMask kMergeTextured = kMergeBase | bit("baseColorTexture") | bit("texCoord0");
+const materials::FeatureMask kMergeCoated = kMergeTextured | bit("clearcoat");
+const materials::FeatureMask kDispersing =
+    kMergeBase | bit("transmission") | bit("volume") | bit("dispersion");
 
-std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
-    FeatureMask known = 0;
-    for (const Feature& info : builtinMaterialModel().features) {
+std::vector<compiler::WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
+    materials::FeatureMask known = 0;
+    for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         known |= info.mask();
     }
-    std::map<FeatureMask, double> weights;
+    std::map<materials::FeatureMask, double> weights;
     while (weights.size() < count) {
-        const FeatureMask mask = FeatureMask{random()} << 32U | random();
-        const FeatureMask sparse = mask & (FeatureMask{random()} << 32U | random()) & known;
+        const materials::FeatureMask mask = materials::FeatureMask{random()} << 32U | random();
+        const materials::FeatureMask sparse =
+            mask & (materials::FeatureMask{random()} << 32U | random()) & known;
         // The weights range from a hundred thousand to one, and some keys have no hits.
         weights[sparse] = random() % 8 == 0 ? 0.0 : std::exp2(static_cast<double>(random() % 17));
     }
@@ -39,10 +41,10 @@ std::vector<WeightedKey> randomKeys(std::mt19937& random, std::size_t count) {
 }
 
 // After multiplying hits or shuffling a list, keys are identified by mask.
-std::map<FeatureMask, CaseReason> reasonsByMask(const std::vector<WeightedKey>& keys,
-                                                const std::vector<CaseKeys>& cases) {
-    std::map<FeatureMask, CaseReason> reasons;
-    for (const CaseKeys& shaderCase : cases) {
+std::map<materials::FeatureMask, compiler::CaseReason> reasonsByMask(
+    const std::vector<compiler::WeightedKey>& keys, const std::vector<compiler::CaseKeys>& cases) {
+    std::map<materials::FeatureMask, compiler::CaseReason> reasons;
+    for (const compiler::CaseKeys& shaderCase : cases) {
         for (const int key : shaderCase.keys) {
             reasons[keys[static_cast<std::size_t>(key)].mask] = shaderCase.reason;
         }
@@ -51,7 +53,7 @@ std::map<FeatureMask, CaseReason> reasonsByMask(const std::vector<WeightedKey>& 
 }
 
 // Returns the case of each key; every key must be in exactly one.
-std::vector<int> casesOfKeys(std::size_t keyCount, const std::vector<CaseKeys>& cases) {
+std::vector<int> casesOfKeys(std::size_t keyCount, const std::vector<compiler::CaseKeys>& cases) {
     std::vector<int> caseOf(keyCount, -1);
     for (std::size_t i = 0; i < cases.size(); ++i) {
         EXPECT_FALSE(cases[i].keys.empty());
@@ -65,41 +67,42 @@ std::vector<int> casesOfKeys(std::size_t keyCount, const std::vector<CaseKeys>& 
     return caseOf;
 }
 
-constexpr MergePolicy kBudgeted[] = {MergePolicy::Auto, MergePolicy::Profile};
+constexpr compiler::MergePolicy kBudgeted[] = {compiler::MergePolicy::Auto, compiler::MergePolicy::Profile};
 
 TEST(Merge, PartitionsTheKeysWithinTheBudget) {
     RecordProperty("seed", kMergeSeed);
     std::mt19937 random(kMergeSeed);
     for (const std::size_t count : {1U, 2U, 3U, 17U, 40U, 150U}) {
-        const std::vector<WeightedKey> keys = randomKeys(random, count);
-        for (const MergePolicy merge : kBudgeted) {
+        const std::vector<compiler::WeightedKey> keys = randomKeys(random, count);
+        for (const compiler::MergePolicy merge : kBudgeted) {
             for (const int budget : {1, 2, 3, 4, 5, 8, 32, 1000}) {
                 SCOPED_TRACE(::testing::Message() << nameOf(merge) << ", " << count << " keys, " << budget);
-                const std::vector<CaseKeys> cases = mergeKeys(keys, merge, budget);
+                const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, merge, budget);
                 EXPECT_LE(cases.size(), static_cast<std::size_t>(budget));
                 casesOfKeys(keys.size(), cases);
                 EXPECT_TRUE(std::ranges::is_sorted(
-                    cases, {}, [](const CaseKeys& shaderCase) { return shaderCase.keys.front(); }));
+                    cases, {}, [](const compiler::CaseKeys& shaderCase) { return shaderCase.keys.front(); }));
             }
         }
     }
 }
 
 TEST(Merge, OfNothingMakesNoCase) {
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
-                                    MergePolicy::Auto, MergePolicy::Profile}) {
+    for (const compiler::MergePolicy merge :
+         {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::All,
+          compiler::MergePolicy::Auto, compiler::MergePolicy::Profile}) {
         EXPECT_TRUE(mergeKeys({}, merge, 1).empty());
     }
 }
 
 TEST(Merge, GivesTheSameCasesAgain) {
     std::mt19937 random(kMergeSeed);
-    std::vector<WeightedKey> keys = randomKeys(random, 60);
+    std::vector<compiler::WeightedKey> keys = randomKeys(random, 60);
     // All shares are tied, so the order of the masks decides.
-    for (WeightedKey& key : keys) {
+    for (compiler::WeightedKey& key : keys) {
         key.share = 1.0 / 60.0;
     }
-    for (const MergePolicy merge : kBudgeted) {
+    for (const compiler::MergePolicy merge : kBudgeted) {
         const std::vector<int> once = casesOfKeys(keys.size(), mergeKeys(keys, merge, 7));
         EXPECT_EQ(once, casesOfKeys(keys.size(), mergeKeys(keys, merge, 7)));
         EXPECT_EQ(*std::ranges::max_element(once), 6);
@@ -107,21 +110,21 @@ TEST(Merge, GivesTheSameCasesAgain) {
 }
 
 TEST(Merge, FrequentKeysThatDifferMuchStayApart) {
-    const std::vector<WeightedKey> keys =
+    const std::vector<compiler::WeightedKey> keys =
         glint::testing::toKeys({{kMergeTextured, 50.0}, {kMergeCoated, 30.0}, {kDispersing, 20.0}});
-    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
+    const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, compiler::MergePolicy::Auto, 32);
     ASSERT_EQ(cases.size(), 3U);
-    for (const CaseKeys& shaderCase : cases) {
-        EXPECT_EQ(shaderCase.reason, CaseReason::Own);
+    for (const compiler::CaseKeys& shaderCase : cases) {
+        EXPECT_EQ(shaderCase.reason, compiler::CaseReason::Own);
     }
 }
 
 TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
-    const FeatureMask doubleSided = kMergeCoated | bit("doubleSided");
+    const materials::FeatureMask doubleSided = kMergeCoated | bit("doubleSided");
     const auto casesWith = [&](double weight) {
-        const std::vector<WeightedKey> keys =
+        const std::vector<compiler::WeightedKey> keys =
             glint::testing::toKeys({{kMergeTextured, 1000.0}, {kMergeCoated, weight}, {doubleSided, weight}});
-        const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
+        const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, compiler::MergePolicy::Auto, 32);
         return casesOfKeys(keys.size(), cases);
     };
     const std::vector<int> few = casesWith(100.0);
@@ -134,16 +137,16 @@ TEST(Merge, KeysThatHardlyDifferShareACaseWhereHitsAreFew) {
 // The keys are the same: the keys with the hits get their own cases.
 TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
     std::mt19937 random(kMergeSeed);
-    const std::vector<WeightedKey> start = randomKeys(random, 30);
-    for (const MergePolicy merge : kBudgeted) {
+    const std::vector<compiler::WeightedKey> start = randomKeys(random, 30);
+    for (const compiler::MergePolicy merge : kBudgeted) {
         for (std::size_t hot = 0; hot < start.size(); ++hot) {
-            std::map<FeatureMask, double> weights;
-            for (const WeightedKey& key : start) {
+            std::map<materials::FeatureMask, double> weights;
+            for (const compiler::WeightedKey& key : start) {
                 weights[key.mask] = 1.0;
             }
             weights[start[hot].mask] = 60.0;
-            const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
-            const std::vector<CaseKeys> cases = mergeKeys(keys, merge, 4);
+            const std::vector<compiler::WeightedKey> keys = glint::testing::toKeys(weights);
+            const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, merge, 4);
             const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
             EXPECT_EQ(std::ranges::count(caseOf, caseOf[hot]), 1) << nameOf(merge) << ", key " << hot;
         }
@@ -151,44 +154,44 @@ TEST(Merge, WeightsMoveKeysToCasesOfTheirOwn) {
 }
 
 TEST(Merge, RareKeysAreTheRest) {
-    std::map<FeatureMask, double> weights{{kMergeTextured, 600.0}, {kMergeCoated, 400.0}};
+    std::map<materials::FeatureMask, double> weights{{kMergeTextured, 600.0}, {kMergeCoated, 400.0}};
     for (const char* const feature : {"sheen", "anisotropy", "iridescence"}) {
         weights[kMergeBase | bit(feature)] = 1.0;
     }
-    const std::vector<WeightedKey> keys = glint::testing::toKeys(weights);
-    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Auto, 32);
+    const std::vector<compiler::WeightedKey> keys = glint::testing::toKeys(weights);
+    const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, compiler::MergePolicy::Auto, 32);
     EXPECT_EQ(cases.size(), 3U);
     const auto reasons = reasonsByMask(keys, cases);
-    EXPECT_EQ(reasons.at(kMergeBase | bit("sheen")), CaseReason::Rest);
-    EXPECT_EQ(reasons.at(kMergeBase | bit("iridescence")), CaseReason::Rest);
-    EXPECT_EQ(reasons.at(kMergeTextured), CaseReason::Own);
-    EXPECT_EQ(reasons.at(kMergeCoated), CaseReason::Own);
+    EXPECT_EQ(reasons.at(kMergeBase | bit("sheen")), compiler::CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kMergeBase | bit("iridescence")), compiler::CaseReason::Rest);
+    EXPECT_EQ(reasons.at(kMergeTextured), compiler::CaseReason::Own);
+    EXPECT_EQ(reasons.at(kMergeCoated), compiler::CaseReason::Own);
 }
 
 // Each of a thousand keys with equal shares is rare, but together they are not.
 TEST(Merge, ManyEqualKeysAreNotAllRest) {
     std::mt19937 random(kMergeSeed);
-    std::vector<WeightedKey> keys = randomKeys(random, 1000);
-    for (WeightedKey& key : keys) {
+    std::vector<compiler::WeightedKey> keys = randomKeys(random, 1000);
+    for (compiler::WeightedKey& key : keys) {
         key.share = 1e-3;
     }
-    EXPECT_EQ(mergeKeys(keys, MergePolicy::Auto, 20).size(), 20U);
+    EXPECT_EQ(mergeKeys(keys, compiler::MergePolicy::Auto, 20).size(), 20U);
 }
 
 TEST(Merge, TheBudgetIsTheReasonWhereMergingDoesNotPay) {
-    const std::vector<WeightedKey> keys =
+    const std::vector<compiler::WeightedKey> keys =
         glint::testing::toKeys({{kMergeTextured, 50.0}, {kMergeCoated, 30.0}, {kDispersing, 20.0}});
-    const std::vector<CaseKeys> two = mergeKeys(keys, MergePolicy::Auto, 2);
+    const std::vector<compiler::CaseKeys> two = mergeKeys(keys, compiler::MergePolicy::Auto, 2);
     ASSERT_EQ(two.size(), 2U);
-    EXPECT_EQ(std::ranges::count(two, CaseReason::Budget, &CaseKeys::reason), 1);
-    const std::vector<CaseKeys> one = mergeKeys(keys, MergePolicy::Auto, 1);
+    EXPECT_EQ(std::ranges::count(two, compiler::CaseReason::Budget, &compiler::CaseKeys::reason), 1);
+    const std::vector<compiler::CaseKeys> one = mergeKeys(keys, compiler::MergePolicy::Auto, 1);
     ASSERT_EQ(one.size(), 1U);
-    EXPECT_EQ(one[0].reason, CaseReason::Budget);
+    EXPECT_EQ(one[0].reason, compiler::CaseReason::Budget);
 }
 
 TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
-    const FeatureMask sheen = kMergeBase | bit("sheen");
-    const std::vector<WeightedKey> keys =
+    const materials::FeatureMask sheen = kMergeBase | bit("sheen");
+    const std::vector<compiler::WeightedKey> keys =
         glint::testing::toKeys({{kMergeBase, 500.0},
                                 {kMergeTextured, 460.0},
                                 {kMergeTextured | bit("textureTransform"), 20.0},
@@ -196,43 +199,43 @@ TEST(Merge, ProfilesTellHotFromColdFromNeverHit) {
                                 {kMergeCoated, 0.0},
                                 {sheen, 0.0},
                                 {sheen | bit("doubleSided"), 2.0}});
-    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
+    const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, compiler::MergePolicy::Profile, 32);
     const auto reasons = reasonsByMask(keys, cases);
-    EXPECT_EQ(reasons.at(kMergeBase), CaseReason::Hot);
-    EXPECT_EQ(reasons.at(kMergeTextured), CaseReason::Hot);
-    EXPECT_EQ(reasons.at(kMergeTextured | bit("textureTransform")), CaseReason::Cold);
-    EXPECT_EQ(reasons.at(sheen | bit("doubleSided")), CaseReason::Cold);
-    EXPECT_EQ(reasons.at(kMergeCoated), CaseReason::NeverHit);
-    EXPECT_EQ(reasons.at(sheen), CaseReason::NeverHit);
+    EXPECT_EQ(reasons.at(kMergeBase), compiler::CaseReason::Hot);
+    EXPECT_EQ(reasons.at(kMergeTextured), compiler::CaseReason::Hot);
+    EXPECT_EQ(reasons.at(kMergeTextured | bit("textureTransform")), compiler::CaseReason::Cold);
+    EXPECT_EQ(reasons.at(sheen | bit("doubleSided")), compiler::CaseReason::Cold);
+    EXPECT_EQ(reasons.at(kMergeCoated), compiler::CaseReason::NeverHit);
+    EXPECT_EQ(reasons.at(sheen), compiler::CaseReason::NeverHit);
     // There are two hot keys, at most two families of cold keys, and one case for the others.
     const std::vector<int> caseOf = casesOfKeys(keys.size(), cases);
     EXPECT_LE(cases.size(), 5U);
-    for (const CaseKeys& shaderCase : cases) {
-        EXPECT_TRUE(shaderCase.reason != CaseReason::Hot || shaderCase.keys.size() == 1);
+    for (const compiler::CaseKeys& shaderCase : cases) {
+        EXPECT_TRUE(shaderCase.reason != compiler::CaseReason::Hot || shaderCase.keys.size() == 1);
     }
-    EXPECT_EQ(std::ranges::count(cases, CaseReason::NeverHit, &CaseKeys::reason), 1);
-    EXPECT_EQ(mergeKeys(keys, MergePolicy::Profile, 2).size(), 2U);
+    EXPECT_EQ(std::ranges::count(cases, compiler::CaseReason::NeverHit, &compiler::CaseKeys::reason), 1);
+    EXPECT_EQ(mergeKeys(keys, compiler::MergePolicy::Profile, 2).size(), 2U);
 }
 
 TEST(Merge, AProfileWithoutHitsMakesOneCase) {
     std::mt19937 random(kMergeSeed);
-    std::vector<WeightedKey> keys = randomKeys(random, 10);
-    for (WeightedKey& key : keys) {
+    std::vector<compiler::WeightedKey> keys = randomKeys(random, 10);
+    for (compiler::WeightedKey& key : keys) {
         key.share = 0.0;
     }
-    const std::vector<CaseKeys> cases = mergeKeys(keys, MergePolicy::Profile, 32);
+    const std::vector<compiler::CaseKeys> cases = mergeKeys(keys, compiler::MergePolicy::Profile, 32);
     ASSERT_EQ(cases.size(), 1U);
-    EXPECT_EQ(cases[0].reason, CaseReason::NeverHit);
+    EXPECT_EQ(cases[0].reason, compiler::CaseReason::NeverHit);
 }
 
 TEST(Merge, EveryReasonHasAWordAndASentence) {
     std::map<std::string_view, int> words;
-    for (int i = 0; i <= static_cast<int>(CaseReason::NeverHit); ++i) {
-        ++words[toString(static_cast<CaseReason>(i))];
-        EXPECT_FALSE(explain(static_cast<CaseReason>(i)).empty());
+    for (int i = 0; i <= static_cast<int>(compiler::CaseReason::NeverHit); ++i) {
+        ++words[toString(static_cast<compiler::CaseReason>(i))];
+        EXPECT_FALSE(explain(static_cast<compiler::CaseReason>(i)).empty());
     }
-    EXPECT_EQ(words.size(), static_cast<std::size_t>(CaseReason::NeverHit) + 1);
-    EXPECT_EQ(toString(CaseReason::NeverHit), "never-hit");
+    EXPECT_EQ(words.size(), static_cast<std::size_t>(compiler::CaseReason::NeverHit) + 1);
+    EXPECT_EQ(toString(compiler::CaseReason::NeverHit), "never-hit");
 }
 
 }  // namespace

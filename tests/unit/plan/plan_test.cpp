@@ -14,13 +14,13 @@ namespace {
 
 using namespace glint;
 
-const FeatureMask kNormals = bit("normals");
-const FeatureMask kTextured = bit("baseColorTexture") | bit("texCoord0");
+const materials::FeatureMask kNormals = bit("normals");
+const materials::FeatureMask kTextured = bit("baseColorTexture") | bit("texCoord0");
 
 // Materials: 0 plain, 1 plain with other values, 2 textured, 3 unlit, 4 unlit and textured.
 struct SmallScene {
-    std::vector<Material> materials{5};
-    std::vector<PrimitiveInputs> primitives;
+    std::vector<materials::Material> materials{5};
+    std::vector<materials::PrimitiveInputs> primitives;
 
     SmallScene() {
         materials[1]["roughnessFactor"] = 0.2F;
@@ -29,7 +29,7 @@ struct SmallScene {
         materials[4].give("KHR_materials_unlit");
         materials[4].texture("baseColorTexture").texture = 0;
         for (int material = 0; material < 5; ++material) {
-            PrimitiveInputs primitive;
+            materials::PrimitiveInputs primitive;
             primitive.primitive = material;
             primitive.material = material;
             primitive.hasNormals = true;
@@ -37,20 +37,20 @@ struct SmallScene {
             primitives.push_back(primitive);
         }
         // A second primitive of material 0 has no normals, and so another key.
-        PrimitiveInputs flat;
+        materials::PrimitiveInputs flat;
         flat.mesh = 1;
         primitives.push_back(flat);
     }
 
-    Plan plan(MergePolicy merge) const {
-        return makePlan(materials, primitives, {{}, merge});
+    compiler::Plan plan(compiler::MergePolicy merge) const {
+        return compiler::makePlan(materials, primitives, {{}, merge});
     }
 };
 
 TEST(Plan, GivesEachPermutationAKey) {
-    const Plan plan = SmallScene().plan(MergePolicy::None);
+    const compiler::Plan plan = SmallScene().plan(compiler::MergePolicy::None);
     ASSERT_EQ(plan.keys.size(), 5U);
-    const FeatureMask unlit = bit("unlit");
+    const materials::FeatureMask unlit = bit("unlit");
     EXPECT_EQ(plan.keys[0].mask, 0U);
     EXPECT_EQ(plan.keys[1].mask, unlit);
     EXPECT_EQ(plan.keys[2].mask, kTextured | unlit);
@@ -63,7 +63,7 @@ TEST(Plan, GivesEachPermutationAKey) {
 }
 
 TEST(Plan, NoneMakesEveryKeyACase) {
-    const Plan plan = SmallScene().plan(MergePolicy::None);
+    const compiler::Plan plan = SmallScene().plan(compiler::MergePolicy::None);
     ASSERT_EQ(plan.cases.size(), 5U);
     for (std::size_t i = 0; i < plan.cases.size(); ++i) {
         EXPECT_EQ(plan.cases[i].shaderId, static_cast<int>(i));
@@ -76,7 +76,7 @@ TEST(Plan, NoneMakesEveryKeyACase) {
 }
 
 TEST(Plan, FamilyMergesKeysWithTheSameLobes) {
-    const Plan plan = SmallScene().plan(MergePolicy::Family);
+    const compiler::Plan plan = SmallScene().plan(compiler::MergePolicy::Family);
     ASSERT_EQ(plan.cases.size(), 2U);
     EXPECT_EQ(plan.cases[0].name, "PbrFamily");
     EXPECT_EQ(plan.cases[0].always, 0U);
@@ -88,7 +88,7 @@ TEST(Plan, FamilyMergesKeysWithTheSameLobes) {
 }
 
 TEST(Plan, AllMakesOneCase) {
-    const Plan plan = SmallScene().plan(MergePolicy::All);
+    const compiler::Plan plan = SmallScene().plan(compiler::MergePolicy::All);
     ASSERT_EQ(plan.cases.size(), 1U);
     EXPECT_EQ(plan.cases[0].always, 0U);
     EXPECT_EQ(plan.cases[0].sometimes, bit("unlit") | kTextured | kNormals);
@@ -98,9 +98,10 @@ TEST(Plan, AllMakesOneCase) {
 }
 
 TEST(Plan, OfNothingHasNoCase) {
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
-                                    MergePolicy::Auto, MergePolicy::Profile}) {
-        const Plan plan = makePlan({}, {}, {{}, merge});
+    for (const compiler::MergePolicy merge :
+         {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::All,
+          compiler::MergePolicy::Auto, compiler::MergePolicy::Profile}) {
+        const compiler::Plan plan = compiler::makePlan({}, {}, {{}, merge});
         EXPECT_TRUE(plan.keys.empty());
         EXPECT_TRUE(plan.cases.empty());
         EXPECT_EQ(plan.always | plan.sometimes, 0U);
@@ -110,9 +111,9 @@ TEST(Plan, OfNothingHasNoCase) {
 
 TEST(Plan, DoesNotDependOnTheOrderOfPrimitives) {
     SmallScene scene;
-    const Plan before = scene.plan(MergePolicy::None);
+    const compiler::Plan before = scene.plan(compiler::MergePolicy::None);
     std::ranges::reverse(scene.primitives);
-    const Plan after = scene.plan(MergePolicy::None);
+    const compiler::Plan after = scene.plan(compiler::MergePolicy::None);
     ASSERT_EQ(before.cases.size(), after.cases.size());
     for (std::size_t i = 0; i < before.cases.size(); ++i) {
         EXPECT_EQ(before.cases[i].name, after.cases[i].name);
@@ -123,20 +124,20 @@ TEST(Plan, DoesNotDependOnTheOrderOfPrimitives) {
 TEST(Plan, SharesTheExpectedHits) {
     SmallScene scene;
     // Nothing is known, so all keys have the same share.
-    for (const Key& key : scene.plan(MergePolicy::None).keys) {
+    for (const compiler::Key& key : scene.plan(compiler::MergePolicy::None).keys) {
         EXPECT_DOUBLE_EQ(key.share, 0.2);
     }
     scene.primitives[2].expectedHits = 3.0;
     scene.primitives[0].expectedHits = 0.5;
     scene.primitives[1].expectedHits = 0.5;
     scene.primitives[3].expectedHits = 4.0;
-    const Plan plan = scene.plan(MergePolicy::Auto);
+    const compiler::Plan plan = scene.plan(compiler::MergePolicy::Auto);
     EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.375);
     EXPECT_DOUBLE_EQ(plan.keys[3].share, 0.125);
     EXPECT_DOUBLE_EQ(plan.keys[1].share, 0.5);
     EXPECT_EQ(plan.keys[0].share, 0.0);
     double ofCases = 0.0;
-    for (const Case& shaderCase : plan.cases) {
+    for (const compiler::Case& shaderCase : plan.cases) {
         ofCases += shaderCase.share;
     }
     EXPECT_DOUBLE_EQ(ofCases, 1.0);
@@ -145,43 +146,43 @@ TEST(Plan, SharesTheExpectedHits) {
 // A key that was counted as hot gets its own case; without counts, no key is expected to be hot.
 TEST(Plan, AutoMergesByCountedHits) {
     SmallScene scene;
-    PlanOptions options{{}, MergePolicy::Auto};
+    compiler::PlanOptions options{{}, compiler::MergePolicy::Auto};
     options.hits = {{kNormals, 1}, {kTextured | kNormals, 999'999}};
-    const Plan plan = makePlan(scene.materials, scene.primitives, options);
+    const compiler::Plan plan = makePlan(scene.materials, scene.primitives, options);
     EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.999999);
     EXPECT_EQ(plan.keys[0].share, 0.0);
     ASSERT_EQ(plan.cases.size(), 2U);
-    EXPECT_EQ(plan.cases[0].reason, CaseReason::Rest);
+    EXPECT_EQ(plan.cases[0].reason, compiler::CaseReason::Rest);
     EXPECT_EQ(plan.cases[0].keys.size(), 4U);
-    EXPECT_EQ(plan.cases[1].reason, CaseReason::Own);
-    EXPECT_GT(scene.plan(MergePolicy::Auto).cases.size(), 2U);
-    options.merge = MergePolicy::None;
+    EXPECT_EQ(plan.cases[1].reason, compiler::CaseReason::Own);
+    EXPECT_GT(scene.plan(compiler::MergePolicy::Auto).cases.size(), 2U);
+    options.merge = compiler::MergePolicy::None;
     EXPECT_FALSE(countsHits(options));
     EXPECT_DOUBLE_EQ(makePlan(scene.materials, scene.primitives, options).keys[4].share, 0.2);
 }
 
 TEST(Plan, TakesTheSharesOfAProfile) {
     const SmallScene scene;
-    PlanOptions options{{}, MergePolicy::Profile};
-    options.hits = {{kNormals, 30}, {kTextured | kNormals, 10}, {FeatureMask{1} << 63U, 1000}};
-    const Plan plan = makePlan(scene.materials, scene.primitives, options);
+    compiler::PlanOptions options{{}, compiler::MergePolicy::Profile};
+    options.hits = {{kNormals, 30}, {kTextured | kNormals, 10}, {materials::FeatureMask{1} << 63U, 1000}};
+    const compiler::Plan plan = makePlan(scene.materials, scene.primitives, options);
     EXPECT_DOUBLE_EQ(plan.keys[3].share, 0.75);
     EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.25);
     ASSERT_EQ(plan.cases.size(), 3U);
-    EXPECT_EQ(plan.cases[0].reason, CaseReason::NeverHit);
+    EXPECT_EQ(plan.cases[0].reason, compiler::CaseReason::NeverHit);
     EXPECT_EQ(plan.cases[0].name, "PbrMixed");
-    EXPECT_EQ(plan.cases[1].reason, CaseReason::Hot);
+    EXPECT_EQ(plan.cases[1].reason, compiler::CaseReason::Hot);
     EXPECT_EQ(plan.cases[1].name, "Pbr_Normals");
 }
 
 TEST(Plan, RecordsEachDropOnceWithItsMaterials) {
     SmallScene scene;
-    for (Material& material : scene.materials) {
-        material.alphaMode = AlphaMode::Mask;
+    for (materials::Material& material : scene.materials) {
+        material.alphaMode = materials::AlphaMode::Mask;
     }
-    const Plan plan = scene.plan(MergePolicy::None);
+    const compiler::Plan plan = scene.plan(compiler::MergePolicy::None);
     int alphaDrops = 0;
-    for (const DroppedFeature& dropped : plan.dropped) {
+    for (const compiler::DroppedFeature& dropped : plan.dropped) {
         if (dropped.feature == "alphaMask") {
             ++alphaDrops;
             EXPECT_EQ(dropped.materials, (std::vector<int>{0, 1, 2, 3, 4}));
@@ -192,9 +193,9 @@ TEST(Plan, RecordsEachDropOnceWithItsMaterials) {
 
 TEST(Plan, ExcessSaysWhatToDo) {
     const SmallScene scene;
-    const Plan plan = scene.plan(MergePolicy::None);
+    const compiler::Plan plan = scene.plan(compiler::MergePolicy::None);
     const auto excess = [&](int limit) {
-        PlanOptions options{{}, MergePolicy::None};
+        compiler::PlanOptions options{{}, compiler::MergePolicy::None};
         options.maxShaders = limit;
         return describeExcess(plan, options);
     };
@@ -205,10 +206,10 @@ TEST(Plan, ExcessSaysWhatToDo) {
     EXPECT_NE(excess(1)->find("--merge auto"), std::string::npos);
 }
 
-Material randomMaterial(std::mt19937& random) {
+materials::Material randomMaterial(std::mt19937& random) {
     const auto coin = [&] { return (random() & 1U) != 0; };
-    Material material;
-    for (TextureInfo& info : material.textures) {
+    materials::Material material;
+    for (materials::TextureInfo& info : material.textures) {
         info.texture = coin() ? 0 : -1;
         info.texCoord = coin() ? 1 : 0;
         info.transform.rotation = coin() ? 1.0F : 0.0F;
@@ -217,7 +218,7 @@ Material randomMaterial(std::mt19937& random) {
         material.give("KHR_materials_unlit");
     }
     material.doubleSided = coin();
-    material.alphaMode = coin() ? AlphaMode::Mask : AlphaMode::Opaque;
+    material.alphaMode = coin() ? materials::AlphaMode::Mask : materials::AlphaMode::Opaque;
     material["emissiveFactor"][0] = coin() ? 1.0F : 0.0F;
     material["emissiveStrength"] = coin() ? 2.0F : 1.0F;
     if (random() % 8 == 0) {
@@ -240,19 +241,19 @@ Material randomMaterial(std::mt19937& random) {
 }
 
 struct RandomScene {
-    std::vector<Material> materials;
-    std::vector<PrimitiveInputs> primitives;
+    std::vector<materials::Material> materials;
+    std::vector<materials::PrimitiveInputs> primitives;
 
     explicit RandomScene(std::mt19937& random) {
         for (int i = 0; i < 500; ++i) {
             materials.push_back(randomMaterial(random));
-            PrimitiveInputs primitive;
+            materials::PrimitiveInputs primitive;
             primitive.material = i;
             primitive.hasNormals = (random() & 1U) != 0;
             primitive.hasTangents = (random() & 1U) != 0;
             primitive.hasTexCoords0 = (random() & 3U) != 0;
             primitive.hasTexCoords1 = (random() & 1U) != 0;
-            primitive.colors = static_cast<ColorContent>(random() % 3);
+            primitive.colors = static_cast<materials::ColorContent>(random() % 3);
             primitives.push_back(primitive);
         }
     }
@@ -264,22 +265,24 @@ TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
     RecordProperty("seed", kSeed);
     std::mt19937 random(kSeed);
     const RandomScene scene(random);
-    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All,
-                                    MergePolicy::Auto, MergePolicy::Profile}) {
-        PlanOptions options{{AlphaPolicy::Tested}, merge};
-        for (const PrimitiveInputs& primitive : scene.primitives) {
-            const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
-            options.hits[makeKey(material, primitive, options.keys)] = random() % 100;
+    for (const compiler::MergePolicy merge :
+         {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::All,
+          compiler::MergePolicy::Auto, compiler::MergePolicy::Profile}) {
+        compiler::PlanOptions options{{package::AlphaPolicy::Tested}, merge};
+        for (const materials::PrimitiveInputs& primitive : scene.primitives) {
+            const materials::Material& material =
+                scene.materials[static_cast<std::size_t>(primitive.material)];
+            options.hits[compiler::makeKey(material, primitive, options.keys)] = random() % 100;
         }
-        const Plan plan = makePlan(scene.materials, scene.primitives, options);
+        const compiler::Plan plan = makePlan(scene.materials, scene.primitives, options);
         std::set<std::string> names;
         std::size_t keyCount = 0;
         double share = 0.0;
-        for (const Case& shaderCase : plan.cases) {
+        for (const compiler::Case& shaderCase : plan.cases) {
             EXPECT_EQ(shaderCase.always & shaderCase.sometimes, 0U);
             EXPECT_TRUE(names.insert(shaderCase.name).second) << shaderCase.name;
-            FeatureMask all = ~FeatureMask{0};
-            FeatureMask any = 0;
+            materials::FeatureMask all = ~materials::FeatureMask{0};
+            materials::FeatureMask any = 0;
             for (const int key : shaderCase.keys) {
                 all &= plan.keys[key].mask;
                 any |= plan.keys[key].mask;
@@ -302,14 +305,18 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
     std::mt19937 random(kSeed);
     const RandomScene scene(random);
     for (int i = 0; i < 50; ++i) {
-        const KeyOptions keys{AlphaPolicy::Tested, static_cast<FeatureMask>(random()) & kLobeMask};
-        const Plan plan = makePlan(scene.materials, scene.primitives, {keys, MergePolicy::Family});
-        const FeatureMask whole = plan.primaryAlways | plan.primarySometimes;
-        FeatureMask every = ~FeatureMask{0};
+        const materials::KeyOptions keys{
+            package::AlphaPolicy::Tested,
+            static_cast<materials::FeatureMask>(random()) & materials::kLobeMask};
+        const compiler::Plan plan =
+            compiler::makePlan(scene.materials, scene.primitives, {keys, compiler::MergePolicy::Family});
+        const materials::FeatureMask whole = plan.primaryAlways | plan.primarySometimes;
+        materials::FeatureMask every = ~materials::FeatureMask{0};
         for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-            const FeatureMask primary = plan.primaryMaskOfPrimitive[p];
+            const materials::FeatureMask primary = plan.primaryMaskOfPrimitive[p];
             EXPECT_EQ(plan.keys[plan.keyOfPrimitive[p]].mask & ~primary, 0U);
-            EXPECT_EQ(primary, makeKey(scene.materials[p], scene.primitives[p], {AlphaPolicy::Tested}));
+            EXPECT_EQ(primary, compiler::makeKey(scene.materials[p], scene.primitives[p],
+                                                 {package::AlphaPolicy::Tested}));
             EXPECT_EQ(primary & ~whole, 0U);
             every &= primary;
         }
@@ -321,10 +328,10 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
 TEST(Plan, HitsThatKeepFewerLobesShareMoreCases) {
     SmallScene scene;
     scene.materials[1]["clearcoatFactor"] = 1.0F;
-    const Plan all = scene.plan(MergePolicy::Family);
-    PlanOptions options{{}, MergePolicy::Family};
+    const compiler::Plan all = scene.plan(compiler::MergePolicy::Family);
+    compiler::PlanOptions options{{}, compiler::MergePolicy::Family};
     options.keys.keptLobes = bit("ior");
-    const Plan few = makePlan(scene.materials, scene.primitives, options);
+    const compiler::Plan few = makePlan(scene.materials, scene.primitives, options);
     EXPECT_EQ(all.cases.size(), 3U);
     // The base models stay, so unlit is a separate case.
     EXPECT_EQ(few.cases.size(), 2U);
@@ -332,7 +339,7 @@ TEST(Plan, HitsThatKeepFewerLobesShareMoreCases) {
     EXPECT_NE(few.primarySometimes & bit("clearcoat"), 0U);
     EXPECT_EQ(all.primarySometimes, few.primarySometimes);
     EXPECT_EQ(all.sometimes, all.primarySometimes);
-    const auto coat = std::ranges::find(few.dropped, "clearcoat", &DroppedFeature::feature);
+    const auto coat = std::ranges::find(few.dropped, "clearcoat", &compiler::DroppedFeature::feature);
     ASSERT_NE(coat, few.dropped.end());
     EXPECT_NE(coat->reason.find("--hit-lobes"), std::string::npos);
     EXPECT_EQ(coat->materials, (std::vector<int>{1}));

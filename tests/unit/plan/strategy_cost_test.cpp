@@ -15,51 +15,51 @@
 namespace glint {
 namespace {
 
-Round makeRound(std::size_t cases, double instructions, double coherence, double rays = 8e6) {
-    Round round{rays, 0.8, coherence, 1.0 - coherence, {}};
+compiler::Round makeRound(std::size_t cases, double instructions, double coherence, double rays = 8e6) {
+    compiler::Round round{rays, 0.8, coherence, 1.0 - coherence, {}};
     for (std::size_t i = 0; i < cases; ++i) {
         round.cases.push_back({1.0 / static_cast<double>(cases), instructions, 0.0});
     }
     return round;
 }
 
-void set(StrategyCosts& costs, CostTerm term, double value) {
+void set(compiler::StrategyCosts& costs, compiler::CostTerm term, double value) {
     costs.constants[static_cast<std::size_t>(term)] = value;
 }
 
 // Returns a device with round numbers, on which ordering a ray takes a nanosecond.
-DeviceCosts someDevice() {
-    DeviceCosts device;
+compiler::DeviceCosts someDevice() {
+    compiler::DeviceCosts device;
     device.device = "Some";
     device.subgroupSize = 32.0;
-    for (const std::string_view name : kStrategyNames) {
-        StrategyCosts& costs = device.strategies.emplace_back();
+    for (const std::string_view name : compiler::kStrategyNames) {
+        compiler::StrategyCosts& costs = device.strategies.emplace_back();
         costs.strategy = name;
-        const bool ordered = hasTerm(name, CostTerm::Buckets);
-        set(costs, CostTerm::Launches, ordered ? 0.1 : 0.02);
-        set(costs, CostTerm::Rays, ordered ? 1.5 : 0.5);
-        set(costs, CostTerm::Incoherence, 0.2);
-        set(costs, CostTerm::Instructions, name == "hit-shaders" ? 0.3 : 0.2);
-        set(costs, CostTerm::Cases, name == "visibility" ? 0.005 : 0.0);
-        set(costs, CostTerm::Divergence, ordered ? 0.0 : 0.2);
+        const bool ordered = hasTerm(name, compiler::CostTerm::Buckets);
+        set(costs, compiler::CostTerm::Launches, ordered ? 0.1 : 0.02);
+        set(costs, compiler::CostTerm::Rays, ordered ? 1.5 : 0.5);
+        set(costs, compiler::CostTerm::Incoherence, 0.2);
+        set(costs, compiler::CostTerm::Instructions, name == "hit-shaders" ? 0.3 : 0.2);
+        set(costs, compiler::CostTerm::Cases, name == "visibility" ? 0.005 : 0.0);
+        set(costs, compiler::CostTerm::Divergence, ordered ? 0.0 : 0.2);
     }
     return device;
 }
 
-const std::vector<std::string> kAll(std::begin(kStrategyNames), std::end(kStrategyNames));
+const std::vector<std::string> kAll(std::begin(compiler::kStrategyNames), std::end(compiler::kStrategyNames));
 
-std::string chosen(const Round& round, const std::vector<std::string>& available = kAll) {
+std::string chosen(const compiler::Round& round, const std::vector<std::string>& available = kAll) {
     const auto choice = chooseStrategy({&round, 1}, someDevice(), available);
     return choice ? choice->strategy : "none";
 }
 
-double ms(const Round& round, std::string_view strategy) {
-    const DeviceCosts device = someDevice();
+double ms(const compiler::Round& round, std::string_view strategy) {
+    const compiler::DeviceCosts device = someDevice();
     return estimatedMs(round, *findCosts(device, strategy), device.subgroupSize);
 }
 
 TEST(StrategyCost, RunsWhatSubgroupsOfRandomHitsRun) {
-    Round round{1.0, 0.7, 0.0, 1.0, {{0.5, 100.0, 0.0}, {0.3, 400.0, 2.0}, {0.2, 1000.0, 0.0}}};
+    compiler::Round round{1.0, 0.7, 0.0, 1.0, {{0.5, 100.0, 0.0}, {0.3, 400.0, 2.0}, {0.2, 1000.0, 0.0}}};
     constexpr int kLanes = 8;
     constexpr int kGroups = 200000;
     std::mt19937 random(7);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same draws in every run
@@ -84,16 +84,17 @@ TEST(StrategyCost, RunsWhatSubgroupsOfRandomHitsRun) {
 }
 
 TEST(StrategyCost, OneLaneRunsItsOwnCaseAlone) {
-    const Round round{1.0, 0.6, 1.0, 0.0, {{0.75, 200.0, 1.0}, {0.25, 1000.0, 0.0}}};
-    EXPECT_NEAR(instructionsRun(round, 1.0), 0.6 * (0.75 * (200.0 + kFetchCost) + 0.25 * 1000.0), 1e-9);
-    EXPECT_DOUBLE_EQ(independentLanes(32.0, 1.0), 1.0);
-    EXPECT_DOUBLE_EQ(independentLanes(32.0, 0.0), 32.0);
-    const TermValues terms = termsOf(round, 32.0);
-    EXPECT_EQ(terms[static_cast<std::size_t>(CostTerm::Divergence)], 0.0);
+    const compiler::Round round{1.0, 0.6, 1.0, 0.0, {{0.75, 200.0, 1.0}, {0.25, 1000.0, 0.0}}};
+    EXPECT_NEAR(instructionsRun(round, 1.0), 0.6 * (0.75 * (200.0 + compiler::kFetchCost) + 0.25 * 1000.0),
+                1e-9);
+    EXPECT_DOUBLE_EQ(compiler::independentLanes(32.0, 1.0), 1.0);
+    EXPECT_DOUBLE_EQ(compiler::independentLanes(32.0, 0.0), 32.0);
+    const compiler::TermValues terms = termsOf(round, 32.0);
+    EXPECT_EQ(terms[static_cast<std::size_t>(compiler::CostTerm::Divergence)], 0.0);
 }
 
 TEST(StrategyCost, GrowsWithRaysWorkAndDivergence) {
-    for (const std::string_view strategy : kStrategyNames) {
+    for (const std::string_view strategy : compiler::kStrategyNames) {
         EXPECT_LT(ms(makeRound(16, 800, 0.5, 1e6), strategy), ms(makeRound(16, 800, 0.5, 2e6), strategy));
         EXPECT_LT(ms(makeRound(16, 400, 0.5), strategy), ms(makeRound(16, 800, 0.5), strategy));
         EXPECT_LT(ms(makeRound(16, 800, 0.9), strategy), ms(makeRound(16, 800, 0.1), strategy));
@@ -106,7 +107,7 @@ TEST(StrategyCost, OneCaseIsNeverOrdered) {
     for (const double instructions : {50.0, 700.0, 5000.0}) {
         for (const double coherence : {0.0, 0.5, 1.0}) {
             for (const double rays : {1e3, 1e6, 3.2e7}) {
-                Round round = makeRound(1, instructions, coherence, rays);
+                compiler::Round round = makeRound(1, instructions, coherence, rays);
                 round.hitShare = 1.0;
                 EXPECT_EQ(chosen(round), "uber") << instructions << " " << coherence << " " << rays;
             }
@@ -125,11 +126,11 @@ TEST(StrategyCost, ManyExpensiveIncoherentCasesAreOrdered) {
 TEST(StrategyCost, TakesTheLeastEstimateOfWhatThereIs) {
     for (const double coherence : {0.0, 0.7, 1.0}) {
         for (const std::size_t cases : {1U, 4U, 16U, 256U}) {
-            const Round round = makeRound(cases, 900, coherence);
+            const compiler::Round round = makeRound(cases, 900, coherence);
             const auto choice = chooseStrategy({&round, 1}, someDevice(), kAll);
             ASSERT_TRUE(choice);
             ASSERT_EQ(choice->estimates.size(), 4U);
-            for (const StrategyEstimate& estimate : choice->estimates) {
+            for (const compiler::StrategyEstimate& estimate : choice->estimates) {
                 EXPECT_GE(estimate.ms, ms(round, choice->strategy));
                 EXPECT_NEAR(std::accumulate(estimate.parts.begin(), estimate.parts.end(), 0.0), estimate.ms,
                             1e-9);
@@ -139,10 +140,10 @@ TEST(StrategyCost, TakesTheLeastEstimateOfWhatThereIs) {
 }
 
 TEST(StrategyCost, StrategiesWithoutConstantsAreNotChosen) {
-    DeviceCosts device = someDevice();
-    const Round round = makeRound(64, 2000, 0.0);
+    compiler::DeviceCosts device = someDevice();
+    const compiler::Round round = makeRound(64, 2000, 0.0);
     std::erase_if(device.strategies,
-                  [](const StrategyCosts& costs) { return costs.strategy != "visibility"; });
+                  [](const compiler::StrategyCosts& costs) { return costs.strategy != "visibility"; });
     const std::vector<std::string> uber{"uber"};
     EXPECT_FALSE(chooseStrategy({&round, 1}, device, uber));
     EXPECT_FALSE(chooseStrategy({&round, 1}, device, {}));
@@ -153,7 +154,7 @@ TEST(StrategyCost, StrategiesWithoutConstantsAreNotChosen) {
 }
 
 TEST(StrategyCost, SaysWhyInNumbers) {
-    const Round round = makeRound(64, 2000, 0.0);
+    const compiler::Round round = makeRound(64, 2000, 0.0);
     const auto choice = chooseStrategy({&round, 1}, someDevice(), kAll);
     ASSERT_TRUE(choice);
     EXPECT_NE(choice->why.find("8,000,000 rays, 64 cases, 2,000 instructions a hit"), std::string::npos)

@@ -9,12 +9,12 @@
 namespace glint::testing {
 
 // Returns keys in ascending order of masks, as planning has them. Shares add up to 1.
-inline std::vector<WeightedKey> toKeys(const std::map<FeatureMask, double>& weights) {
+inline std::vector<compiler::WeightedKey> toKeys(const std::map<materials::FeatureMask, double>& weights) {
     double sum = 0.0;
     for (const auto& [mask, weight] : weights) {
         sum += weight;
     }
-    std::vector<WeightedKey> keys;
+    std::vector<compiler::WeightedKey> keys;
     keys.reserve(weights.size());
     for (const auto& [mask, weight] : weights) {
         keys.push_back({mask, sum > 0.0 ? weight / sum : 0.0});

@@ -23,23 +23,24 @@ struct Extents {
 
 // Returns the box's corners in the image, whose edges are at -1 and 1. The result is infinite if a corner is
 // behind the camera.
-Extents project(const CameraView& camera, const Bounds& box) {
-    const Double3 forward = toDouble3(camera.forward);
-    const Double3 up = toDouble3(camera.up);
-    const Double3 right{forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
-                        forward[0] * up[1] - forward[1] * up[0]};
+Extents project(const CameraView& camera, const scene_view::Bounds& box) {
+    const base::Double3 forward = base::toDouble3(camera.forward);
+    const base::Double3 up = base::toDouble3(camera.up);
+    const base::Double3 right{forward[1] * up[2] - forward[2] * up[1],
+                              forward[2] * up[0] - forward[0] * up[2],
+                              forward[0] * up[1] - forward[1] * up[0]};
     Extents extents;
     for (unsigned number = 0; number < 8; ++number) {
-        Double3 offset{};
+        base::Double3 offset{};
         for (std::size_t i = 0; i < 3; ++i) {
             offset[i] = (((number >> i) & 1U) != 0 ? box.max[i] : box.min[i]) - camera.position[i];
         }
-        const double depth = dot(offset, forward);
+        const double depth = base::dot(offset, forward);
         if (depth <= camera.near) {
             return {-INFINITY, INFINITY, -INFINITY, INFINITY};
         }
-        const double x = dot(offset, right) / depth / camera.halfWidth;
-        const double y = dot(offset, up) / depth / camera.halfHeight;
+        const double x = base::dot(offset, right) / depth / camera.halfWidth;
+        const double y = base::dot(offset, up) / depth / camera.halfHeight;
         extents = {std::min(extents.left, x), std::max(extents.right, x), std::min(extents.bottom, y),
                    std::max(extents.top, y)};
     }
@@ -47,19 +48,20 @@ Extents project(const CameraView& camera, const Bounds& box) {
 }
 
 void expectFrame(const CameraView& camera) {
-    const Double3 forward = toDouble3(camera.forward);
-    const Double3 up = toDouble3(camera.up);
-    EXPECT_NEAR(dot(forward, forward), 1.0, 1e-5);
-    EXPECT_NEAR(dot(up, up), 1.0, 1e-5);
-    EXPECT_NEAR(dot(forward, up), 0.0, 1e-5);
+    const base::Double3 forward = base::toDouble3(camera.forward);
+    const base::Double3 up = base::toDouble3(camera.up);
+    EXPECT_NEAR(base::dot(forward, forward), 1.0, 1e-5);
+    EXPECT_NEAR(base::dot(up, up), 1.0, 1e-5);
+    EXPECT_NEAR(base::dot(forward, up), 0.0, 1e-5);
     EXPECT_GT(camera.near, 0.0F);
 }
 
 TEST(FramingCamera, FillsTheImageWithTheBox) {
-    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}},        {{100, 200, 300}, {101, 200.1, 330}},
-                            {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}}, {{-5000, 0, -5000}, {5000, 10, 5000}},
-                            {{0, 0, 0}, {3, 4, 0}},           {{0, 0, 0}, {0, 4, 0}}};
-    for (const Bounds& box : boxes) {
+    const scene_view::Bounds boxes[] = {
+        {{-1, -1, -1}, {1, 1, 1}},        {{100, 200, 300}, {101, 200.1, 330}},
+        {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}}, {{-5000, 0, -5000}, {5000, 10, 5000}},
+        {{0, 0, 0}, {3, 4, 0}},           {{0, 0, 0}, {0, 4, 0}}};
+    for (const scene_view::Bounds& box : boxes) {
         for (const double aspect : {16.0 / 9.0, 1.0, 0.25}) {
             const CameraView camera = framingCamera(box, aspect);
             expectFrame(camera);
@@ -78,8 +80,8 @@ TEST(FramingCamera, FillsTheImageWithTheBox) {
 }
 
 TEST(FramingCamera, LooksFromTheFrontAndAtTheFaceOfWhatIsFlat) {
-    const auto towards = [](const Double3& extent) {
-        return toDouble3(framingCamera({{0, 0, 0}, extent}, 1.5).forward);
+    const auto towards = [](const base::Double3& extent) {
+        return base::toDouble3(framingCamera({{0, 0, 0}, extent}, 1.5).forward);
     };
     EXPECT_LT(towards({1, 1, 1})[2], -0.8);
     EXPECT_LT(towards({1, 1, 1})[1], -0.1);
@@ -100,40 +102,40 @@ TEST(FramingCamera, EmptySceneAndSinglePointHaveOne) {
 }
 
 TEST(WorldBounds, CoverEveryInstance) {
-    Primitive primitive;
+    gltf::Primitive primitive;
     primitive.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 0}};
     primitive.indices = {0, 1, 2};
-    Scene scene;
+    gltf::Scene scene;
     scene.meshes.resize(1);
     scene.meshes[0].primitives = {primitive};
-    Node plain;
+    gltf::Node plain;
     plain.mesh = 0;
     plain.world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    Node moved = plain;
+    gltf::Node moved = plain;
     moved.world = {-2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 5, 1};
-    Node infinite = plain;
+    gltf::Node infinite = plain;
     infinite.world[12] = INFINITY;
     scene.nodes = {plain, moved, infinite};
-    const Bounds bounds = worldBounds(makeSceneView(scene));
-    EXPECT_EQ(bounds.min, (Double3{0, 0, 0}));
-    EXPECT_EQ(bounds.max, (Double3{10, 2, 5}));
+    const scene_view::Bounds bounds = worldBounds(makeSceneView(scene));
+    EXPECT_EQ(bounds.min, (base::Double3{0, 0, 0}));
+    EXPECT_EQ(bounds.max, (base::Double3{10, 2, 5}));
     EXPECT_TRUE(worldBounds({}).empty());
 }
 
-Scene sceneWithCameras() {
-    Scene scene;
-    Camera perspective;
+gltf::Scene sceneWithCameras() {
+    gltf::Scene scene;
+    gltf::Camera perspective;
     perspective.name = "Wide";
     perspective.yfov = 1.0;
     perspective.znear = 0.1;
     perspective.zfar = 50.0;
     // The node is turned by 90° about Y, so that -Z becomes -X, scaled by 2, at (1, 2, 3).
     perspective.world = {0, 0, -2, 0, 0, 2, 0, 0, 2, 0, 0, 0, 1, 2, 3, 1};
-    Camera orthographic;
+    gltf::Camera orthographic;
     orthographic.orthographic = true;
     orthographic.ymag = 3.0;
     orthographic.world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    Camera flat = perspective;
+    gltf::Camera flat = perspective;
     flat.name = "Flat";
     flat.world = {};
     scene.cameras = {perspective, orthographic, flat};
@@ -144,7 +146,7 @@ TEST(SceneCamera, KeepsTheVerticalFieldOfView) {
     const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 0, 2.0);
     ASSERT_TRUE(camera) << toString(camera.error());
     expectFrame(*camera);
-    EXPECT_EQ(camera->position, (Float3{1, 2, 3}));
+    EXPECT_EQ(camera->position, (gltf::Float3{1, 2, 3}));
     EXPECT_NEAR(camera->forward[0], -1.0F, 1e-6F);
     EXPECT_NEAR(camera->up[1], 1.0F, 1e-6F);
     EXPECT_NEAR(camera->halfHeight, std::tan(0.5), 1e-6);
@@ -168,9 +170,9 @@ TEST(SceneCamera, FlatNodeIsAnError) {
 }
 
 TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
-    const Scene scene = sceneWithCameras();
+    const gltf::Scene scene = sceneWithCameras();
     const auto name = [&](const std::string& wanted) {
-        const Result<CameraChoice> choice = chooseCamera(scene, {}, wanted, 1.0);
+        const Result<scene_view::CameraChoice> choice = chooseCamera(scene, {}, wanted, 1.0);
         return choice ? choice->name : choice.error().id;
     };
     EXPECT_EQ(name("Wide"), "Wide");
@@ -180,7 +182,7 @@ TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
     EXPECT_EQ(name(""), "Wide");
     EXPECT_EQ(name("3"), "camera-unknown");
     EXPECT_EQ(name("Wyde"), "camera-unknown");
-    const Result<CameraChoice> none = chooseCamera(Scene{}, {}, "", 1.0);
+    const Result<scene_view::CameraChoice> none = chooseCamera(gltf::Scene{}, {}, "", 1.0);
     ASSERT_TRUE(none);
     EXPECT_EQ(none->name, "auto");
 }

@@ -7,18 +7,18 @@
 namespace glint::scene_view {
 namespace {
 
-constexpr Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr gltf::Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 using Double3 = std::array<double, 3>;
 
-Primitive twoVertices() {
-    Primitive primitive;
+gltf::Primitive twoVertices() {
+    gltf::Primitive primitive;
     primitive.positions = {{1, 0, 0}, {0, 1, 0}};
     primitive.indices = {0, 1, 0};
     return primitive;
 }
 
 TEST(Deform, TargetsAddUp) {
-    Primitive primitive = twoVertices();
+    gltf::Primitive primitive = twoVertices();
     primitive.targets.resize(3);
     primitive.targets[0].positions = {{0, 0, 1}, {0, 0, 2}};
     primitive.targets[2].positions = {{4, 0, 0}, {0, 0, 0}};
@@ -31,12 +31,12 @@ TEST(Deform, TargetsAddUp) {
 }
 
 TEST(Deform, VerticesFollowTheMeanOfTheirJoints) {
-    Primitive primitive = twoVertices();
+    gltf::Primitive primitive = twoVertices();
     primitive.targets.resize(1);
     primitive.targets[0].positions = {{1, 0, 0}, {0, 0, 0}};
     primitive.influences = {2, {0, 1, 1, 0}, {0.25F, 0.75F, 1.0F, 0.0F}};
     // The first joint does nothing; the second scales by three and moves by 4 in Z.
-    const std::vector<Matrix4> joints{kIdentity, {3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 4, 1}};
+    const std::vector<gltf::Matrix4> joints{kIdentity, {3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 4, 1}};
     // The vertex is morphed before it is skinned: (2, 0, 0) becomes a quarter of itself plus three quarters
     // of (6, 0, 4).
     EXPECT_EQ(deformedPositions(primitive, std::vector{1.0}, joints),
@@ -45,23 +45,23 @@ TEST(Deform, VerticesFollowTheMeanOfTheirJoints) {
 }
 
 TEST(Deform, WhatDeformsIsFound) {
-    Scene scene;
-    Mesh& mesh = scene.meshes.emplace_back();
+    gltf::Scene scene;
+    gltf::Mesh& mesh = scene.meshes.emplace_back();
     mesh.primitives.push_back(twoVertices());
     scene.nodes.resize(2);
     scene.nodes[1].mesh = 0;
-    EXPECT_FALSE(hasDeformedMesh(scene));
+    EXPECT_FALSE(compiler::hasDeformedMesh(scene));
     mesh.primitives[0].influences = {1, {0, 0}, {1.0F, 1.0F}};
-    EXPECT_FALSE(isDeformed(scene, scene.nodes[1])) << "a mesh without a skin";
+    EXPECT_FALSE(compiler::isDeformed(scene, scene.nodes[1])) << "a mesh without a skin";
     scene.nodes[1].skin = 0;
-    EXPECT_TRUE(isDeformed(scene, scene.nodes[1]));
-    EXPECT_FALSE(isDeformed(scene, scene.nodes[0]));
+    EXPECT_TRUE(compiler::isDeformed(scene, scene.nodes[1]));
+    EXPECT_FALSE(compiler::isDeformed(scene, scene.nodes[0]));
     scene.nodes[1].skin = -1;
     mesh.primitives[0].influences = {};
     mesh.primitives[0].targets.resize(1);
-    EXPECT_TRUE(hasDeformedMesh(scene));
+    EXPECT_TRUE(compiler::hasDeformedMesh(scene));
     scene.nodes[1].mesh = -1;
-    EXPECT_FALSE(hasDeformedMesh(scene)) << "a mesh that no node draws";
+    EXPECT_FALSE(compiler::hasDeformedMesh(scene)) << "a mesh that no node draws";
 }
 
 }  // namespace

@@ -18,33 +18,33 @@ void expectNear(const std::vector<double>& actual, const std::vector<double>& ex
     }
 }
 
-void expectNear(const Quaternion& actual, const Quaternion& expected) {
+void expectNear(const scene_view::Quaternion& actual, const scene_view::Quaternion& expected) {
     for (std::size_t i = 0; i < 4; ++i) {
         EXPECT_NEAR(actual[i], expected[i], 1e-12) << "component " << i;
     }
 }
 
 // Returns a turn about Z.
-Quaternion turned(double angle) {
+scene_view::Quaternion turned(double angle) {
     return {0.0, 0.0, std::sin(0.5 * angle), std::cos(0.5 * angle)};
 }
 
-std::vector<float> floats(std::initializer_list<Quaternion> quaternions) {
+std::vector<float> floats(std::initializer_list<scene_view::Quaternion> quaternions) {
     std::vector<float> values;
-    for (const Quaternion& quaternion : quaternions) {
+    for (const scene_view::Quaternion& quaternion : quaternions) {
         values.insert(values.end(), quaternion.begin(), quaternion.end());
     }
     return values;
 }
 
-AnimationSampler makeSampler(Interpolation interpolation, std::vector<float> times, std::size_t width,
-                             std::vector<float> values) {
+gltf::AnimationSampler makeSampler(gltf::Interpolation interpolation, std::vector<float> times,
+                                   std::size_t width, std::vector<float> values) {
     return {interpolation, std::move(times), width, std::move(values)};
 }
 
 TEST(Interpolation, StepHoldsUntilTheNextKeyframe) {
-    const AnimationSampler sampler =
-        makeSampler(Interpolation::Step, {1.0F, 2.0F, 4.0F}, 2, {1, 2, 3, 4, 5, 6});
+    const gltf::AnimationSampler sampler =
+        makeSampler(gltf::Interpolation::Step, {1.0F, 2.0F, 4.0F}, 2, {1, 2, 3, 4, 5, 6});
     expectNear(sampleNumbers(sampler, 0.0), {1, 2});
     expectNear(sampleNumbers(sampler, 1.999), {1, 2});
     expectNear(sampleNumbers(sampler, 2.0), {3, 4});
@@ -54,8 +54,8 @@ TEST(Interpolation, StepHoldsUntilTheNextKeyframe) {
 }
 
 TEST(Interpolation, LinearGoesStraight) {
-    const AnimationSampler sampler =
-        makeSampler(Interpolation::Linear, {1.0F, 2.0F, 4.0F}, 2, {0, 8, 4, 0, 0, 2});
+    const gltf::AnimationSampler sampler =
+        makeSampler(gltf::Interpolation::Linear, {1.0F, 2.0F, 4.0F}, 2, {0, 8, 4, 0, 0, 2});
     expectNear(sampleNumbers(sampler, -1.0), {0, 8});
     expectNear(sampleNumbers(sampler, 1.25), {1, 6});
     expectNear(sampleNumbers(sampler, 2.0), {4, 0});
@@ -67,8 +67,8 @@ TEST(Interpolation, LinearGoesStraight) {
 // * 3 + 0.5 * 5 - 2 * 0.125 * -1 = 4. At a quarter: 0.84375 * 1 + 2 * 0.140625 * 3 + 0.15625 * 5 - 2 *
 // 0.046875 * -1 = 2.5625.
 TEST(Interpolation, CubicSplineFollowsItsTangents) {
-    const AnimationSampler sampler =
-        makeSampler(Interpolation::CubicSpline, {1.0F, 3.0F}, 1, {99, 1, 3, -1, 5, 99});
+    const gltf::AnimationSampler sampler =
+        makeSampler(gltf::Interpolation::CubicSpline, {1.0F, 3.0F}, 1, {99, 1, 3, -1, 5, 99});
     expectNear(sampleNumbers(sampler, 1.0), {1});
     expectNear(sampleNumbers(sampler, 1.5), {2.5625});
     expectNear(sampleNumbers(sampler, 2.0), {4});
@@ -77,18 +77,18 @@ TEST(Interpolation, CubicSplineFollowsItsTangents) {
 }
 
 TEST(Interpolation, OneKeyframeHoldsAlways) {
-    for (const Interpolation kind : {Interpolation::Step, Interpolation::Linear}) {
-        const AnimationSampler sampler = makeSampler(kind, {2.0F}, 1, {7});
+    for (const gltf::Interpolation kind : {gltf::Interpolation::Step, gltf::Interpolation::Linear}) {
+        const gltf::AnimationSampler sampler = makeSampler(kind, {2.0F}, 1, {7});
         for (const double time : {0.0, 2.0, 3.0}) {
             expectNear(sampleNumbers(sampler, time), {7});
         }
     }
-    expectNear(sampleNumbers(makeSampler(Interpolation::CubicSpline, {2.0F}, 1, {1, 7, 1}), 2.5), {7});
+    expectNear(sampleNumbers(makeSampler(gltf::Interpolation::CubicSpline, {2.0F}, 1, {1, 7, 1}), 2.5), {7});
 }
 
 TEST(Interpolation, RotationsTurnEvenly) {
-    const AnimationSampler sampler =
-        makeSampler(Interpolation::Linear, {0.0F, 1.0F}, 4, {0, 0, 0, 1, 0, 0, 1, 0});
+    const gltf::AnimationSampler sampler =
+        makeSampler(gltf::Interpolation::Linear, {0.0F, 1.0F}, 4, {0, 0, 0, 1, 0, 0, 1, 0});
     // For half a turn, a third of the time is 60 degrees.
     expectNear(sampleRotation(sampler, 1.0 / 3.0), turned(kPi / 3.0));
     expectNear(sampleRotation(sampler, 0.5), turned(kPi / 2.0));
@@ -97,13 +97,13 @@ TEST(Interpolation, RotationsTurnEvenly) {
 
 TEST(Interpolation, RotationsTakeTheShorterWay) {
     // The short way from 0 to 270 degrees is 90 degrees back.
-    const Quaternion half = slerp(turned(0.0), turned(1.5 * kPi), 0.5);
-    const Quaternion expected = turned(-0.25 * kPi);
+    const scene_view::Quaternion half = slerp(turned(0.0), turned(1.5 * kPi), 0.5);
+    const scene_view::Quaternion expected = turned(-0.25 * kPi);
     const double sign = half[3] * expected[3] < 0.0 ? -1.0 : 1.0;
     expectNear({sign * half[0], sign * half[1], sign * half[2], sign * half[3]}, expected);
     // Tests equal quaternions, and opposite quaternions of one rotation.
     expectNear(slerp(turned(1.0), turned(1.0), 0.3), turned(1.0));
-    const Quaternion q = turned(1.0);
+    const scene_view::Quaternion q = turned(1.0);
     expectNear(slerp(q, {-q[0], -q[1], -q[2], -q[3]}, 0.7), q);
     // Some of these are so close that sines of the angle are lost in rounding, and some are just above that.
     for (const double angle : {1e-12, 1e-8, 1e-6, 1e-3}) {
@@ -113,13 +113,14 @@ TEST(Interpolation, RotationsTakeTheShorterWay) {
 
 TEST(Interpolation, RotationsAreUnit) {
     // Stored quaternions are rounded, and those between the keyframes of a spline are not unit quaternions.
-    const AnimationSampler step = makeSampler(Interpolation::Step, {0.0F}, 4, {0, 0, 2, 0});
+    const gltf::AnimationSampler step = makeSampler(gltf::Interpolation::Step, {0.0F}, 4, {0, 0, 2, 0});
     expectNear(sampleRotation(step, 0.0), {0, 0, 1, 0});
-    const AnimationSampler none = makeSampler(Interpolation::Step, {0.0F}, 4, {0, 0, 0, 0});
+    const gltf::AnimationSampler none = makeSampler(gltf::Interpolation::Step, {0.0F}, 4, {0, 0, 0, 0});
     expectNear(sampleRotation(none, 0.0), {0, 0, 0, 1});
-    const Quaternion zero{};
-    const AnimationSampler spline = makeSampler(Interpolation::CubicSpline, {0.0F, 1.0F}, 4,
-                                                floats({zero, turned(0.0), zero, zero, turned(kPi), zero}));
+    const scene_view::Quaternion zero{};
+    const gltf::AnimationSampler spline =
+        makeSampler(gltf::Interpolation::CubicSpline, {0.0F, 1.0F}, 4,
+                    floats({zero, turned(0.0), zero, zero, turned(kPi), zero}));
     // Without tangents the middle is the mean, (0, 0, 0.5, 0.5), before it is normalised.
     expectNear(sampleRotation(spline, 0.5), turned(0.5 * kPi));
 }

@@ -9,23 +9,24 @@
 namespace glint::scene_view {
 namespace {
 
-constexpr Matrix4 kPoseIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr gltf::Matrix4 kPoseIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 const double kHalf = std::numbers::sqrt2 / 2.0;
 
-void expectNear(const Matrix4& actual, const Matrix4& expected) {
+void expectNear(const gltf::Matrix4& actual, const gltf::Matrix4& expected) {
     for (std::size_t i = 0; i < actual.size(); ++i) {
         EXPECT_NEAR(actual[i], expected[i], 1e-12) << "element " << i;
     }
 }
 
-int addSampler(Animation& animation, std::size_t width, std::vector<float> times, std::vector<float> values) {
-    animation.samplers.push_back({Interpolation::Linear, std::move(times), width, std::move(values)});
+int addSampler(gltf::Animation& animation, std::size_t width, std::vector<float> times,
+               std::vector<float> values) {
+    animation.samplers.push_back({gltf::Interpolation::Linear, std::move(times), width, std::move(values)});
     return static_cast<int>(animation.samplers.size()) - 1;
 }
 
 // Returns a node at (1, 0, 0), and below it one at (0, 2, 0) with a mesh of two targets.
-Scene twoNodes() {
-    Scene scene;
+gltf::Scene twoNodes() {
+    gltf::Scene scene;
     scene.nodes.resize(2);
     scene.nodes[0].rest.translation = {1, 0, 0};
     scene.nodes[1].parent = 0;
@@ -38,11 +39,11 @@ Scene twoNodes() {
 }
 
 TEST(Pose, RestIsWhereTheFilePlaces) {
-    const Scene scene = twoNodes();
+    const gltf::Scene scene = twoNodes();
     expectNear(scene.nodes[1].world, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 2, 0, 1});
     EXPECT_EQ(scene.nodes[1].weights, (std::vector<double>{0.25, 0.5}));
     // Tests no animation, and one that has no channel.
-    Scene still = twoNodes();
+    gltf::Scene still = twoNodes();
     still.animations.resize(1);
     const std::array<std::size_t, 1> first{0};
     EXPECT_EQ(poseAt(still, {}, 3.0).worlds, restPose(still).worlds);
@@ -50,18 +51,18 @@ TEST(Pose, RestIsWhereTheFilePlaces) {
 }
 
 TEST(Pose, ChannelsMoveTheirNodesAndWhatIsBelow) {
-    Scene scene = twoNodes();
-    Animation& animation = scene.animations.emplace_back();
+    gltf::Scene scene = twoNodes();
+    gltf::Animation& animation = scene.animations.emplace_back();
     const auto turn = addSampler(animation, 4, {0, 1}, {0, 0, 0, 1, 0, 0, 1, 0});
     const auto grow = addSampler(animation, 3, {0, 1}, {1, 1, 1, 3, 1, 1});
     const auto shift = addSampler(animation, 3, {0, 1}, {1, 0, 0, 5, 0, 0});
     const auto morph = addSampler(animation, 2, {0, 1}, {0, 1, 1, 0});
-    animation.channels = {{0, AnimationPath::Rotation, turn},
-                          {0, AnimationPath::Scale, grow},
-                          {0, AnimationPath::Translation, shift},
-                          {1, AnimationPath::Weights, morph}};
+    animation.channels = {{0, gltf::AnimationPath::Rotation, turn},
+                          {0, gltf::AnimationPath::Scale, grow},
+                          {0, gltf::AnimationPath::Translation, shift},
+                          {1, gltf::AnimationPath::Weights, morph}};
     const std::array<std::size_t, 1> first{0};
-    const Pose pose = poseAt(scene, first, 0.5);
+    const scene_view::Pose pose = poseAt(scene, first, 0.5);
     // The node is turned by 90 degrees about Z, twice as long in X, at (3, 0, 0). The child's (0, 2, 0) turns
     // to (-2, 0, 0).
     expectNear(pose.worlds[0], {0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1});
@@ -76,11 +77,11 @@ TEST(Pose, ChannelsMoveTheirNodesAndWhatIsBelow) {
 }
 
 TEST(Pose, OfTwoAnimationsTheLaterOneHolds) {
-    Scene scene = twoNodes();
+    gltf::Scene scene = twoNodes();
     for (const float x : {7.0F, 9.0F}) {
-        Animation& animation = scene.animations.emplace_back();
+        gltf::Animation& animation = scene.animations.emplace_back();
         const auto shift = addSampler(animation, 3, {0}, {x, 0, 0});
-        animation.channels = {{0, AnimationPath::Translation, shift}};
+        animation.channels = {{0, gltf::AnimationPath::Translation, shift}};
     }
     const std::array<std::size_t, 2> both{0, 1};
     const std::array<std::size_t, 2> turned{1, 0};
@@ -89,16 +90,16 @@ TEST(Pose, OfTwoAnimationsTheLaterOneHolds) {
 }
 
 TEST(Pose, MatricesStayAsTheyAre) {
-    Scene scene = twoNodes();
-    scene.nodes[0].matrix = Matrix4{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 1, 1};
+    gltf::Scene scene = twoNodes();
+    scene.nodes[0].matrix = gltf::Matrix4{2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 1, 1};
     expectNear(restPose(scene).worlds[1], {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 4, 1, 1});
 }
 
 TEST(Pose, CamerasAndLightsFollowTheirNodes) {
-    Scene scene = twoNodes();
+    gltf::Scene scene = twoNodes();
     scene.cameras.resize(1);
     scene.lights.resize(2);
-    scene.lights[1].type = LightType::Spot;
+    scene.lights[1].type = gltf::LightType::Spot;
     scene.nodes[1].camera = 0;
     scene.nodes[1].light = 1;
     // A quarter turn about Y at twice the size: -Z becomes -X.
@@ -106,25 +107,25 @@ TEST(Pose, CamerasAndLightsFollowTheirNodes) {
     scene.nodes[0].rest.scale = {2, 2, 2};
     applyPose(restPose(scene), scene);
     expectNear(scene.cameras[0].world, {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 4, 0, 1});
-    EXPECT_EQ(scene.lights[1].position, (Float3{1, 4, 0}));
+    EXPECT_EQ(scene.lights[1].position, (gltf::Float3{1, 4, 0}));
     EXPECT_NEAR(scene.lights[1].direction[0], -1.0F, 1e-6F);
-    EXPECT_EQ(scene.lights[0].position, Float3{});
+    EXPECT_EQ(scene.lights[0].position, gltf::Float3{});
     // Even if scaled to nothing, they keep their direction.
     scene.nodes[0].rest.scale = {0, 0, 0};
     scene.nodes[0].rest.translation = {3, 0, 0};
     applyPose(restPose(scene), scene);
     expectNear(scene.cameras[0].world, {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 3, 0, 0, 1});
     EXPECT_NEAR(scene.lights[1].direction[0], -1.0F, 1e-6F);
-    EXPECT_EQ(scene.lights[1].position, (Float3{3, 0, 0}));
+    EXPECT_EQ(scene.lights[1].position, (gltf::Float3{3, 0, 0}));
 }
 
 TEST(Pose, JointsTakeTheMeshFromItsBindPose) {
-    Scene scene = twoNodes();
-    Skin skin;
+    gltf::Scene scene = twoNodes();
+    gltf::Skin skin;
     skin.joints = {1, 0};
     // The first joint was at (0, 1, 0) when the mesh was bound to it.
     skin.inverseBinds = {{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1}, kPoseIdentity};
-    const std::vector<Matrix4> joints = jointMatrices(scene, skin);
+    const std::vector<gltf::Matrix4> joints = jointMatrices(scene, skin);
     ASSERT_EQ(joints.size(), 2U);
     expectNear(joints[0], {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 1, 0, 1});
     expectNear(joints[1], {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1});

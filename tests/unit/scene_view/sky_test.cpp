@@ -10,8 +10,8 @@
 namespace glint::scene_view {
 namespace {
 
-constexpr Matrix4 kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-constexpr SurfacePoint kFloor{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+constexpr gltf::Matrix4 kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+constexpr scene_view::SurfacePoint kFloor{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
 
 LightView light(LightView::Type type, float intensity) {
     LightView light;
@@ -68,16 +68,16 @@ TEST(SkyChoice, SpotsEndAtTheirCone) {
     EXPECT_EQ(illuminanceAt(spot, kFloor), 0.0);
 }
 
-Primitive square() {
-    Primitive primitive;
+gltf::Primitive square() {
+    gltf::Primitive primitive;
     primitive.positions = {{-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1}};
     primitive.indices = {0, 1, 2, 0, 2, 3};
     return primitive;
 }
 
 // The square, which faces up, at a scale along X and Z.
-Node placed(double x, double z) {
-    Node node;
+gltf::Node placed(double x, double z) {
+    gltf::Node node;
     node.mesh = 0;
     node.world = kUnmoved;
     node.world[0] = x;
@@ -85,21 +85,21 @@ Node placed(double x, double z) {
     return node;
 }
 
-std::vector<LitPatch> patchesOf(const Scene& scene, const std::vector<LightView>& lights) {
+std::vector<scene_view::LitPatch> patchesOf(const gltf::Scene& scene, const std::vector<LightView>& lights) {
     return litPatches(scene, makeSceneView(scene), lights);
 }
 
-Scene floorOf(double x, double z) {
-    Scene scene;
+gltf::Scene floorOf(double x, double z) {
+    gltf::Scene scene;
     scene.meshes.resize(1);
     scene.meshes[0].primitives = {square()};
     scene.nodes = {placed(x, z)};
     return scene;
 }
 
-double areaOf(const std::vector<LitPatch>& patches) {
+double areaOf(const std::vector<scene_view::LitPatch>& patches) {
     double area = 0.0;
-    for (const LitPatch& patch : patches) {
+    for (const scene_view::LitPatch& patch : patches) {
         area += patch.area;
     }
     return area;
@@ -109,19 +109,19 @@ TEST(SkyChoice, PatchesHaveTheArea) {
     EXPECT_NEAR(areaOf(patchesOf(floorOf(2.0, 3.0), {})), 24.0, 1e-9);
     EXPECT_NEAR(areaOf(patchesOf(floorOf(2.0, 3.0), {lampAbove(1.0F, 0.1F)})), 24.0, 1e-9) << "divided";
     // 20,000 triangles too small for a patch each, beside a large one.
-    Scene scene = floorOf(100.0, 100.0);
+    gltf::Scene scene = floorOf(100.0, 100.0);
     scene.nodes.resize(10001, placed(0.01, 0.01));
-    const std::vector<LitPatch> patches = patchesOf(scene, {});
+    const std::vector<scene_view::LitPatch> patches = patchesOf(scene, {});
     EXPECT_LT(patches.size(), 100U);
     EXPECT_NEAR(areaOf(patches) / (40000.0 + 4.0), 1.0, 1e-3);
-    EXPECT_TRUE(patchesOf(Scene{}, {}).empty());
+    EXPECT_TRUE(patchesOf(gltf::Scene{}, {}).empty());
 }
 
 // A transform that mirrors does not turn the front away.
 TEST(SkyChoice, PatchesFaceTheFront) {
     const std::vector<LightView> sun{light(LightView::Type::Directional, 10.0F)};
     for (const double x : {1.0, -1.0}) {
-        for (const LitPatch& patch : patchesOf(floorOf(x, 1.0), sun)) {
+        for (const scene_view::LitPatch& patch : patchesOf(floorOf(x, 1.0), sun)) {
             EXPECT_NEAR(patch.illuminance, 10.0, 1e-5) << x;
         }
     }
@@ -129,10 +129,10 @@ TEST(SkyChoice, PatchesFaceTheFront) {
 
 // On a plane without end half of what a lamp sends down falls within 60 degrees.
 TEST(SkyChoice, PatchesReceiveTheFluxOfALamp) {
-    const std::vector<LitPatch> patches = patchesOf(floorOf(1e4, 1e4), {lampAbove(100.0F, 2.0F)});
+    const std::vector<scene_view::LitPatch> patches = patchesOf(floorOf(1e4, 1e4), {lampAbove(100.0F, 2.0F)});
     double flux = 0.0;
     double bright = 0.0;
-    for (const LitPatch& patch : patches) {
+    for (const scene_view::LitPatch& patch : patches) {
         flux += patch.illuminance * patch.area;
         bright += patch.illuminance >= 100.0 / 4.0 / 8.0 ? patch.illuminance * patch.area : 0.0;
     }
@@ -166,7 +166,7 @@ TEST(SkyChoice, TheSizeOfTheGroundHardlyCounts) {
 TEST(SkyChoice, TheSkyBringsAsMuchAsTheLights) {
     EXPECT_NEAR(meanIlluminance({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}), std::numbers::pi, 1e-6);
     for (const double lux : {0.005, 1.0, 1000.0, 1e6}) {
-        const SkyChoice choice = skyForLights({{lux, 1.0}});
+        const scene_view::SkyChoice choice = skyForLights({{lux, 1.0}});
         EXPECT_NEAR(meanIlluminance(choice.sky()) / lux, 1.0, 1e-5) << lux;
         EXPECT_TRUE(choice.automatic);
     }
@@ -174,7 +174,7 @@ TEST(SkyChoice, TheSkyBringsAsMuchAsTheLights) {
 
 TEST(SkyChoice, WithoutLightTheSkyStays) {
     EXPECT_EQ(skyForLights({}).scale, 1.0);
-    const SkyChoice black = skyForLights(patchesOf(floorOf(1.0, 1.0), {lampAbove(0.0F, 2.0F)}));
+    const scene_view::SkyChoice black = skyForLights(patchesOf(floorOf(1.0, 1.0), {lampAbove(0.0F, 2.0F)}));
     EXPECT_EQ(black.scale, 1.0);
     EXPECT_FALSE(black.lights.has_value());
 }

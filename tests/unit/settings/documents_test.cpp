@@ -32,53 +32,55 @@ std::string readText(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::string commandsOf(const Descriptor& row) {
+std::string commandsOf(const compiler::Descriptor& row) {
     std::vector<std::string_view> names;
-    if ((row.commands & kOfCompile) != 0) {
+    if ((row.commands & compiler::kOfCompile) != 0) {
         names.emplace_back("`compile`");
     }
-    if ((row.commands & kOfExplain) != 0) {
+    if ((row.commands & compiler::kOfExplain) != 0) {
         names.emplace_back("`explain`");
     }
-    if ((row.commands & kOfRender) != 0) {
+    if ((row.commands & compiler::kOfRender) != 0) {
         names.emplace_back("`render`");
         names.emplace_back("`bench`");
     }
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::string valuesOf(const Descriptor& row) {
-    const SettingValues& values = row.values;
+std::string valuesOf(const compiler::Descriptor& row) {
+    const compiler::SettingValues& values = row.values;
     std::vector<std::string> parts;
-    for (const SettingWord& word : wordsOf(row)) {
+    for (const compiler::SettingWord& word : wordsOf(row)) {
         parts.push_back("`" + word.name + "`");
     }
-    if (values.form == ValueForm::Whole || values.form == ValueForm::Real) {
-        parts.push_back(fmt::format("{} to {}", boundText(values.min), boundText(values.max)));
-    } else if (values.form == ValueForm::Text) {
+    if (values.form == compiler::ValueForm::Whole || values.form == compiler::ValueForm::Real) {
+        parts.push_back(
+            fmt::format("{} to {}", compiler::boundText(values.min), compiler::boundText(values.max)));
+    } else if (values.form == compiler::ValueForm::Text) {
         parts.push_back("`" + std::string(values.type) + "`");
     } else if (!values.further.empty()) {
         parts.emplace_back(values.further);
     }
-    return (values.form == ValueForm::List ? "list of " : "") + fmt::format("{}", fmt::join(parts, ", "));
+    return (values.form == compiler::ValueForm::List ? "list of " : "") +
+           fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string stageOf(const Descriptor& row) {
+std::string stageOf(const compiler::Descriptor& row) {
     switch (row.stage) {
-        case SettingStage::Package:
+        case compiler::SettingStage::Package:
             return "package";
-        case SettingStage::Choice:
+        case compiler::SettingStage::Choice:
             return "package, then renderer";
-        case SettingStage::Renderer:
+        case compiler::SettingStage::Renderer:
             return "renderer";
-        case SettingStage::Frame:
+        case compiler::SettingStage::Frame:
             break;
     }
     return "frame";
 }
 
-std::string referenceOf(const SettingBench& bench) {
-    if (bench.use != BenchUse::Swept) {
+std::string referenceOf(const compiler::SettingBench& bench) {
+    if (bench.use != compiler::BenchUse::Swept) {
         return "";
     }
     return !bench.exact           ? "changes time alone"
@@ -86,8 +88,8 @@ std::string referenceOf(const SettingBench& bench) {
                                   : "`" + std::string(*bench.exact) + "`";
 }
 
-std::string triedOf(const SettingBench& bench) {
-    if (bench.use != BenchUse::Swept) {
+std::string triedOf(const compiler::SettingBench& bench) {
+    if (bench.use != compiler::BenchUse::Swept) {
         return "";
     }
     if (bench.triedFor != nullptr) {
@@ -97,11 +99,11 @@ std::string triedOf(const SettingBench& bench) {
     return bench.quick.empty() ? all : fmt::format("{} (quick: {})", all, bench.quick);
 }
 
-std::string sentencesOf(const Descriptor& row) {
+std::string sentencesOf(const compiler::Descriptor& row) {
     std::string text(row.what);
     text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     text += ".";
-    for (const SettingWord& word : wordsOf(row)) {
+    for (const compiler::SettingWord& word : wordsOf(row)) {
         if (!word.what.empty()) {
             text += fmt::format(" `{}`: {}.", word.name, word.what);
         }
@@ -119,10 +121,10 @@ std::string tableOfSettings() {
     std::string text =
         "| option | of | values | default | decided for | in the reference | the bench tries | |\n"
         "|---|---|---|---|---|---|---|---|\n";
-    for (const Descriptor& row : settingsTable()) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
         text += fmt::format("| `--{}` | {} | {} | `{}` | {} | {} | {} | {} |\n", row.name, commandsOf(row),
-                            valuesOf(row), row.values.text(Settings()), stageOf(row), referenceOf(row.bench),
-                            triedOf(row.bench), sentencesOf(row));
+                            valuesOf(row), row.values.text(compiler::Settings()), stageOf(row),
+                            referenceOf(row.bench), triedOf(row.bench), sentencesOf(row));
     }
     return text;
 }
@@ -144,7 +146,7 @@ TEST(DocumentedSettings, AreThoseOfTheTable) {
 }
 
 TEST(DocumentedSettings, LeadToHeadingsThatExist) {
-    for (const Descriptor& row : settingsTable()) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
         const std::string_view file = row.document.substr(0, row.document.find('#'));
         if (file.empty()) {
             continue;
@@ -194,9 +196,9 @@ const std::map<std::string, std::set<std::string>, std::less<>>& enumerations() 
         {"ordering", namesOfAll<package::Ordering>()},
         {"shadows", namesOfAll<package::ShadowPlacement>()},
         {"hitRecord", namesOfAll<package::HitRecordFormat>()},
-        {"textureLod", namesOfAll<TextureLod>()},
-        {"merge", namesOfAll<MergePolicy>()},
-        {"alpha", namesOfAll<AlphaPolicy>()}};
+        {"textureLod", namesOfAll<compiler::TextureLod>()},
+        {"merge", namesOfAll<compiler::MergePolicy>()},
+        {"alpha", namesOfAll<package::AlphaPolicy>()}};
     return kEnumerations;
 }
 
@@ -254,7 +256,7 @@ TEST(Schemas, DescribeTheSettingsOfAManifest) {
         described.insert(name);
     }
     std::size_t recorded = 2;  // hitLobes and sky
-    for (const Descriptor& row : settingsTable()) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
         recorded += row.recorded ? 1 : 0;
         std::string name;
         for (const char c : row.name) {

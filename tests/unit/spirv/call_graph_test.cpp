@@ -40,25 +40,26 @@ void main() {
 }
 )";
 
-ShaderSource source(std::vector<std::string> apart) {
-    ShaderSource result{"two.comp", ShaderStage::Compute, kTwoCases};
+compiler::ShaderSource source(std::vector<std::string> apart) {
+    compiler::ShaderSource result{"two.comp", compiler::ShaderStage::Compute, kTwoCases};
     result.functionsApart = std::move(apart);
     return result;
 }
 
-const SpirvFunction* find(const std::vector<SpirvFunction>& functions, const std::string& name) {
-    const auto place = std::ranges::find(functions, name, &SpirvFunction::name);
+const compiler::SpirvFunction* find(const std::vector<compiler::SpirvFunction>& functions,
+                                    const std::string& name) {
+    const auto place = std::ranges::find(functions, name, &compiler::SpirvFunction::name);
     return place == functions.end() ? nullptr : &*place;
 }
 
 TEST(CallGraph, NamesFunctionsAndWhatTheyCall) {
     const auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true});
     ASSERT_TRUE(words) << toString(words.error());
-    const std::vector<SpirvFunction> functions = findFunctions(*words);
+    const std::vector<compiler::SpirvFunction> functions = compiler::findFunctions(*words);
     ASSERT_EQ(functions.size(), 3U);
-    const SpirvFunction* const main = find(functions, "main");
-    const SpirvFunction* const first = find(functions, "shadeFirst");
-    const SpirvFunction* const second = find(functions, "shadeSecond");
+    const compiler::SpirvFunction* const main = find(functions, "main");
+    const compiler::SpirvFunction* const first = find(functions, "shadeFirst");
+    const compiler::SpirvFunction* const second = find(functions, "shadeSecond");
     ASSERT_TRUE(main != nullptr && first != nullptr && second != nullptr);
     std::vector<std::uint32_t> calls = main->calls;
     std::ranges::sort(calls);
@@ -73,10 +74,10 @@ TEST(CallGraph, AFunctionApartHoldsWhatItsLiteralsLeave) {
     const auto apart = compileShader(source({"shadeFirst", "shadeSecond"}), {});
     const auto inlined = compileShader(source({}), {});
     ASSERT_TRUE(apart && inlined);
-    EXPECT_EQ(findFunctions(*apart).size(), 3U);
-    EXPECT_EQ(findFunctions(*inlined).size(), 1U);
+    EXPECT_EQ(compiler::findFunctions(*apart).size(), 3U);
+    EXPECT_EQ(compiler::findFunctions(*inlined).size(), 1U);
     for (const auto& words : {*apart, *inlined}) {
-        const auto statistics = measureSpirv(words);
+        const auto statistics = compiler::measureSpirv(words);
         ASSERT_TRUE(statistics);
         // There is one texture in the first case, and two in the second.
         EXPECT_EQ(statistics->textureFetches, 3U);
@@ -86,7 +87,7 @@ TEST(CallGraph, AFunctionApartHoldsWhatItsLiteralsLeave) {
 TEST(CallGraph, LeavesInliningToTheDriver) {
     const auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {});
     ASSERT_TRUE(words);
-    for (const SpirvFunction& function : findFunctions(*words)) {
+    for (const compiler::SpirvFunction& function : compiler::findFunctions(*words)) {
         EXPECT_EQ(words->at(function.controlWord), 0U);
     }
 }
@@ -94,12 +95,12 @@ TEST(CallGraph, LeavesInliningToTheDriver) {
 TEST(CallGraph, ForbidsInliningOfThoseApart) {
     auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true});
     ASSERT_TRUE(words);
-    const std::vector<SpirvFunction> functions = findFunctions(*words);
-    const SpirvFunction* const first = find(functions, "shadeFirst");
+    const std::vector<compiler::SpirvFunction> functions = compiler::findFunctions(*words);
+    const compiler::SpirvFunction* const first = find(functions, "shadeFirst");
     ASSERT_NE(first, nullptr);
     keepApart(*words, functions, {first->id});
     constexpr std::uint32_t kDontInline = 2;
-    for (const SpirvFunction& function : functions) {
+    for (const compiler::SpirvFunction& function : functions) {
         EXPECT_EQ(words->at(function.controlWord), function.id == first->id ? kDontInline : 0U);
     }
 }

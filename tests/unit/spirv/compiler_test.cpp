@@ -48,25 +48,26 @@ std::string computeShader(const std::string& body) {
 }
 
 TEST(CompileShader, FoldsDecidedFeaturesAway) {
-    const auto words = compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {});
+    const auto words =
+        compiler::compileShader({"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {});
     ASSERT_TRUE(words) << toString(words.error());
-    const auto statistics = measureSpirv(*words);
+    const auto statistics = compiler::measureSpirv(*words);
     ASSERT_TRUE(statistics);
     EXPECT_EQ(statistics->textureFetches, 4U);
     // There is one branch on the mask, for the feature that some keys have.
     EXPECT_EQ(statistics->branches, 2U);
 }
 
-std::string disassembled(const ShaderSource& source) {
+std::string disassembled(const compiler::ShaderSource& source) {
     const auto words = compileShader(source, {});
-    const auto text = words ? disassemble(*words) : Result<std::string>(words.error());
+    const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
     EXPECT_TRUE(text) << toString(text.error());
     return text ? *text : std::string();
 }
 
 TEST(CompileShader, LeavesMembersThatAreReadAtTheirOffsets) {
     const std::string text = disassembled(
-        {"members.comp", ShaderStage::Compute,
+        {"members.comp", compiler::ShaderStage::Compute,
          "#version 460\n#extension GL_EXT_buffer_reference : require\n"
          "layout(buffer_reference) buffer Data { vec4 unused[2]; float read; float other; float written; };\n"
          "layout(push_constant) uniform Push { Data data; };\n"
@@ -79,7 +80,7 @@ TEST(CompileShader, LeavesMembersThatAreReadAtTheirOffsets) {
 
 // Payloads have no offsets: another stage of the pipeline finds a member by its number.
 TEST(CompileShader, LeavesPayloadsWhole) {
-    const std::string text = disassembled({"payload.rchit", ShaderStage::ClosestHit,
+    const std::string text = disassembled({"payload.rchit", compiler::ShaderStage::ClosestHit,
                                            "#version 460\n#extension GL_EXT_ray_tracing : require\n"
                                            "struct Payload { uint id; float distance; vec2 uv; };\n"
                                            "layout(location = 0) rayPayloadInEXT Payload payload;\n"
@@ -88,14 +89,15 @@ TEST(CompileShader, LeavesPayloadsWhole) {
 }
 
 TEST(CompileShader, MakesSpirv15) {
-    const auto words = compileShader({"a.comp", ShaderStage::Compute, computeShader("")}, {});
+    const auto words =
+        compiler::compileShader({"a.comp", compiler::ShaderStage::Compute, computeShader("")}, {});
     ASSERT_TRUE(words) << toString(words.error());
     EXPECT_EQ(words->at(1), 0x00010500U);
 }
 
 TEST(CompileShader, NamesFileAndLineOfAnError) {
-    const auto words =
-        compileShader({"a.comp", ShaderStage::Compute, computeShader("    float x = missing;\n")}, {});
+    const auto words = compiler::compileShader(
+        {"a.comp", compiler::ShaderStage::Compute, computeShader("    float x = missing;\n")}, {});
     ASSERT_FALSE(words);
     EXPECT_EQ(words.error().id, "glsl");
     EXPECT_EQ(words.error().where, "passes/test.comp:4");
@@ -104,9 +106,10 @@ TEST(CompileShader, NamesFileAndLineOfAnError) {
 }
 
 TEST(CompileShader, ReportsLinkErrors) {
-    const auto words = compileShader(
-        {"a.comp", ShaderStage::Compute, "#version 460\nvoid undefined();\nvoid main() { undefined(); }\n"},
-        {});
+    const auto words =
+        compiler::compileShader({"a.comp", compiler::ShaderStage::Compute,
+                                 "#version 460\nvoid undefined();\nvoid main() { undefined(); }\n"},
+                                {});
     ASSERT_FALSE(words);
     EXPECT_EQ(words.error().id, "glsl");
     EXPECT_FALSE(words.error().message.empty());
@@ -114,17 +117,17 @@ TEST(CompileShader, ReportsLinkErrors) {
 
 TEST(CompileShader, KeepsNamesForDebugInfoOnly) {
     for (const bool debugInfo : {false, true}) {
-        const auto words =
-            compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo});
+        const auto words = compiler::compileShader(
+            {"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo});
         ASSERT_TRUE(words) << toString(words.error());
-        const auto text = disassemble(*words);
+        const auto text = compiler::disassemble(*words);
         ASSERT_TRUE(text);
         EXPECT_EQ(text->find("OpMemberName") != std::string::npos, debugInfo);
     }
 }
 
 TEST(CompileShader, GivesTheSameWordsOnEveryThread) {
-    const ShaderSource source{"three.comp", ShaderStage::Compute, kThreeCases};
+    const compiler::ShaderSource source{"three.comp", compiler::ShaderStage::Compute, kThreeCases};
     const auto expected = compileShader(source, {});
     ASSERT_TRUE(expected);
     std::vector<std::vector<std::uint32_t>> results(4);
@@ -145,30 +148,30 @@ TEST(CompileShader, GivesTheSameWordsOnEveryThread) {
 }
 
 TEST(ValidateSpirv, RefusesWhatIsNotValid) {
-    auto words = compileShader({"three.comp", ShaderStage::Compute, kThreeCases}, {});
+    auto words = compiler::compileShader({"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {});
     ASSERT_TRUE(words);
-    EXPECT_TRUE(validateSpirv(*words, "three.comp"));
+    EXPECT_TRUE(compiler::validateSpirv(*words, "three.comp"));
     // The bound on IDs is below the IDs in use.
     words->at(3) = 2;
-    const Status status = validateSpirv(*words, "three.comp");
+    const Status status = compiler::validateSpirv(*words, "three.comp");
     ASSERT_FALSE(status);
     EXPECT_EQ(status.error().id, "spirv-validate");
     EXPECT_EQ(status.error().where, "three.comp");
 }
 
 TEST(ValidateSpirv, AllowsScalarLayout) {
-    const auto words = compileShader({"scalar.comp", ShaderStage::Compute, R"(#version 460
+    const auto words = compiler::compileShader({"scalar.comp", compiler::ShaderStage::Compute, R"(#version 460
 #extension GL_EXT_scalar_block_layout : require
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0, scalar) buffer Data { float a; vec3 b; float c[3]; } data;
 void main() { data.b = vec3(data.a, data.c[0], data.c[2]); }
 )"},
-                                     {});
+                                               {});
     EXPECT_TRUE(words) << toString(words.error());
 }
 
 TEST(Disassemble, RefusesGarbage) {
-    const auto text = disassemble({1, 2, 3});
+    const auto text = compiler::disassemble({1, 2, 3});
     ASSERT_FALSE(text);
     EXPECT_EQ(text.error().id, "spirv-format");
 }

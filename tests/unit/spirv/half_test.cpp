@@ -29,9 +29,9 @@ void main() {
 )";
 }
 
-std::string disassembled(const std::string& glsl, const ShaderCompileOptions& options = {}) {
-    const auto words = compileShader({"half.comp", ShaderStage::Compute, glsl}, options);
-    const auto text = words ? disassemble(*words) : Result<std::string>(words.error());
+std::string disassembled(const std::string& glsl, const compiler::ShaderCompileOptions& options = {}) {
+    const auto words = compileShader({"half.comp", compiler::ShaderStage::Compute, glsl}, options);
+    const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
     EXPECT_TRUE(text) << toString(text.error());
     return text ? *text : std::string();
 }
@@ -65,7 +65,7 @@ TEST(HalfPrecision, IsNowhereWithoutMediump) {
 }
 
 TEST(HalfPrecision, CanBeThatOfEverything) {
-    ShaderCompileOptions options;
+    compiler::ShaderCompileOptions options;
     options.halvesAll = true;
     const std::string text = disassembled(lightShader(""), options);
     EXPECT_EQ(count(text, "= OpDot %half"), 1) << text;
@@ -74,10 +74,11 @@ TEST(HalfPrecision, CanBeThatOfEverything) {
 
 // Functions that stay functions pass structures and colours to each other.
 TEST(HalfPrecision, HoldsAcrossFunctionsThatStay) {
-    ShaderSource source{"half.comp", ShaderStage::Compute, lightShader("mediump"), {"tinted"}};
+    compiler::ShaderSource source{
+        "half.comp", compiler::ShaderStage::Compute, lightShader("mediump"), {"tinted"}};
     const auto words = compileShader(source, {});
     ASSERT_TRUE(words) << toString(words.error());
-    const auto text = disassemble(*words);
+    const auto text = compiler::disassemble(*words);
     ASSERT_TRUE(text);
     EXPECT_EQ(count(*text, "= OpFunction "), 2) << *text;
     EXPECT_GE(count(*text, "%v3half"), 1) << *text;

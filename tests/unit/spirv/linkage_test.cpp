@@ -29,11 +29,12 @@ struct Contents {
 
 Contents contentsOf(const std::vector<std::uint32_t>& words) {
     Contents contents;
-    const Status status = visitSpirv(words, [&](const SpirvInstruction& instruction) {
+    const Status status = compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& instruction) {
         ++contents.opcodes[instruction.opcode];
         if (instruction.opcode == spv::OpDecorate &&
             instruction.operands[1] == spv::DecorationLinkageAttributes) {
-            contents.linkage[spirvString(instruction.operands.subspan(2))] = instruction.operands.back();
+            contents.linkage[compiler::spirvString(instruction.operands.subspan(2))] =
+                instruction.operands.back();
         }
     });
     EXPECT_TRUE(status);
@@ -41,8 +42,8 @@ Contents contentsOf(const std::vector<std::uint32_t>& words) {
 }
 
 TEST(Linkage, ALibraryHasExportsAndImportsAndNoEntryPoint) {
-    const auto words = compileLinkable({"library", ShaderStage::Compute, kSource, {}},
-                                       {{"scaled"}, {"hostValue", "hostUnused"}}, {});
+    const auto words = compiler::compileLinkable({"library", compiler::ShaderStage::Compute, kSource, {}},
+                                                 {{"scaled"}, {"hostValue", "hostUnused"}}, {});
     ASSERT_TRUE(words) << toString(words.error());
     Contents contents = contentsOf(*words);
     EXPECT_EQ(contents.linkage, (std::map<std::string, std::uint32_t>{{"hostValue", spv::LinkageTypeImport},
@@ -53,15 +54,15 @@ TEST(Linkage, ALibraryHasExportsAndImportsAndNoEntryPoint) {
     EXPECT_EQ(contents.opcodes[spv::OpVariable], 0);
     EXPECT_EQ(contents.opcodes[spv::OpFunction], 2);
     EXPECT_EQ(contents.opcodes[spv::OpLabel], 1);
-    const Result<std::string> text = disassemble(*words);
+    const Result<std::string> text = compiler::disassemble(*words);
     ASSERT_TRUE(text);
     // Parameters are passed by value, so that another front end can write the same signature.
     EXPECT_EQ(text->find("OpTypePointer"), std::string::npos) << *text;
 }
 
 TEST(Linkage, AProgramKeepsItsEntryPoint) {
-    const auto words = compileLinkable({"program", ShaderStage::Compute, kSource, {}},
-                                       {{"hostValue"}, {"scaled"}, true}, {});
+    const auto words = compiler::compileLinkable({"program", compiler::ShaderStage::Compute, kSource, {}},
+                                                 {{"hostValue"}, {"scaled"}, true}, {});
     // hostValue() is called by scaled() alone, whose body goes.
     ASSERT_TRUE(words) << toString(words.error());
     Contents contents = contentsOf(*words);
@@ -72,8 +73,8 @@ TEST(Linkage, AProgramKeepsItsEntryPoint) {
 }
 
 TEST(Linkage, RefusesToExportWhatIsNotThere) {
-    const auto words =
-        compileLinkable({"library", ShaderStage::Compute, kSource, {}}, {{"hostUnused"}, {}}, {});
+    const auto words = compiler::compileLinkable({"library", compiler::ShaderStage::Compute, kSource, {}},
+                                                 {{"hostUnused"}, {}}, {});
     ASSERT_FALSE(words);
     EXPECT_EQ(words.error().id, "spirv-linkage");
 }

@@ -190,7 +190,7 @@ TEST(LintQueries, FlagsMustBeConstantOpaqueAndWithoutAabbs) {
 
 TEST(LintQueries, LooksThroughCalls) {
     EXPECT_EQ(rules(compileQuery(functionsWith("t"), {"isVisible"})), Rules{});
-    const std::vector<LintFinding> found =
+    const std::vector<compiler::LintFinding> found =
         findings(compileQuery(functionsWith("DISTANCE(p)"), {"isVisible"}));
     // There is one finding for the function, however often it is called.
     ASSERT_EQ(found.size(), 1U);
@@ -203,7 +203,7 @@ Words withLine(const Words& words, std::uint32_t line) {
     Words result(words.begin(), words.begin() + 5);
     const std::uint32_t file = result[3]++;
     bool named = false;
-    EXPECT_TRUE(visitSpirv(words, [&](const SpirvInstruction& it) {
+    EXPECT_TRUE(compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& it) {
         const auto opcode = it.opcode;
         if (!named && opcode >= kOpSource && opcode < kOpLine) {
             result.insert(result.end(), {4U << 16U | kOpString, file, 0x65732E61U, 0U});  // "a.se"
@@ -229,7 +229,7 @@ TEST(LintQueries, NamesThePlace) {
             data.b = HIT(q);
         })";
     const Words words = compileQuery(twice);
-    const std::vector<LintFinding> found = findings(words);
+    const std::vector<compiler::LintFinding> found = findings(words);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].place.function, "main");
     EXPECT_EQ(found[0].place.source, "");
@@ -237,7 +237,7 @@ TEST(LintQueries, NamesThePlace) {
     EXPECT_EQ(words[found[0].place.offset] & 0xFFFFU, kOpRayQueryInitialize);
     EXPECT_FALSE(found[0].hint.empty());
 
-    const std::vector<LintFinding> lined = findings(withLine(words, 34));
+    const std::vector<compiler::LintFinding> lined = findings(withLine(words, 34));
     ASSERT_EQ(lined.size(), 1U);
     EXPECT_EQ(lined[0].place.source, "a.se:34");
     EXPECT_NE(toString(lined[0].place).find("in main (a.se:34, word "), std::string::npos);

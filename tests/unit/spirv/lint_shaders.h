@@ -30,8 +30,9 @@ const uint kAny = kFast | gl_RayFlagsTerminateOnFirstHitEXT;
 #define DISTANCE(q) rayQueryGetIntersectionTEXT(q, true)
 )";
 
-inline Words compile(ShaderStage stage, const std::string& glsl, std::vector<std::string> apart = {}) {
-    ShaderSource source{"lint", stage, glsl};
+inline Words compile(compiler::ShaderStage stage, const std::string& glsl,
+                     std::vector<std::string> apart = {}) {
+    compiler::ShaderSource source{"lint", stage, glsl};
     source.functionsApart = std::move(apart);
     const auto words = compileShader(source, {.debugInfo = true});
     EXPECT_TRUE(words) << toString(words.error());
@@ -39,20 +40,20 @@ inline Words compile(ShaderStage stage, const std::string& glsl, std::vector<std
 }
 
 inline Words compileQuery(const std::string& body, std::vector<std::string> apart = {}) {
-    return compile(ShaderStage::Compute, kQueryHead + body, std::move(apart));
+    return compile(compiler::ShaderStage::Compute, kQueryHead + body, std::move(apart));
 }
 
-inline std::vector<LintFinding> findings(const Words& words) {
-    const Result<SpirvLint> lint = lintSpirv(words);
+inline std::vector<compiler::LintFinding> findings(const Words& words) {
+    const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
     EXPECT_TRUE(lint) << toString(lint.error());
-    return lint ? lint->findings : std::vector<LintFinding>();
+    return lint ? lint->findings : std::vector<compiler::LintFinding>();
 }
 
 // Returns the findings as "error query-proceeds", sorted.
 inline Rules rules(const Words& words) {
     constexpr const char* kNames[] = {"note", "warning", "error"};
     Rules list;
-    for (const LintFinding& finding : findings(words)) {
+    for (const compiler::LintFinding& finding : findings(words)) {
         list.push_back(std::string(kNames[static_cast<int>(finding.severity)]) + " " + finding.rule);
     }
     std::ranges::sort(list);

@@ -22,52 +22,53 @@ TEST(LintPipelines, OnlyHitShadersMayNotTrace) {
     const std::string generates =
         std::string(kTraceHead) +
         "layout(location = 0) rayPayloadEXT vec4 payload; void main() { payload = vec4(0); TRACE(0); }";
-    EXPECT_EQ(rules(compile(ShaderStage::RayGeneration, generates)), Rules{"note payload-bytes"});
+    EXPECT_EQ(rules(compile(compiler::ShaderStage::RayGeneration, generates)), Rules{"note payload-bytes"});
     const std::string recurses = std::string(kTraceHead) +
                                  "layout(location = 0) rayPayloadInEXT vec4 payload;\n"
                                  "layout(location = 1) rayPayloadEXT float next;\n"
                                  "void go() { TRACE(1); }\nvoid main() { go(); payload.x = next; }";
-    EXPECT_EQ(rules(compile(ShaderStage::ClosestHit, recurses)),
+    EXPECT_EQ(rules(compile(compiler::ShaderStage::ClosestHit, recurses)),
               (Rules{"note payload-bytes", "warning trace-from-hit"}));
-    EXPECT_EQ(rules(compile(ShaderStage::Miss, recurses, {"go"})),
+    EXPECT_EQ(rules(compile(compiler::ShaderStage::Miss, recurses, {"go"})),
               (Rules{"note payload-bytes", "warning trace-from-hit"}));
     const std::string ends =
         std::string(kTraceHead) +
         "layout(location = 0) rayPayloadInEXT vec4 payload; void main() { payload.x = 1.0; }";
-    EXPECT_EQ(rules(compile(ShaderStage::ClosestHit, ends)), Rules{});
+    EXPECT_EQ(rules(compile(compiler::ShaderStage::ClosestHit, ends)), Rules{});
 }
 
 TEST(LintPipelines, MeasuresPayloads) {
     const auto lint = [](const std::string& type) {
-        return findings(
-            compile(ShaderStage::RayGeneration, std::string(kTraceHead) +
-                                                    "struct Inner { vec3 a; uint b[2]; };\n"
-                                                    "struct Payload { Inner inner; mat3x4 m; bool c; };\n"
-                                                    "layout(location = 0) rayPayloadEXT " +
-                                                    type + " payload;\nvoid main() { TRACE(0); }"));
+        return findings(compile(compiler::ShaderStage::RayGeneration,
+                                std::string(kTraceHead) +
+                                    "struct Inner { vec3 a; uint b[2]; };\n"
+                                    "struct Payload { Inner inner; mat3x4 m; bool c; };\n"
+                                    "layout(location = 0) rayPayloadEXT " +
+                                    type + " payload;\nvoid main() { TRACE(0); }"));
     };
-    const std::vector<LintFinding> large = lint("Payload");
+    const std::vector<compiler::LintFinding> large = lint("Payload");
     ASSERT_EQ(large.size(), 1U);
     EXPECT_EQ(large[0].severity, Severity::Warning);
     // 12 + 8, 48, 4
     EXPECT_EQ(large[0].message, "the ray payload has 72 bytes");
-    const std::vector<LintFinding> exact = lint("mat4");
+    const std::vector<compiler::LintFinding> exact = lint("mat4");
     ASSERT_EQ(exact.size(), 1U);
     EXPECT_EQ(exact[0].severity, Severity::Note);
     EXPECT_EQ(exact[0].message, "the ray payload has 64 bytes");
 }
 
 TEST(Lint, CountsAndNamesStages) {
-    const Result<SpirvLint> lint = lintSpirv(compileQuery(functionsWith("t"), {"isVisible"}));
+    const Result<compiler::SpirvLint> lint =
+        compiler::lintSpirv(compileQuery(functionsWith("t"), {"isVisible"}));
     ASSERT_TRUE(lint);
     EXPECT_EQ(lint->stages, std::vector<std::string>{"GLCompute"});
     EXPECT_EQ(lint->statistics.functions, 2U);
     EXPECT_EQ(lint->statistics.rayQueries, 2U);
     EXPECT_EQ(lint->statistics.traces, 0U);
-    const Result<SpirvLint> traces = lintSpirv(
-        compile(ShaderStage::RayGeneration, std::string(kTraceHead) +
-                                                "layout(location = 0) rayPayloadEXT vec4 payload;\n"
-                                                "void main() { payload = vec4(0); TRACE(0); TRACE(0); }"));
+    const Result<compiler::SpirvLint> traces = compiler::lintSpirv(compile(
+        compiler::ShaderStage::RayGeneration, std::string(kTraceHead) +
+                                                  "layout(location = 0) rayPayloadEXT vec4 payload;\n"
+                                                  "void main() { payload = vec4(0); TRACE(0); TRACE(0); }"));
     ASSERT_TRUE(traces);
     EXPECT_EQ(traces->stages, std::vector<std::string>{"RayGenerationKHR"});
     EXPECT_EQ(traces->statistics.traces, 2U);
@@ -80,13 +81,13 @@ TEST(Lint, ReportsWhatIsNotValid) {
     Words operand = good;
     operand.back() = 2U << 16U | 253U;  // the end of the function, as a return of two words
     for (const Words& words : {bound, Words(good.begin(), good.end() - 1)}) {
-        const Result<SpirvLint> lint = lintSpirv(words);
+        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
         ASSERT_FALSE(lint);
         EXPECT_EQ(lint.error().id, "spirv-invalid");
         EXPECT_FALSE(lint.error().hint.empty());
     }
     for (const Words& words : {Words(), Words(5, 7U), operand}) {
-        const Result<SpirvLint> lint = lintSpirv(words);
+        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
         ASSERT_FALSE(lint);
         EXPECT_EQ(lint.error().id, "spirv-format");
     }
@@ -106,7 +107,7 @@ TEST(Lint, SurvivesAlteredModules) {
             std::uint32_t& word = words[5 + random() % (words.size() - 5)];
             word = random() % 2 == 0 ? random() % words[3] : word ^ 1U << random() % 32;
         }
-        const Result<SpirvLint> lint = lintSpirv(words);
+        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
         refused += lint ? 0 : 1;
         if (lint) {
             EXPECT_EQ(lint->stages.size(), 1U);

@@ -36,7 +36,7 @@ TEST(SpirvStatistics, CountsWithinFunctionsAlone) {
         first(56, 1),                               // OpFunctionEnd
     };
     words.insert(words.end(), body.begin(), body.end());
-    const Result<SpirvStatistics> statistics = measureSpirv(words);
+    const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(words);
     ASSERT_TRUE(statistics) << toString(statistics.error());
     EXPECT_EQ(statistics->bytes, words.size() * 4);
     EXPECT_EQ(statistics->instructions, 7U);
@@ -54,7 +54,7 @@ TEST(SpirvStatistics, ReportsWhatIsNoModule) {
     tooLong.push_back(first(19, 3));
     tooLong.push_back(1);
     for (const auto& words : {std::vector<std::uint32_t>{}, {kMagic}, wrongMagic, zeroLength, tooLong}) {
-        const Result<SpirvStatistics> statistics = measureSpirv(words);
+        const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(words);
         ASSERT_FALSE(statistics);
         EXPECT_EQ(statistics.error().id, "spirv-format");
         EXPECT_FALSE(statistics.error().message.empty());
@@ -73,19 +73,20 @@ TEST(SpirvStatistics, SurvivesGarbage) {
             words.push_back(random() % 2 == 0 ? random() : first(random() % 300, random() % 4));
         }
         std::size_t visited = 5;
-        const Status status = visitSpirv(
-            words, [&](const SpirvInstruction& instruction) { visited += 1 + instruction.operands.size(); });
+        const Status status = compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& instruction) {
+            visited += 1 + instruction.operands.size();
+        });
         EXPECT_LE(visited, words.size());
         EXPECT_EQ(status.ok(), visited == words.size());
-        EXPECT_EQ(measureSpirv(words).ok(), status.ok());
+        EXPECT_EQ(compiler::measureSpirv(words).ok(), status.ok());
     }
 }
 
 TEST(SpirvReader, ReadsStringsThatLackTheirEnd) {
     const std::uint32_t abcd = 0x64636261;
-    EXPECT_EQ(spirvString(std::vector<std::uint32_t>{abcd, 0x00000065}), "abcde");
-    EXPECT_EQ(spirvString(std::vector<std::uint32_t>{abcd}), "abcd");
-    EXPECT_EQ(spirvString({}), "");
+    EXPECT_EQ(compiler::spirvString(std::vector<std::uint32_t>{abcd, 0x00000065}), "abcde");
+    EXPECT_EQ(compiler::spirvString(std::vector<std::uint32_t>{abcd}), "abcd");
+    EXPECT_EQ(compiler::spirvString({}), "");
 }
 
 }  // namespace

@@ -17,18 +17,19 @@
 namespace glint::synthetic {
 namespace {
 
-Plan planOf(const Scene& scene) {
-    PlanOptions options;
-    options.merge = MergePolicy::None;
+compiler::Plan planOf(const gltf::Scene& scene) {
+    compiler::PlanOptions options;
+    options.merge = compiler::MergePolicy::None;
     return makePlan(scene.materials, planningInputs(scene), options);
 }
 
 TEST(CasesScene, HasAsManyKeysAsCases) {
-    for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
-        for (const Coherence coherence : {Coherence::Coherent, Coherence::Incoherent}) {
+    for (const synthetic::Cost cost : {synthetic::Cost::Cheap, synthetic::Cost::Expensive}) {
+        for (const synthetic::Coherence coherence :
+             {synthetic::Coherence::Coherent, synthetic::Coherence::Incoherent}) {
             for (const int cases : {1, 2, 3, 4, 16, 64, 255, 256}) {
-                const Scene scene = makeCasesScene({cases, cost, coherence});
-                const Plan plan = planOf(scene);
+                const gltf::Scene scene = makeCasesScene({cases, cost, coherence});
+                const compiler::Plan plan = planOf(scene);
                 EXPECT_EQ(plan.keys.size(), static_cast<std::size_t>(cases)) << nameOf(cost);
                 EXPECT_EQ(plan.cases.size(), static_cast<std::size_t>(cases)) << nameOf(cost);
                 EXPECT_TRUE(plan.dropped.empty())
@@ -40,9 +41,9 @@ TEST(CasesScene, HasAsManyKeysAsCases) {
 
 // Only the options may decide, not their side effects: the scenes of one cost share their cases.
 TEST(CasesScene, HasTheSameKeysHoweverRaysGo) {
-    for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
-        const Plan mirror = planOf(makeCasesScene({16, cost, Coherence::Coherent}));
-        const Plan rough = planOf(makeCasesScene({16, cost, Coherence::Incoherent}));
+    for (const synthetic::Cost cost : {synthetic::Cost::Cheap, synthetic::Cost::Expensive}) {
+        const compiler::Plan mirror = planOf(makeCasesScene({16, cost, synthetic::Coherence::Coherent}));
+        const compiler::Plan rough = planOf(makeCasesScene({16, cost, synthetic::Coherence::Incoherent}));
         ASSERT_EQ(mirror.keys.size(), rough.keys.size());
         for (std::size_t i = 0; i < mirror.keys.size(); ++i) {
             EXPECT_EQ(mirror.keys[i].mask, rough.keys[i].mask);
@@ -52,10 +53,10 @@ TEST(CasesScene, HasTheSameKeysHoweverRaysGo) {
 
 // The average number of features of keys: work must not grow with the number of cases.
 TEST(CasesScene, KeepsItsWork) {
-    for (const Cost cost : {Cost::Cheap, Cost::Expensive}) {
+    for (const synthetic::Cost cost : {synthetic::Cost::Cheap, synthetic::Cost::Expensive}) {
         std::map<int, double> features;
         for (const int cases : {4, 16, 64, 256}) {
-            for (const Key& key : planOf(makeCasesScene({cases, cost})).keys) {
+            for (const compiler::Key& key : planOf(makeCasesScene({cases, cost})).keys) {
                 // Texture coordinates are in a key for any texture, so they are not one of the switches.
                 features[cases] += std::popcount(key.mask & ~bit("texCoord0")) / double(cases);
             }
@@ -67,11 +68,12 @@ TEST(CasesScene, KeepsItsWork) {
 }
 
 TEST(CasesScene, GivesEveryCaseATile) {
-    for (const Coherence coherence : {Coherence::Coherent, Coherence::Incoherent}) {
-        for (const Shares shares : {Shares::Uniform, Shares::Zipf}) {
+    for (const synthetic::Coherence coherence :
+         {synthetic::Coherence::Coherent, synthetic::Coherence::Incoherent}) {
+        for (const synthetic::Shares shares : {synthetic::Shares::Uniform, synthetic::Shares::Zipf}) {
             for (const int cases : {1, 3, 64, 256}) {
-                const CasesOptions options{cases, Cost::Cheap, coherence, shares};
-                const Ceiling ceiling = makeCeiling(options);
+                const synthetic::CasesOptions options{cases, synthetic::Cost::Cheap, coherence, shares};
+                const synthetic::Ceiling ceiling = makeCeiling(options);
                 std::map<int, std::size_t> tiles;
                 for (const int index : ceiling.cases) {
                     ++tiles[index];
@@ -84,10 +86,10 @@ TEST(CasesScene, GivesEveryCaseATile) {
                 EXPECT_NEAR(static_cast<double>(tiles[0]) / all, sharesOf(options)[0], 0.06);
                 EXPECT_TRUE(std::ranges::is_sorted(
                                 tiles, [](const auto& a, const auto& b) { return a.second > b.second; }) ||
-                            shares == Shares::Uniform);
-                const Scene scene = makeCasesScene(options);
+                            shares == synthetic::Shares::Uniform);
+                const gltf::Scene scene = makeCasesScene(options);
                 std::size_t triangles = 0;
-                for (const Primitive& primitive : scene.meshes[1].primitives) {
+                for (const gltf::Primitive& primitive : scene.meshes[1].primitives) {
                     triangles += primitive.indices.size() / 3;
                 }
                 EXPECT_EQ(triangles, 2 * ceiling.cases.size());
@@ -98,13 +100,14 @@ TEST(CasesScene, GivesEveryCaseATile) {
 
 // Fronts must face the rays, because hits of back faces are culled.
 TEST(CasesScene, FacesItsRays) {
-    const Scene scene = makeCasesScene({4, Cost::Expensive, Coherence::Incoherent});
+    const gltf::Scene scene =
+        makeCasesScene({4, synthetic::Cost::Expensive, synthetic::Coherence::Incoherent});
     for (std::size_t mesh = 0; mesh < 2; ++mesh) {
-        for (const Primitive& primitive : scene.meshes[mesh].primitives) {
+        for (const gltf::Primitive& primitive : scene.meshes[mesh].primitives) {
             for (std::size_t i = 0; i < primitive.indices.size(); i += 3) {
-                const Float3& a = primitive.positions[primitive.indices[i]];
-                const Float3& b = primitive.positions[primitive.indices[i + 1]];
-                const Float3& c = primitive.positions[primitive.indices[i + 2]];
+                const gltf::Float3& a = primitive.positions[primitive.indices[i]];
+                const gltf::Float3& b = primitive.positions[primitive.indices[i + 1]];
+                const gltf::Float3& c = primitive.positions[primitive.indices[i + 2]];
                 // This is the height of the cross product of two edges.
                 const float up = (b[2] - a[2]) * (c[0] - a[0]) - (b[0] - a[0]) * (c[2] - a[2]);
                 ASSERT_GT(mesh == 0 ? up : -up, 0.0F);
@@ -116,7 +119,7 @@ TEST(CasesScene, FacesItsRays) {
 
 TEST(CasesScene, IsLitByTheSkyAloneUnlessAskedElse) {
     EXPECT_TRUE(makeCasesScene({}).lights.empty());
-    CasesOptions options;
+    synthetic::CasesOptions options;
     options.lights = 3;
     EXPECT_EQ(makeCasesScene(options).lights.size(), 3U);
 }

@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -27,9 +27,9 @@ bool isView(const CLI::Option& option) {
                                            "--materials", "--host",        "--device"};
     const std::string name = option.get_name();
     return std::ranges::find(kViews, name) != std::end(kViews) ||
-           std::ranges::any_of(settingsTable(), [&](const Descriptor& row) {
-               return name == "--" + std::string(row.name) && (row.commands & kOfRender) != 0 &&
-                      row.bench.use == BenchUse::View;
+           std::ranges::any_of(compiler::settingsTable(), [&](const compiler::Descriptor& row) {
+               return name == "--" + std::string(row.name) && (row.commands & compiler::kOfRender) != 0 &&
+                      row.bench.use == compiler::BenchUse::View;
            });
 }
 
@@ -72,7 +72,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
               "pairs: then the pairs that matter; search: then a search\n"
               "for the Pareto front")
         .group(sweep);
-    addChoices(command, "--only", arguments.only, settingNames(),
+    addChoices(command, "--only", arguments.only, compiler::settingNames(),
                "sweep only these settings, separated by commas (default:\n"
                "all)")
         .type_name("LIST")
@@ -150,15 +150,15 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
             addWords(*option, arguments.viewWords);
         }
     }
-    arguments.command = shellWords(words);
+    arguments.command = base::shellWords(words);
     if (command.get_option("--size")->count() == 0) {
         RendererOptions& renderer = arguments.render.renderer;
         if (arguments.quick) {
-            parseSize(kQuickSize, renderer.width, renderer.height);
+            compiler::parseSize(kQuickSize, renderer.width, renderer.height);
         }
         arguments.viewWords.insert(arguments.viewWords.end(),
                                    {"--size", fmt::format("{}x{}", renderer.width, renderer.height)});
     }
 }
 
-}  // namespace glint
+}  // namespace glint::cli

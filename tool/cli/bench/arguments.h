@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct BenchArguments : measure::BenchSettings {
     RenderArguments render;  // the default that everything is compared with
@@ -27,4 +27,4 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments);
 // each other.
 void settleBench(const CLI::App& command, BenchArguments& arguments);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -18,7 +18,7 @@
 #include <string>
 #include <system_error>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -109,4 +109,4 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
     return kExitDone;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -4,9 +4,9 @@
 #include "cli/bench/arguments.h"
 #include "cli/console.h"
 
-namespace glint {
+namespace glint::cli {
 
 // Measures and writes the results. Returns the exit code.
 int calibrate(const Console& console, const BenchArguments& arguments);
 
-}  // namespace glint
+}  // namespace glint::cli

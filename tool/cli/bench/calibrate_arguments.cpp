@@ -9,7 +9,7 @@
 #include <optional>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::vector<std::uint64_t> raysOf(const CalibrateArguments& arguments) {
     return parseCounts(arguments.rayWords, kMinRays, kMaxRays).value_or(std::vector<std::uint64_t>());
 }
 
-}  // namespace glint
+}  // namespace glint::cli

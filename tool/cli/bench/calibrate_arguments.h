@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct CalibrateArguments {
     bool enabled = false;
@@ -33,4 +33,4 @@ std::vector<std::uint32_t> casesOf(const CalibrateArguments& arguments);
 // Parses "16k,1M" in the same way; k is a thousand, M a million.
 std::vector<std::uint64_t> raysOf(const CalibrateArguments& arguments);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -81,7 +81,7 @@ using measure::Interval;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string timeText(const measure::BenchReport& report, std::size_t point) {
-    const Interval time = measure::timeOf(report, point);
+    const measure::Interval time = measure::timeOf(report, point);
     return fmt::format("{:.3g} ({:.3g} to {:.3g})", time.median, time.low, time.high);
 }
 
@@ -89,12 +89,12 @@ std::string ratioText(const measure::BenchPoint& point) {
     if (point.kind == measure::PointKind::Default) {
         return "1";
     }
-    const Interval ratio = timeRatio(point);
+    const measure::Interval ratio = timeRatio(point);
     return isTimeTie(point) ? fmt::format("{:.2f} tie", ratio.median) : fmt::format("{:.2f}", ratio.median);
 }
 
 std::string errorText(const measure::BenchReport& report, const measure::BenchPoint& point) {
-    const Interval error = errorOf(point, report.metric);
+    const measure::Interval error = errorOf(point, report.metric);
     return fmt::format("{:.3g} ({:.3g} to {:.3g})", error.median, error.low, error.high);
 }
 
@@ -209,7 +209,8 @@ std::string toText(const measure::BenchReport& report) {
          {"measured", fmt::format("{} configurations in {} rounds, {:.0f} s", report.points.size(),
                                   report.rounds, report.seconds)}});
     text += fmt::format("\nOne setting at a time (default: {})\n{}",
-                        shellWords(wordsOf(measure::simplified(report.base, configurationOf(Settings())))),
+                        base::shellWords(compiler::wordsOf(
+                            measure::simplified(report.base, configurationOf(compiler::Settings())))),
                         pointsTable(report));
     if (const std::string skipped = skippedText(report); !skipped.empty()) {
         text += "\nNot tried\n" + skipped;
@@ -257,14 +258,14 @@ std::string toText(const measure::CalibrationReport& report) {
 
 std::string describe(const measure::DeviceFile& file) {
     std::vector<std::vector<std::string>> rows{{"strategy"}};
-    for (const CostTermInfo& info : costTerms()) {
+    for (const compiler::CostTermInfo& info : compiler::costTerms()) {
         rows.front().push_back(fmt::format("{}, {}", info.name, info.unit));
     }
     rows.front().insert(rows.front().end(), {"points", "off by", "at most"});
-    for (const StrategyCosts& costs : file.costs.strategies) {
+    for (const compiler::StrategyCosts& costs : file.costs.strategies) {
         std::vector<std::string>& row = rows.emplace_back();
         row.push_back(costs.strategy);
-        for (const CostTermInfo& info : costTerms()) {
+        for (const compiler::CostTermInfo& info : compiler::costTerms()) {
             const double constant = costs.constants[static_cast<std::size_t>(info.term)];
             row.push_back(hasTerm(costs.strategy, info.term) ? fmt::format("{:.3g}", constant) : "-");
         }
@@ -290,4 +291,4 @@ std::string describe(const measure::DeviceFile& file) {
                          regret.worstPoint.empty() ? "" : " (" + regret.worstPoint + ")");
 }
 
-}  // namespace glint
+}  // namespace glint::cli

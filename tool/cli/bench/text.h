@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace glint {
+namespace glint::cli {
 
 std::string toText(const measure::BenchReport& report);
 // Returns a table in Markdown.
@@ -15,4 +15,4 @@ std::string toText(const measure::CalibrationReport& report);
 // Describes the constants, how far estimates are off, and the cost of choosing by them.
 std::string describe(const measure::DeviceFile& file);
 
-}  // namespace glint
+}  // namespace glint::cli

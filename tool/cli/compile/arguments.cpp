@@ -18,7 +18,7 @@
 #include <string_view>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -27,7 +27,7 @@ constexpr const char* kLauncher = "--launcher";
 constexpr const char* kModules = "--modules";
 
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
-    addSettings(command, kOfCompile, arguments.settings);
+    addSettings(command, compiler::kOfCompile, arguments.settings);
     addCalibration(command, arguments.settings);
     addProfileInput(command, arguments.settings);
     addLockOptions(command, arguments.lock);
@@ -141,16 +141,16 @@ std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
     }
     if (!arguments.embed.empty()) {
         files.push_back(arguments.embed);
-        files.push_back(embeddedHeader(arguments.embed).string());
+        files.push_back(compiler::embeddedHeader(arguments.embed).string());
     }
     return files;
 }
 
-CompileSettings settingsOf(const CompileArguments& arguments, const PlanOptions& plan) {
+compiler::CompileSettings settingsOf(const CompileArguments& arguments, const compiler::PlanOptions& plan) {
     const auto emits = [&](const char* what) {
         return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
     };
-    CompileSettings settings = measure::compileSettings(arguments.settings, plan);
+    compiler::CompileSettings settings = measure::compileSettings(arguments.settings, plan);
     settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");
@@ -169,15 +169,17 @@ std::vector<std::filesystem::path> furtherInputs(const CompileArguments& argumen
         }
     }
     // Where the folders can't be listed, reading them says so.
-    if (const Result<std::vector<std::filesystem::path>> packs = packFiles(arguments.settings.materials);
+    if (const Result<std::vector<std::filesystem::path>> packs =
+            materials::packFiles(arguments.settings.materials);
         packs) {
         files.insert(files.end(), packs->begin(), packs->end());
     }
-    if (const Result<std::vector<std::filesystem::path>> host = hostFiles(arguments.settings.compile.host);
+    if (const Result<std::vector<std::filesystem::path>> host =
+            compiler::hostFiles(arguments.settings.compile.host);
         host) {
         files.insert(files.end(), host->begin(), host->end());
     }
     return files;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct CompileArguments {
     std::vector<std::string> scenes;
     std::string output;
     std::string embed;  // a C++ source; empty: none
-    Settings settings;
+    compiler::Settings settings;
     LockArguments lock;
     std::vector<std::string> emit{"header"};
     std::int64_t jobs = 0;
@@ -40,7 +40,7 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments);
 // each other.
 void settleCompile(const CLI::App& command, CompileArguments& arguments);
 
-CompileSettings settingsOf(const CompileArguments& arguments, const PlanOptions& plan);
+compiler::CompileSettings settingsOf(const CompileArguments& arguments, const compiler::PlanOptions& plan);
 
 // Returns the build file of --plan-only.
 std::string planFile(const CompileArguments& arguments);
@@ -49,4 +49,4 @@ std::vector<std::string> mainOutputs(const CompileArguments& arguments);
 // Returns the files that are read besides scenes.
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments);
 
-}  // namespace glint
+}  // namespace glint::cli

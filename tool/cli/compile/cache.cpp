@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace fs = std::filesystem;
 
@@ -27,30 +27,30 @@ CompileCache::CompileCache(const CacheArguments& arguments, const std::string& o
         return;
     }
     constexpr std::uint64_t kMebibyte = 1ULL << 20;
-    store_ = std::make_unique<CacheStore>(
-        StoreOptions{*folder, static_cast<std::uint64_t>(arguments.mebibytes) * kMebibyte, {}});
-    modules_ = std::make_unique<ModuleCache>(*store_, moduleCompiler());
+    store_ = std::make_unique<compiler::CacheStore>(
+        compiler::StoreOptions{*folder, static_cast<std::uint64_t>(arguments.mebibytes) * kMebibyte, {}});
+    modules_ = std::make_unique<compiler::ModuleCache>(*store_, compiler::moduleCompiler());
     std::error_code error;
-    action_ = Packer()
-                  .add(programIdentity())
+    action_ = compiler::Packer()
+                  .add(compiler::programIdentity())
                   .add(fs::current_path(error).string())
                   .add(std::string_view(options))
                   .take();
     for (const fs::path& input : inputs) {
-        action_ += Packer().add(input.string()).take();
+        action_ += compiler::Packer().add(input.string()).take();
     }
 }
 
-std::optional<ActionRecord> CompileCache::findUpToDate() {
+std::optional<compiler::ActionRecord> CompileCache::findUpToDate() {
     if (!store_) {
         return std::nullopt;
     }
     const std::optional<std::string> found = store_->find(kAction, action_);
-    std::optional<ActionRecord> record = found ? unpackAction(*found) : std::nullopt;
+    std::optional<compiler::ActionRecord> record = found ? compiler::unpackAction(*found) : std::nullopt;
     return record && isCurrent(*record) ? std::move(record) : std::nullopt;
 }
 
-void CompileCache::keep(const ActionRecord& record) {
+void CompileCache::keep(const compiler::ActionRecord& record) {
     if (store_) {
         store_->put(kAction, action_, pack(record));
     }
@@ -66,19 +66,19 @@ void CompileCache::close(const Console& console) {
     }
 }
 
-std::vector<FileState> filesOf(std::span<const Scene> scenes) {
-    std::vector<FileState> files;
-    for (const Scene& scene : scenes) {
-        for (const SourceFile& file : scene.files) {
-            files.push_back({file.path, file.bytes, file.hash, realPath(file.path)});
+std::vector<compiler::FileState> filesOf(std::span<const gltf::Scene> scenes) {
+    std::vector<compiler::FileState> files;
+    for (const gltf::Scene& scene : scenes) {
+        for (const gltf::SourceFile& file : scene.files) {
+            files.push_back({file.path, file.bytes, file.hash, compiler::realPath(file.path)});
         }
     }
     return files;
 }
 
-bool addFiles(std::vector<FileState>& files, std::span<const fs::path> paths) {
+bool addFiles(std::vector<compiler::FileState>& files, std::span<const fs::path> paths) {
     for (const fs::path& path : paths) {
-        std::optional<FileState> state = stateOf(path);
+        std::optional<compiler::FileState> state = compiler::stateOf(path);
         if (!state) {
             return false;
         }
@@ -87,20 +87,20 @@ bool addFiles(std::vector<FileState>& files, std::span<const fs::path> paths) {
     return true;
 }
 
-std::vector<FileState> filesOf(const CompiledPackage& package, const fs::path& folder) {
-    std::vector<FileState> files;
-    for (const PackageFile& file : package.files) {
-        files.push_back({(folder / file.name).string(), file.bytes.size(), hashBytes(file.bytes), {}});
+std::vector<compiler::FileState> filesOf(const compiler::CompiledPackage& package, const fs::path& folder) {
+    std::vector<compiler::FileState> files;
+    for (const compiler::PackageFile& file : package.files) {
+        files.push_back({(folder / file.name).string(), file.bytes.size(), base::hashBytes(file.bytes), {}});
     }
     return files;
 }
 
-std::vector<std::string> pathsOf(std::span<const FileState> files) {
+std::vector<std::string> pathsOf(std::span<const compiler::FileState> files) {
     std::vector<std::string> paths;
-    for (const FileState& file : files) {
+    for (const compiler::FileState& file : files) {
         paths.push_back(file.path);
     }
     return paths;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

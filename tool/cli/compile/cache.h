@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 // Without a folder nothing is found and nothing is kept.
 class CompileCache {
@@ -26,32 +26,33 @@ public:
                  std::span<const std::filesystem::path> inputs = {});
 
     // Returns null without a folder.
-    ModuleCache* modules() {
+    compiler::ModuleCache* modules() {
         return modules_.get();
     }
     // Returns null without a folder.
-    CacheStore* store() {
+    compiler::CacheStore* store() {
         return store_.get();
     }
     // Returns an earlier run with these options if its inputs and its outputs have not changed since.
-    std::optional<ActionRecord> findUpToDate();
-    void keep(const ActionRecord& record);
+    std::optional<compiler::ActionRecord> findUpToDate();
+    void keep(const compiler::ActionRecord& record);
     // Trims the folder to its bounds, and reports what could not be stored.
     void close(const Console& console);
 
 private:
-    std::unique_ptr<CacheStore> store_;
-    std::unique_ptr<ModuleCache> modules_;
+    std::unique_ptr<compiler::CacheStore> store_;
+    std::unique_ptr<compiler::ModuleCache> modules_;
     std::string action_;
 };
 
 // Returns every file from which the scenes were read, in the state at that time.
-std::vector<FileState> filesOf(std::span<const Scene> scenes);
+std::vector<compiler::FileState> filesOf(std::span<const gltf::Scene> scenes);
 // Adds each of `paths` in its current state. Returns false if one can't be read.
-bool addFiles(std::vector<FileState>& files, std::span<const std::filesystem::path> paths);
+bool addFiles(std::vector<compiler::FileState>& files, std::span<const std::filesystem::path> paths);
 // Returns the package's files below `folder`.
-std::vector<FileState> filesOf(const CompiledPackage& package, const std::filesystem::path& folder);
+std::vector<compiler::FileState> filesOf(const compiler::CompiledPackage& package,
+                                         const std::filesystem::path& folder);
 
-std::vector<std::string> pathsOf(std::span<const FileState> files);
+std::vector<std::string> pathsOf(std::span<const compiler::FileState> files);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -9,7 +9,7 @@
 #include <set>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -109,7 +109,7 @@ Status writeDepfile(const DepfileArguments& arguments, std::span<const std::stri
         return okStatus();
     }
     const Result<std::string> text = makeDepfile(arguments.targets, dependencies);
-    return text ? writeFile(arguments.file, *text) : Status(text.error());
+    return text ? base::writeFile(arguments.file, *text) : Status(text.error());
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct DepfileArguments {
     std::string file;                  // empty: none
@@ -28,4 +28,4 @@ Result<std::string> makeDepfile(std::span<const std::string> targets,
 // and "file-write".
 Status writeDepfile(const DepfileArguments& arguments, std::span<const std::string> dependencies);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -35,4 +35,4 @@ HeldSignals::~HeldSignals() {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::cli

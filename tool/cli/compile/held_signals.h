@@ -4,7 +4,7 @@
 #include <array>
 #include <csignal>
 
-namespace glint {
+namespace glint::cli {
 
 // While it lives, SIGINT, SIGTERM and SIGHUP wait. Afterwards the last one that came has its usual effect.
 // Use it for short stretches, and only one at a time: the command acts on one thread.
@@ -20,4 +20,4 @@ private:
     std::array<struct sigaction, kSignals.size()> earlier_{};
 };
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -100,7 +100,7 @@ Status checkFolder(const CompileArguments& arguments) {
     if (!fs::exists(file, error)) {
         return okStatus();
     }
-    const Result<Bytes> bytes = readFile(file);
+    const Result<base::Bytes> bytes = base::readFile(file);
     if (!bytes) {
         return bytes.error();
     }
@@ -118,7 +118,7 @@ void removeOthers(const fs::path& folder, const std::set<std::string>& kept) {
     for (fs::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
         const fs::path& path = file->path();
         const std::string suffix = path.extension().string();
-        if ((suffix == kModuleTextSuffix || suffix == kCompiledModuleSuffix) &&
+        if ((suffix == compiler::kModuleTextSuffix || suffix == compiler::kCompiledModuleSuffix) &&
             isModuleName(path.stem().string()) && !kept.contains(path.stem().string())) {
             gone.push_back(path);
         }
@@ -138,7 +138,7 @@ std::vector<std::string> commandWords(std::vector<std::string> options, std::spa
     return options;
 }
 
-NinjaPlan describe(const CompileArguments& arguments, const PackagePlan& plan) {
+NinjaPlan describe(const CompileArguments& arguments, const compiler::PackagePlan& plan) {
     NinjaPlan ninja;
     std::error_code error;
     ninja.tool = fs::read_symlink("/proc/self/exe", error).string();
@@ -148,10 +148,10 @@ NinjaPlan describe(const CompileArguments& arguments, const PackagePlan& plan) {
     ninja.launcher = arguments.launcher;
     ninja.folder = arguments.planOnly;
     ninja.file = planFile(arguments);
-    for (const PlannedModule& module : plan.modules) {
+    for (const compiler::PlannedModule& module : plan.modules) {
         const std::string stem = (moduleFolder(arguments) / module.file).string();
-        ninja.modules.push_back(
-            {module.name, stem + std::string(kModuleTextSuffix), stem + std::string(kCompiledModuleSuffix)});
+        ninja.modules.push_back({module.name, stem + std::string(compiler::kModuleTextSuffix),
+                                 stem + std::string(compiler::kCompiledModuleSuffix)});
     }
     ninja.outputs = mainOutputs(arguments);
     const fs::path folder = arguments.planOnly;
@@ -248,7 +248,7 @@ Result<std::string> makeNinjaFile(const NinjaPlan& plan) {
 
 namespace fs = std::filesystem;
 
-Status writePlan(const CompileArguments& arguments, const PackagePlan& plan,
+Status writePlan(const CompileArguments& arguments, const compiler::PackagePlan& plan,
                  std::span<const std::string> dependencies) {
     const NinjaPlan ninja = describe(arguments, plan);
     const Result<std::string> text = makeNinjaFile(ninja);
@@ -270,21 +270,22 @@ Status writePlan(const CompileArguments& arguments, const PackagePlan& plan,
                          "check the folder and its permissions");
     }
     std::set<std::string> kept;
-    for (const PlannedModule& module : plan.modules) {
+    for (const compiler::PlannedModule& module : plan.modules) {
         kept.insert(module.file);
-        const fs::path file = moduleFolder(arguments) / (module.file + std::string(kModuleTextSuffix));
-        if (Status written = writeFile(file, module.text); !written) {
+        const fs::path file =
+            moduleFolder(arguments) / (module.file + std::string(compiler::kModuleTextSuffix));
+        if (Status written = base::writeFile(file, module.text); !written) {
             return written;
         }
     }
-    if (Status listed = writeFile(ninja.planDepfile, *depfile); !listed) {
+    if (Status listed = base::writeFile(ninja.planDepfile, *depfile); !listed) {
         return listed;
     }
-    if (Status written = writeFile(ninja.file, *text); !written) {
+    if (Status written = base::writeFile(ninja.file, *text); !written) {
         return written;
     }
     removeOthers(moduleFolder(arguments), kept);
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct NinjaModule {
     std::string name;    // for people
@@ -45,7 +45,7 @@ std::string shellWord(const std::string& text);
 // Writes a text for each module and the build file into arguments.planOnly, but only files that changed, and
 // removes the modules of an earlier plan. `dependencies` are the files that were read. Errors:
 // "output-not-a-plan" if the folder has another build.ninja, "ninja-name", "depfile-name", "file-write".
-Status writePlan(const CompileArguments& arguments, const PackagePlan& plan,
+Status writePlan(const CompileArguments& arguments, const compiler::PackagePlan& plan,
                  std::span<const std::string> dependencies);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -8,28 +8,28 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 // The files outside the package's folder, in the order in which they are moved into place.
 class Staging {
 public:
-    Status addEmbedded(const SceneList& scenes, const CompiledPackage& package,
+    Status addEmbedded(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
                        const std::filesystem::path& source) {
-        Result<std::vector<StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
+        Result<std::vector<base::StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
         if (!staged) {
             return staged.error();
         }
-        for (StagedFile& file : *staged) {
+        for (base::StagedFile& file : *staged) {
             files_.push_back(std::move(file));
         }
         return okStatus();
     }
 
     Status add(const std::filesystem::path& path, std::string_view text) {
-        removeAbandoned(path);
-        Result<StagedFile> staged = StagedFile::create(path, asBytes(text));
+        base::removeAbandoned(path);
+        Result<base::StagedFile> staged = base::StagedFile::create(path, base::asBytes(text));
         if (!staged) {
             return staged.error();
         }
@@ -38,7 +38,7 @@ public:
     }
 
     Status commit() {
-        for (StagedFile& file : files_) {
+        for (base::StagedFile& file : files_) {
             if (Status written = file.commit(); !written) {
                 return written;
             }
@@ -47,12 +47,13 @@ public:
     }
 
 private:
-    std::vector<StagedFile> files_;
+    std::vector<base::StagedFile> files_;
 };
 
 }  // namespace
 
-Status writeOutputs(const SceneList& scenes, const CompiledPackage& package, const CompileOutputs& outputs) {
+Status writeOutputs(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
+                    const CompileOutputs& outputs) {
     const HeldSignals held;
     Staging staging;
     if (outputs.lockChoice.text) {
@@ -83,4 +84,4 @@ Status writeOutputs(const SceneList& scenes, const CompiledPackage& package, con
     return staging.commit();
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -13,7 +13,7 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::cli {
 
 // Members that are empty are not written.
 struct CompileOutputs {
@@ -27,6 +27,7 @@ struct CompileOutputs {
 
 // A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
 // writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
-Status writeOutputs(const SceneList& scenes, const CompiledPackage& package, const CompileOutputs& outputs);
+Status writeOutputs(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
+                    const CompileOutputs& outputs);
 
-}  // namespace glint
+}  // namespace glint::cli

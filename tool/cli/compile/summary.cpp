@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -20,9 +20,9 @@ std::string describe(const ModuleCounts& modules) {
 
 }  // namespace
 
-ModuleCounts countModules(const CompiledPackage& package) {
+ModuleCounts countModules(const compiler::CompiledPackage& package) {
     ModuleCounts counts;
-    for (const CompiledModule& module : package.modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         ++(module.compiled ? counts.compiled : counts.cached);
     }
     return counts;
@@ -33,7 +33,8 @@ void tell(const Console& console, CompileSummary summary, const std::optional<Mo
     if (console.isJson()) {
         summary.json["milliseconds"] = milliseconds;
         summary.json["modules"] =
-            modules ? Json{{"compiled", modules->compiled}, {"cached", modules->cached}} : Json(nullptr);
+            modules ? base::Json{{"compiled", modules->compiled}, {"cached", modules->cached}}
+                    : base::Json(nullptr);
         summary.json["upToDate"] = upToDate;
         console.result(summary.json);
         return;
@@ -49,18 +50,18 @@ void tell(const Console& console, CompileSummary summary, const std::optional<Mo
 }
 
 std::string pack(const CompileSummary& summary) {
-    Packer packer;
+    compiler::Packer packer;
     packer.add(summary.fields.size());
     for (const std::vector<std::string>& field : summary.fields) {
         packer.add(std::string_view(field[0])).add(std::string_view(field[1]));
     }
     packer.add(std::string_view(summary.dropped)).add(static_cast<std::uint64_t>(summary.modules));
-    const std::string json = summary.json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const std::string json = summary.json.dump(-1, ' ', false, base::Json::error_handler_t::replace);
     return packer.add(std::string_view(json)).take();
 }
 
 std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson) {
-    Unpacker unpacker(bytes);
+    compiler::Unpacker unpacker(bytes);
     CompileSummary summary;
     // A field is two texts, each with its length.
     summary.fields.resize(unpacker.count(2 * sizeof(std::uint64_t)).value_or(0));
@@ -76,11 +77,11 @@ std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJso
     if (!withJson) {
         return summary;
     }
-    if (nestsTooDeep(asBytes(*json))) {
+    if (base::nestsTooDeep(base::asBytes(*json))) {
         return std::nullopt;
     }
-    summary.json = Json::parse(*json, nullptr, false);
+    summary.json = base::Json::parse(*json, nullptr, false);
     return summary.json.is_object() ? std::optional(std::move(summary)) : std::nullopt;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

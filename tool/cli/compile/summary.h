@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 // Moving the Json can't throw here. NOLINTNEXTLINE(bugprone-exception-escape)
 struct CompileSummary {
-    Json json;
+    base::Json json;
     std::vector<std::vector<std::string>> fields;  // name and value; the last is the output
     std::string dropped;                           // text below the fields
     int modules = 0;                               // of the package
@@ -26,7 +26,7 @@ struct ModuleCounts {
     int cached = 0;  // or with the text of another
 };
 
-ModuleCounts countModules(const CompiledPackage& package);
+ModuleCounts countModules(const compiler::CompiledPackage& package);
 
 // Adds `milliseconds`, `modules` and `upToDate`, and prints the summary. The JSON already has places for
 // these members.
@@ -38,4 +38,4 @@ std::string pack(const CompileSummary& summary);
 // that grows with the scene.
 std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJson);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -11,54 +11,56 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
-constexpr std::string_view nameOf(AnimationPath path) {
+constexpr std::string_view nameOf(gltf::AnimationPath path) {
     switch (path) {
-        case AnimationPath::Translation:
+        case gltf::AnimationPath::Translation:
             return "translation";
-        case AnimationPath::Rotation:
+        case gltf::AnimationPath::Rotation:
             return "rotation";
-        case AnimationPath::Scale:
+        case gltf::AnimationPath::Scale:
             return "scale";
-        case AnimationPath::Visible:
+        case gltf::AnimationPath::Visible:
             return "visible";
-        case AnimationPath::Material:
+        case gltf::AnimationPath::Material:
             return "material";
-        case AnimationPath::Light:
+        case gltf::AnimationPath::Light:
             return "light";
-        case AnimationPath::Camera:
+        case gltf::AnimationPath::Camera:
             return "camera";
-        case AnimationPath::Weights:
-        case AnimationPath::Weight:
+        case gltf::AnimationPath::Weights:
+        case gltf::AnimationPath::Weight:
             break;
     }
     return "weights";
 }
 
 // Returns whether a channel of that path drives a node.
-bool drivesNode(AnimationPath path) {
-    return path != AnimationPath::Material && path != AnimationPath::Light && path != AnimationPath::Camera;
+bool drivesNode(gltf::AnimationPath path) {
+    return path != gltf::AnimationPath::Material && path != gltf::AnimationPath::Light &&
+           path != gltf::AnimationPath::Camera;
 }
 
-constexpr AnimationPath kPaths[] = {
-    AnimationPath::Translation, AnimationPath::Rotation, AnimationPath::Scale, AnimationPath::Weights,
-    AnimationPath::Visible,     AnimationPath::Material, AnimationPath::Light, AnimationPath::Camera};
+constexpr gltf::AnimationPath kPaths[] = {gltf::AnimationPath::Translation, gltf::AnimationPath::Rotation,
+                                          gltf::AnimationPath::Scale,       gltf::AnimationPath::Weights,
+                                          gltf::AnimationPath::Visible,     gltf::AnimationPath::Material,
+                                          gltf::AnimationPath::Light,       gltf::AnimationPath::Camera};
 
 // Counts channels by the property that they move. A channel of one weight counts with those of all weights.
-std::map<AnimationPath, std::size_t> channelsOf(const Animation& animation) {
-    std::map<AnimationPath, std::size_t> counts;
-    for (const AnimationChannel& channel : animation.channels) {
-        ++counts[channel.path == AnimationPath::Weight ? AnimationPath::Weights : channel.path];
+std::map<gltf::AnimationPath, std::size_t> channelsOf(const gltf::Animation& animation) {
+    std::map<gltf::AnimationPath, std::size_t> counts;
+    for (const gltf::AnimationChannel& channel : animation.channels) {
+        ++counts[channel.path == gltf::AnimationPath::Weight ? gltf::AnimationPath::Weights : channel.path];
     }
     return counts;
 }
 
-std::size_t nodesOf(const Animation& animation) {
+std::size_t nodesOf(const gltf::Animation& animation) {
     std::set<int> nodes;
-    for (const AnimationChannel& channel : animation.channels) {
+    for (const gltf::AnimationChannel& channel : animation.channels) {
         if (drivesNode(channel.path)) {
             nodes.insert(channel.target);
         }
@@ -68,21 +70,22 @@ std::size_t nodesOf(const Animation& animation) {
 
 // A mesh, and a node that draws it.
 struct Deformed {
-    const Node* node = nullptr;
+    const gltf::Node* node = nullptr;
     std::size_t joints = 0;      // joints of its skin; 0 if it follows none
     std::size_t influences = 0;  // the most joints that a vertex follows
     std::size_t targets = 0;
     std::size_t vertices = 0;
 };
 
-std::vector<Deformed> deformedOf(const Scene& scene) {
+std::vector<Deformed> deformedOf(const gltf::Scene& scene) {
     std::vector<Deformed> all;
-    for (const Node& node : scene.nodes) {
-        if (!isDeformed(scene, node)) {
+    for (const gltf::Node& node : scene.nodes) {
+        if (!compiler::isDeformed(scene, node)) {
             continue;
         }
         Deformed deformed{&node};
-        for (const Primitive& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+        for (const gltf::Primitive& primitive :
+             scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
             deformed.vertices += primitive.positions.size();
             deformed.targets = std::max(deformed.targets, primitive.targets.size());
             deformed.influences = std::max(deformed.influences, primitive.influences.count);
@@ -97,19 +100,19 @@ std::vector<Deformed> deformedOf(const Scene& scene) {
     return all;
 }
 
-std::string meshName(const Scene& scene, int mesh) {
+std::string meshName(const gltf::Scene& scene, int mesh) {
     const std::string& name = scene.meshes[static_cast<std::size_t>(mesh)].name;
     return name.empty() ? fmt::format("mesh {}", mesh) : name;
 }
 
 }  // namespace
 
-Json motionToJson(const Scene& scene) {
-    Json animations = Json::array();
+base::Json motionToJson(const gltf::Scene& scene) {
+    base::Json animations = base::Json::array();
     for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-        const Animation& animation = scene.animations[i];
-        Json channels = Json::object();
-        for (const AnimationPath path : kPaths) {
+        const gltf::Animation& animation = scene.animations[i];
+        base::Json channels = base::Json::object();
+        for (const gltf::AnimationPath path : kPaths) {
             channels[std::string(nameOf(path))] = 0;
         }
         for (const auto& [path, count] : channelsOf(animation)) {
@@ -121,7 +124,7 @@ Json motionToJson(const Scene& scene) {
                               {"nodes", nodesOf(animation)},
                               {"channels", channels}});
     }
-    Json meshes = Json::array();
+    base::Json meshes = base::Json::array();
     for (const Deformed& deformed : deformedOf(scene)) {
         meshes.push_back({{"node", deformed.node->source},
                           {"mesh", deformed.node->mesh},
@@ -134,10 +137,10 @@ Json motionToJson(const Scene& scene) {
     return {{"animations", animations}, {"deformedMeshes", meshes}};
 }
 
-std::string motionText(const Scene& scene) {
+std::string motionText(const gltf::Scene& scene) {
     std::vector<std::vector<std::string>> rows;
     for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-        const Animation& animation = scene.animations[i];
+        const gltf::Animation& animation = scene.animations[i];
         std::string channels;
         for (const auto& [path, count] : channelsOf(animation)) {
             channels += fmt::format("{}{} of {}", channels.empty() ? "" : ", ", count, nameOf(path));
@@ -162,4 +165,4 @@ std::string motionText(const Scene& scene) {
     return rows.empty() ? "" : formatFields(rows);
 }
 
-}  // namespace glint
+}  // namespace glint::cli

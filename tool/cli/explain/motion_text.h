@@ -6,11 +6,11 @@
 
 #include <string>
 
-namespace glint {
+namespace glint::cli {
 
 // Describes animations, and the meshes that follow joints or morph targets.
-Json motionToJson(const Scene& scene);
+base::Json motionToJson(const gltf::Scene& scene);
 // Returns an empty text if nothing moves.
-std::string motionText(const Scene& scene);
+std::string motionText(const gltf::Scene& scene);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -9,13 +9,13 @@
 #include <algorithm>
 #include <initializer_list>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-const Case& caseOf(const PlannedScenes& planned, int shaderId) {
+const compiler::Case& caseOf(const PlannedScenes& planned, int shaderId) {
     return planned.plan.cases[static_cast<std::size_t>(shaderId)];
 }
 
@@ -56,7 +56,7 @@ std::string headText(const PlannedScenes& planned) {
         "apart         instructions of shaders of its keys alone, on average over its hits\n",
         planned.scenes.fileNames(), counted(planned.plan.keys.size(), "key"),
         counted(caseCount(planned.plan), "case"), nameOf(planned.options.merge), limit,
-        countsHits(planned.options) ? "counted by the profile" : "expected from areas", kCaseCost);
+        countsHits(planned.options) ? "counted by the profile" : "expected from areas", compiler::kCaseCost);
 }
 
 // Without the columns that other tables have, too, where a line has to fit a terminal.
@@ -72,12 +72,12 @@ std::string fitting(Rows rows, Detail detail) {
     return formatTable(rows, detail);
 }
 
-std::string overviewText(const PlannedScenes& planned, const PlanCost& cost, Detail detail) {
+std::string overviewText(const PlannedScenes& planned, const compiler::PlanCost& cost, Detail detail) {
     Rows rows{
         {"case", "keys", "hits", "instructions", "apart", "fetches", "branches", "in vain", "spared", "why"}};
     double saved = 0.0;
-    for (const CaseCost& entry : cost.cases) {
-        const Case& shaderCase = caseOf(planned, entry.shaderId);
+    for (const compiler::CaseCost& entry : cost.cases) {
+        const compiler::Case& shaderCase = caseOf(planned, entry.shaderId);
         saved += entry.saved;
         rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(shaderCase.keys.size()),
                         percent(shaderCase.share), fmt::format("{:.0f}", entry.code.instructions),
@@ -94,40 +94,40 @@ std::string overviewText(const PlannedScenes& planned, const PlanCost& cost, Det
     return fitting(std::move(rows), detail);
 }
 
-std::string nearestText(const PlannedScenes& planned, const NearestCase& nearest, Detail detail) {
+std::string nearestText(const PlannedScenes& planned, const compiler::NearestCase& nearest, Detail detail) {
     return fmt::format("with case {}, the nearest: {:.2f} more in vain, {:.0f} spared",
-                       titleOf(planned, nearest.shaderId, detail), nearest.adds, kCaseCost);
+                       titleOf(planned, nearest.shaderId, detail), nearest.adds, compiler::kCaseCost);
 }
 
-std::string fetchesText(const CodeEstimate& code) {
+std::string fetchesText(const compiler::CodeEstimate& code) {
     return fmt::format("{:.0f} fetch{}", code.fetches, code.fetches == 1.0 ? "" : "es");
 }
 
-std::string leavingText(const KeyCost& cost) {
+std::string leavingText(const compiler::KeyCost& cost) {
     return cost.leavingAdds < 0.0 ? fmt::format("apart it would spare {:.2f}", -cost.leavingAdds)
                                   : fmt::format("apart it would cost {:.2f} more", cost.leavingAdds);
 }
 
 // Describes a case of several keys.
-std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Detail detail) {
-    const Case& shaderCase = caseOf(planned, entry.shaderId);
+std::string mergedText(const PlannedScenes& planned, const compiler::CaseCost& entry, Detail detail) {
+    const compiler::Case& shaderCase = caseOf(planned, entry.shaderId);
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
               {"  merged", fmt::format("{:.2f} in vain, {:.0f} spared ({} fewer)", entry.inVain, entry.saved,
                                        counted(shaderCase.keys.size() - 1, "case"))},
               {"  all have", featureList(*planned.plan.model, shaderCase.always)}};
     std::string label = "  branches on";
-    for (const BranchCost& branch : entry.branches) {
+    for (const compiler::BranchCost& branch : entry.branches) {
         rows.push_back({label, fmt::format("{}, in {} of its hits: {:.2f}", branch.feature->name,
                                            percent(branch.share), branch.cost)});
         label.clear();
     }
     label = "  keys";
-    for (const KeyCost& key : entry.keys) {
-        const Key& planKey = planned.plan.keys[static_cast<std::size_t>(key.key)];
+    for (const compiler::KeyCost& key : entry.keys) {
+        const compiler::Key& planKey = planned.plan.keys[static_cast<std::size_t>(key.key)];
         rows.push_back({label, fmt::format("{}: {} of all hits, {:.0f} instructions, {}; {}",
                                            materialsText(planned, planKey.materials), percent(planKey.share),
                                            key.own.instructions, fetchesText(key.own), leavingText(key))});
-        const FeatureMask besides = planKey.mask & ~shaderCase.always;
+        const materials::FeatureMask besides = planKey.mask & ~shaderCase.always;
         rows.push_back({"", besides != 0 ? "  with " + featureList(*planned.plan.model, besides)
                                          : "  with nothing else"});
         label.clear();
@@ -139,14 +139,15 @@ std::string mergedText(const PlannedScenes& planned, const CaseCost& entry, Deta
 }
 
 // Cases of one key: what keeps each from sharing one.
-std::string singlesText(const PlannedScenes& planned, const PlanCost& cost, Detail detail) {
+std::string singlesText(const PlannedScenes& planned, const compiler::PlanCost& cost, Detail detail) {
     Rows rows{{"case", "nearest", "in vain", "spared", "materials"}};
-    for (const CaseCost& entry : cost.cases) {
-        const Case& shaderCase = caseOf(planned, entry.shaderId);
+    for (const compiler::CaseCost& entry : cost.cases) {
+        const compiler::Case& shaderCase = caseOf(planned, entry.shaderId);
         if (shaderCase.keys.size() == 1 && entry.nearest) {
             rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(entry.nearest->shaderId),
                             fmt::format("{:.2f}", std::max(0.0, entry.nearest->adds)),
-                            fmt::format("{:.0f}", kCaseCost), materialsText(planned, shaderCase.materials)});
+                            fmt::format("{:.0f}", compiler::kCaseCost),
+                            materialsText(planned, shaderCase.materials)});
         }
     }
     return rows.size() == 1 ? std::string()
@@ -154,60 +155,62 @@ std::string singlesText(const PlannedScenes& planned, const PlanCost& cost, Deta
                                   formatTable(rows, detail);
 }
 
-std::string policiesText(const PlannedScenes& planned, const PlanCost& cost) {
+std::string policiesText(const PlannedScenes& planned, const compiler::PlanCost& cost) {
     Rows rows{{"--merge", "cases", "in vain", "for cases", "all", ""}};
-    const auto add = [&](MergePolicy merge, std::size_t cases, double inVain, const std::string& note) {
-        const double all = totalCost(inVain, cases);
+    const auto add = [&](compiler::MergePolicy merge, std::size_t cases, double inVain,
+                         const std::string& note) {
+        const double all = compiler::totalCost(inVain, cases);
         rows.push_back({std::string(nameOf(merge)), std::to_string(cases), fmt::format("{:.2f}", inVain),
                         fmt::format("{:.0f}", all - inVain), fmt::format("{:.2f}", all), note});
     };
-    for (const PolicyCost& policy : cost.policies) {
+    for (const compiler::PolicyCost& policy : cost.policies) {
         const bool isThis = policy.merge == planned.options.merge;
         add(policy.merge, policy.cases, policy.inVain, isThis ? "this plan" : "");
     }
-    if (planned.options.merge == MergePolicy::Profile) {
-        add(MergePolicy::Profile, caseCount(planned.plan), cost.inVain, "this plan");
+    if (planned.options.merge == compiler::MergePolicy::Profile) {
+        add(compiler::MergePolicy::Profile, caseCount(planned.plan), cost.inVain, "this plan");
     }
     return "\nThe same keys under every policy\n\n" + formatTable(rows);
 }
 
-Json toJson(const CodeEstimate& code) {
+base::Json toJson(const compiler::CodeEstimate& code) {
     return {{"instructions", code.instructions},
             {"textureFetches", code.fetches},
             {"inputBranches", code.inputBranches},
             {"lobeBranches", code.lobeBranches}};
 }
 
-Json keyToJson(const PlannedScenes& planned, const KeyCost& cost) {
-    const Key& key = planned.plan.keys[static_cast<std::size_t>(cost.key)];
+base::Json keyToJson(const PlannedScenes& planned, const compiler::KeyCost& cost) {
+    const compiler::Key& key = planned.plan.keys[static_cast<std::size_t>(cost.key)];
     return {{"mask", fmt::format("0x{:016x}", key.mask)},
             {"features", featuresToJson(*planned.plan.model, key.mask)},
             {"materials", materialsToJson(planned.scenes, key.materials)},
-            {"share", shareToJson(key.share)},
+            {"share", compiler::shareToJson(key.share)},
             {"own", {{"instructions", cost.own.instructions}, {"textureFetches", cost.own.fetches}}},
             {"leavingAdds", cost.leavingAdds}};
 }
 
-Json caseToJson(const PlannedScenes& planned, const CaseCost& cost) {
-    const Case& shaderCase = caseOf(planned, cost.shaderId);
-    Json keys = Json::array();
-    for (const KeyCost& key : cost.keys) {
+base::Json caseToJson(const PlannedScenes& planned, const compiler::CaseCost& cost) {
+    const compiler::Case& shaderCase = caseOf(planned, cost.shaderId);
+    base::Json keys = base::Json::array();
+    for (const compiler::KeyCost& key : cost.keys) {
         keys.push_back(keyToJson(planned, key));
     }
-    Json branches = Json::array();
-    for (const BranchCost& branch : cost.branches) {
-        branches.push_back(Json{{"feature", branch.feature->name},
-                                {"share", shareToJson(branch.share)},
-                                {"inVain", branch.cost}});
+    base::Json branches = base::Json::array();
+    for (const compiler::BranchCost& branch : cost.branches) {
+        branches.push_back(base::Json{{"feature", branch.feature->name},
+                                      {"share", compiler::shareToJson(branch.share)},
+                                      {"inVain", branch.cost}});
     }
-    Json nearest;
+    base::Json nearest;
     if (cost.nearest) {
-        nearest = Json{{"id", cost.nearest->shaderId}, {"adds", cost.nearest->adds}, {"spares", kCaseCost}};
+        nearest = base::Json{
+            {"id", cost.nearest->shaderId}, {"adds", cost.nearest->adds}, {"spares", compiler::kCaseCost}};
     }
     return {{"id", cost.shaderId},
             {"name", shaderCase.name},
             {"reason", toString(shaderCase.reason)},
-            {"share", shareToJson(shaderCase.share)},
+            {"share", compiler::shareToJson(shaderCase.share)},
             {"always", featuresToJson(*planned.plan.model, shaderCase.always)},
             {"sometimes", featuresToJson(*planned.plan.model, shaderCase.sometimes)},
             {"estimate", toJson(cost.code)},
@@ -219,10 +222,11 @@ Json caseToJson(const PlannedScenes& planned, const CaseCost& cost) {
             {"nearest", nearest}};
 }
 
-std::string sumOf(const StrategyEstimate& estimate, std::initializer_list<CostTerm> terms) {
+std::string sumOf(const compiler::StrategyEstimate& estimate,
+                  std::initializer_list<compiler::CostTerm> terms) {
     double sum = 0.0;
     bool has = false;
-    for (const CostTerm term : terms) {
+    for (const compiler::CostTerm term : terms) {
         sum += estimate.parts[static_cast<std::size_t>(term)];
         has = has || hasTerm(estimate.strategy, term);
     }
@@ -235,9 +239,9 @@ std::string planText(const PlannedScenes& planned, Detail detail) {
     if (planned.plan.keys.empty()) {
         return "no primitives: no keys, no cases\n";
     }
-    const PlanCost cost = costPlan(planned.plan, planned.options);
+    const compiler::PlanCost cost = costPlan(planned.plan, planned.options);
     std::string text = headText(planned) + "\n" + overviewText(planned, cost, detail);
-    for (const CaseCost& entry : cost.cases) {
+    for (const compiler::CaseCost& entry : cost.cases) {
         if (entry.keys.size() > 1) {
             text += "\n" + mergedText(planned, entry, detail);
         }
@@ -245,48 +249,50 @@ std::string planText(const PlannedScenes& planned, Detail detail) {
     return text + singlesText(planned, cost, detail) + policiesText(planned, cost);
 }
 
-Json planToJson(const PlannedScenes& planned) {
-    const PlanCost cost = costPlan(planned.plan, planned.options);
-    Json cases = Json::array();
-    for (const CaseCost& entry : cost.cases) {
+base::Json planToJson(const PlannedScenes& planned) {
+    const compiler::PlanCost cost = costPlan(planned.plan, planned.options);
+    base::Json cases = base::Json::array();
+    for (const compiler::CaseCost& entry : cost.cases) {
         cases.push_back(caseToJson(planned, entry));
     }
-    Json policies = Json::array();
-    for (const PolicyCost& policy : cost.policies) {
-        policies.push_back(Json{{"merge", nameOf(policy.merge)},
-                                {"cases", policy.cases},
-                                {"inVain", policy.inVain},
-                                {"cost", totalCost(policy.inVain, policy.cases)}});
+    base::Json policies = base::Json::array();
+    for (const compiler::PolicyCost& policy : cost.policies) {
+        policies.push_back(base::Json{{"merge", nameOf(policy.merge)},
+                                      {"cases", policy.cases},
+                                      {"inVain", policy.inVain},
+                                      {"cost", compiler::totalCost(policy.inVain, policy.cases)}});
     }
     const int budget = budgetOf(planned.options);
-    return {{"maxShaders", budget > 0 ? Json(budget) : Json()},
+    return {{"maxShaders", budget > 0 ? base::Json(budget) : base::Json()},
             {"hits", countsHits(planned.options) ? "counted" : "expected"},
             {"keys", planned.plan.keys.size()},
             {"inVain", cost.inVain},
-            {"caseCost", kCaseCost},
-            {"cost", totalCost(cost.inVain, cost.cases.size())},
+            {"caseCost", compiler::kCaseCost},
+            {"cost", compiler::totalCost(cost.inVain, cost.cases.size())},
             {"cases", cases},
             {"policies", policies}};
 }
 
-std::string strategiesText(const StrategyAdvice& advice) {
-    const FrameFacts& facts = advice.choice.facts;
+std::string strategiesText(const compiler::StrategyAdvice& advice) {
+    const compiler::FrameFacts& facts = advice.choice.facts;
     const std::string costs = advice.builtIn ? "as measured on " : "of the calibration of ";
     std::string text = fmt::format("\nStrategies for a frame of {:.3g} million pixels, costs {}{}\n\n",
                                    advice.pixels / 1e6, costs, advice.device);
     if (facts.rays > 0.0) {
         std::vector<std::vector<std::string>> rows{
             {"strategy, ms", "all", "launches", "rays", "ordering", "shading", "divergence"}};
-        for (const StrategyEstimate& estimate : advice.choice.estimates) {
+        for (const compiler::StrategyEstimate& estimate : advice.choice.estimates) {
             rows.push_back({estimate.strategy, fmt::format("{:.3f}", estimate.ms),
-                            sumOf(estimate, {CostTerm::Launches, CostTerm::Cases}),
-                            sumOf(estimate, {CostTerm::Rays, CostTerm::Incoherence}),
-                            sumOf(estimate, {CostTerm::Buckets}), sumOf(estimate, {CostTerm::Instructions}),
-                            sumOf(estimate, {CostTerm::Divergence, CostTerm::Code, CostTerm::Misses})});
+                            sumOf(estimate, {compiler::CostTerm::Launches, compiler::CostTerm::Cases}),
+                            sumOf(estimate, {compiler::CostTerm::Rays, compiler::CostTerm::Incoherence}),
+                            sumOf(estimate, {compiler::CostTerm::Buckets}),
+                            sumOf(estimate, {compiler::CostTerm::Instructions}),
+                            sumOf(estimate, {compiler::CostTerm::Divergence, compiler::CostTerm::Code,
+                                             compiler::CostTerm::Misses})});
         }
         text += formatTable(rows) + "\n";
     }
     return text + wrapped(fmt::format("--strategy {}: {}\n\n", advice.choice.strategy, advice.choice.why));
 }
 
-}  // namespace glint
+}  // namespace glint::cli

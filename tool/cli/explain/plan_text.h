@@ -10,20 +10,20 @@
 
 #include <string>
 
-namespace glint {
+namespace glint::cli {
 
 struct PlannedScenes {
-    const SceneList& scenes;
-    const PlanOptions& options;
-    const Plan& plan;
+    const gltf::SceneList& scenes;
+    const compiler::PlanOptions& options;
+    const compiler::Plan& plan;
 };
 
 std::string planText(const PlannedScenes& planned, Detail detail);
 
 // Returns the members that `explain --plan --json` adds to the plan's options: docs/cli.md lists them.
-Json planToJson(const PlannedScenes& planned);
+base::Json planToJson(const PlannedScenes& planned);
 
 // Returns a table of milliseconds, the recommended strategy and the reason.
-std::string strategiesText(const StrategyAdvice& advice);
+std::string strategiesText(const compiler::StrategyAdvice& advice);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 namespace fs = std::filesystem;
 
@@ -62,7 +62,7 @@ bool hasEffect(const CLI::Option& option) {
 }
 
 std::string describeOptions(const CLI::App& command) {
-    Packer packer;
+    compiler::Packer packer;
     packer.add(std::string_view(command.get_name()));
     for (const CLI::Option* const option : command.get_options()) {
         const std::string name = option->get_name();
@@ -77,4 +77,4 @@ std::string describeOptions(const CLI::App& command) {
     return packer.take();
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 // The value that means no folder.
 inline constexpr std::string_view kNoCache = "none";
@@ -31,4 +31,4 @@ bool hasEffect(const CLI::Option& option);
 // number of jobs, and reporting.
 std::string describeOptions(const CLI::App& command);
 
-}  // namespace glint
+}  // namespace glint::cli

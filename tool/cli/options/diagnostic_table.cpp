@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -14,8 +14,10 @@ constexpr DiagnosticInfo kTable[] = {
     {"accessor-stride", kError,
      "The stride of a buffer view is shorter than the elements that are read from it."},
     {"accessor-type", kError, "An accessor's type is unknown, or not one that glTF allows there."},
-    {"alpha-blend", kNote, "Materials have the alpha mode BLEND, which is drawn opaque."},
+    {"alpha-blend", kNote, "Materials have the alpha mode BLEND, which is drawn opaque, as `--alpha` asks."},
     {"alpha-mode", kWarning, "A material's alpha mode is unknown."},
+    {"alpha-stochastic", kNote,
+     "`--alpha auto`: the scene has the alpha mode BLEND, which is seen with the probability alpha."},
     {"alpha-tested", kNote, "`--alpha auto`: the scene has alpha masks, so rays test them."},
     {"animation-channel", kWarning,
      "A channel of an animation drives nothing that Glint moves; it is not played."},
@@ -327,4 +329,4 @@ const DiagnosticInfo* findDiagnostic(std::string_view id) {
     return found != std::end(kTable) && found->id == id ? found : nullptr;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

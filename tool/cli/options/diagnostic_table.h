@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 inline constexpr std::uint8_t kNote = 1;
 inline constexpr std::uint8_t kWarning = 2;
@@ -24,4 +24,4 @@ std::span<const DiagnosticInfo> diagnosticTable();
 // Returns null if there is no diagnostic with that id.
 const DiagnosticInfo* findDiagnostic(std::string_view id);
 
-}  // namespace glint
+}  // namespace glint::cli

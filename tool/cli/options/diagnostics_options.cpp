@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -30,7 +30,7 @@ std::vector<std::string> idsOf(std::uint8_t severities) {
 std::string checkId(const std::string& id, std::uint8_t severities) {
     const DiagnosticInfo* const info = findDiagnostic(id);
     if (info == nullptr) {
-        return "there is no diagnostic \"" + id + "\"" + suggestion(id, idsOf(severities));
+        return "there is no diagnostic \"" + id + "\"" + base::suggestion(id, idsOf(severities));
     }
     return (info->severities & severities) != 0 ? std::string()
                                                 : "\"" + id + "\" is an error whatever is said of warnings";
@@ -114,4 +114,4 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
         ->check(CLI::Validator(checkWarning, ""));
 }
 
-}  // namespace glint
+}  // namespace glint::cli

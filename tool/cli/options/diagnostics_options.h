@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct ReportArguments {
     bool json = false;
@@ -28,4 +28,4 @@ struct ReportArguments {
 // --json with its own help text, that stays.
 void addReportOptions(CLI::App& command, ReportArguments& arguments);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -6,11 +6,12 @@
 
 #include <fmt/format.h>
 
-namespace glint {
+namespace glint::cli {
 
-std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSettings& settings) {
+std::vector<Diagnostic> effectWarnings(const gltf::SceneList& scenes,
+                                       const compiler::CompileSettings& settings) {
     std::vector<Diagnostic> warnings;
-    for (const EffectDecision& decision : planEffects(scenes, settings).decisions) {
+    for (const compiler::EffectDecision& decision : planEffects(scenes, settings).decisions) {
         if (decision.isNamed && !decision.usable) {
             warnings.push_back(
                 makeWarning("effect-unused", scenes.path(),
@@ -21,16 +22,16 @@ std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSet
     return warnings;
 }
 
-EffectPlan automaticEffects(const SceneList& scenes) {
-    return planEffects(scenes, Settings().compile);
+compiler::EffectPlan automaticEffects(const gltf::SceneList& scenes) {
+    return planEffects(scenes, compiler::Settings().compile);
 }
 
-std::string effectsText(const EffectPlan& plan) {
+std::string effectsText(const compiler::EffectPlan& plan) {
     std::vector<std::vector<std::string>> rows{{"effect", "auto", "why"}};
-    for (const EffectDecision& decision : plan.decisions) {
+    for (const compiler::EffectDecision& decision : plan.decisions) {
         rows.push_back({decision.name, decision.chosen ? "yes" : "no", decision.reason});
     }
     return formatTable(rows);
 }
 
-}  // namespace glint
+}  // namespace glint::cli

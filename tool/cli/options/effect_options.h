@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 // Returns a warning for each effect that is asked for although the scenes can't use it.
-std::vector<Diagnostic> effectWarnings(const SceneList& scenes, const CompileSettings& settings);
+std::vector<Diagnostic> effectWarnings(const gltf::SceneList& scenes,
+                                       const compiler::CompileSettings& settings);
 
 // Returns the decisions of --effects auto, for the lights that the scenes have.
-EffectPlan automaticEffects(const SceneList& scenes);
+compiler::EffectPlan automaticEffects(const gltf::SceneList& scenes);
 // Returns a line for each effect: whether it is chosen, and why.
-std::string effectsText(const EffectPlan& plan);
+std::string effectsText(const compiler::EffectPlan& plan);
 
-}  // namespace glint
+}  // namespace glint::cli

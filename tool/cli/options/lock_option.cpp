@@ -15,26 +15,28 @@
 #include <utility>
 #include <variant>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 // A key takes less than a kilobyte.
 constexpr std::uint64_t kMaxLockBytes = 1ULL << 26;
 
-Diagnostic formatError(const std::string& file, const LockTextError& error, const MaterialModel& model) {
+Diagnostic formatError(const std::string& file, const compiler::LockTextError& error,
+                       const materials::MaterialModel& model) {
     std::vector<std::string> features;
-    for (const Feature& info : model.features) {
+    for (const materials::Feature& info : model.features) {
         features.emplace_back(info.name);
     }
     const std::string meant =
-        error.unknownFeature.empty() ? std::string() : suggestion(error.unknownFeature, features);
+        error.unknownFeature.empty() ? std::string() : base::suggestion(error.unknownFeature, features);
     return makeError("lock-format", fmt::format("{}:{}", file, error.line), error.message + meant,
                      error.hint);
 }
 
-const MaterialModel& modelOf(const SceneList& scenes) {
-    return scenes.materials().empty() ? builtinMaterialModel() : scenes.materials().front().model();
+const materials::MaterialModel& modelOf(const gltf::SceneList& scenes) {
+    return scenes.materials().empty() ? materials::builtinMaterialModel()
+                                      : scenes.materials().front().model();
 }
 
 bool isToBeMade(const LockArguments& arguments) {
@@ -43,23 +45,23 @@ bool isToBeMade(const LockArguments& arguments) {
 }
 
 // The result is empty if there is no file yet.
-Result<LockText> readLock(const LockArguments& arguments, const MaterialModel& model) {
+Result<compiler::LockText> readLock(const LockArguments& arguments, const materials::MaterialModel& model) {
     if (isToBeMade(arguments)) {
         if (Status possible = checkOutputFile(arguments.file); !possible) {
             return possible.error();
         }
-        return LockText{};
+        return compiler::LockText{};
     }
-    const Result<Bytes> bytes = readFile(arguments.file, kMaxLockBytes);
+    const Result<base::Bytes> bytes = base::readFile(arguments.file, kMaxLockBytes);
     if (!bytes) {
         return bytes.error();
     }
-    std::variant<LockText, LockTextError> parsed =
-        parseLock({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, model);
-    if (const auto* error = std::get_if<LockTextError>(&parsed)) {
+    std::variant<compiler::LockText, compiler::LockTextError> parsed =
+        compiler::parseLock({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, model);
+    if (const auto* error = std::get_if<compiler::LockTextError>(&parsed)) {
         return formatError(arguments.file, *error, model);
     }
-    return std::get<LockText>(std::move(parsed));
+    return std::get<compiler::LockText>(std::move(parsed));
 }
 
 // Returns "a; b; and 3 more" from the texts of `describe` for the elements.
@@ -78,20 +80,21 @@ std::string count(std::size_t number, std::string_view what) {
 }
 
 // Returns "clearcoat normals (Varnish)": the key as in the file, with a material that has it.
-std::string describeKey(FeatureMask mask, const Plan& plan, const SceneList& scenes) {
-    const auto key = std::ranges::find(plan.keys, mask, &Key::mask);
+std::string describeKey(materials::FeatureMask mask, const compiler::Plan& plan,
+                        const gltf::SceneList& scenes) {
+    const auto key = std::ranges::find(plan.keys, mask, &compiler::Key::mask);
     const bool known = key != plan.keys.end() && !key->materials.empty();
-    return lockKeyName(mask, *plan.model) +
+    return compiler::lockKeyName(mask, *plan.model) +
            (known ? fmt::format(" ({})", scenes.materialName(key->materials.front())) : std::string());
 }
 
 // Reports what changes in the file, and which materials it affects.
 class Teller {
 public:
-    Teller(const LockArguments& arguments, const SceneList& scenes, const Plan& plan, const LockText& before,
-           const LockUpdate& update)
+    Teller(const LockArguments& arguments, const gltf::SceneList& scenes, const compiler::Plan& plan,
+           const compiler::LockText& before, const compiler::LockUpdate& update)
         : arguments_(arguments), scenes_(scenes), plan_(plan), before_(before), update_(update) {
-        for (const MovedKey& key : update.moved) {
+        for (const compiler::MovedKey& key : update.moved) {
             (key.lostId ? lost_ : moved_).push_back(key);
         }
     }
@@ -105,8 +108,9 @@ public:
             update_.added.empty()
                 ? std::string("IDs of keys change")
                 : fmt::format("{} without a shader ID: {}", count(update_.added.size(), "key"),
-                              listSome(update_.added,
-                                       [&](FeatureMask mask) { return describeKey(mask, plan_, scenes_); }));
+                              listSome(update_.added, [&](materials::FeatureMask mask) {
+                                  return describeKey(mask, plan_, scenes_);
+                              }));
         return makeError("lock-outdated", arguments_.file,
                          fmt::format("would change, and --locked forbids it: {}", missing),
                          "compile without --locked, and commit the file");
@@ -121,7 +125,7 @@ public:
 
 private:
     void tellRepeated(LockChoice& choice) const {
-        for (const RepeatedLockKey& key : before_.repeated) {
+        for (const compiler::RepeatedLockKey& key : before_.repeated) {
             choice.warnings.push_back(
                 makeWarning("lock-conflict", fmt::format("{}:{}", arguments_.file, key.line),
                             fmt::format("gives {} a second shader ID; {} counts, not {}",
@@ -151,8 +155,8 @@ private:
         if (update_.stale.empty()) {
             return;
         }
-        const std::string list = listSome(update_.stale, [&](FeatureMask mask) {
-            return fmt::format("{} {}", before_.ids.at(mask), lockKeyName(mask, *plan_.model));
+        const std::string list = listSome(update_.stale, [&](materials::FeatureMask mask) {
+            return fmt::format("{} {}", before_.ids.at(mask), compiler::lockKeyName(mask, *plan_.model));
         });
         const bool many = update_.stale.size() > 1;
         if (arguments_.prune) {
@@ -168,19 +172,19 @@ private:
         }
     }
 
-    std::string moves(const std::vector<MovedKey>& keys) const {
-        return listSome(keys, [&](const MovedKey& key) {
+    std::string moves(const std::vector<compiler::MovedKey>& keys) const {
+        return listSome(keys, [&](const compiler::MovedKey& key) {
             return fmt::format("{}, {} -> {}", describeKey(key.mask, plan_, scenes_), key.from, key.to);
         });
     }
 
     const LockArguments& arguments_;
-    const SceneList& scenes_;
-    const Plan& plan_;
-    const LockText& before_;
-    const LockUpdate& update_;
-    std::vector<MovedKey> lost_;
-    std::vector<MovedKey> moved_;
+    const gltf::SceneList& scenes_;
+    const compiler::Plan& plan_;
+    const compiler::LockText& before_;
+    const compiler::LockUpdate& update_;
+    std::vector<compiler::MovedKey> lost_;
+    std::vector<compiler::MovedKey> moved_;
 };
 
 }  // namespace
@@ -209,28 +213,29 @@ void addLockOptions(CLI::App& command, LockArguments& arguments) {
     }
 }
 
-Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& scenes, PlanOptions& options) {
+Result<LockChoice> applyLock(const LockArguments& arguments, const gltf::SceneList& scenes,
+                             compiler::PlanOptions& options) {
     LockChoice choice;
     if (arguments.file.empty()) {
         return choice;
     }
-    const Result<LockText> before = readLock(arguments, modelOf(scenes));
+    const Result<compiler::LockText> before = readLock(arguments, modelOf(scenes));
     if (!before) {
         return before.error();
     }
     options.lockedIds = before->ids;
-    Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
-    const LockUpdate update = updateLock(before->ids, plan, arguments.prune);
+    compiler::Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
+    const compiler::LockUpdate update = updateLock(before->ids, plan, arguments.prune);
     const Teller teller(arguments, scenes, plan, *before, update);
     if (arguments.frozen && teller.changes()) {
         return teller.outdated();
     }
     teller.tell(choice);
     if (teller.changes() || isToBeMade(arguments)) {
-        choice.text = formatLock(update.ids, *plan.model);
+        choice.text = compiler::formatLock(update.ids, *plan.model);
     }
     choice.plan = std::move(plan);
     return choice;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct LockArguments {
     std::string file;        // empty: none
@@ -28,7 +28,8 @@ void addLockOptions(CLI::App& command, LockArguments& arguments);
 
 struct LockChoice {
     std::optional<std::string> text;  // what is to be written; nothing where the file stays as it is
-    std::optional<Plan> plan;  // of the scenes, with the IDs of the file; nothing where no file is named
+    std::optional<compiler::Plan>
+        plan;  // of the scenes, with the IDs of the file; nothing where no file is named
     std::vector<Diagnostic> warnings;
     std::vector<Diagnostic> notes;
 };
@@ -37,6 +38,7 @@ struct LockChoice {
 // clash ("lock-conflict"). Notes report other IDs that change ("lock-moved") and keys that no scene has
 // ("lock-stale"). Errors: those of readFile() and checkOutputFile(); "lock-format" with the line;
 // "lock-outdated" with --locked if something would change.
-Result<LockChoice> applyLock(const LockArguments& arguments, const SceneList& scenes, PlanOptions& options);
+Result<LockChoice> applyLock(const LockArguments& arguments, const gltf::SceneList& scenes,
+                             compiler::PlanOptions& options);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -7,24 +7,24 @@
 
 #include <numeric>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 constexpr std::int64_t kMaxFrame = 1000000;
 constexpr double kMaxSeconds = 1e6;
 
-std::string animationName(const Scene& scene, std::size_t index) {
+std::string animationName(const gltf::Scene& scene, std::size_t index) {
     const std::string& name = scene.animations[index].name;
     return name.empty() ? std::to_string(index) : name;
 }
 
 std::optional<std::int64_t> parseFrame(std::string_view text) {
     std::int64_t frame = 0;
-    return parseWhole(text, 0, kMaxFrame, frame) ? std::optional(frame) : std::nullopt;
+    return compiler::parseWhole(text, 0, kMaxFrame, frame) ? std::optional(frame) : std::nullopt;
 }
 
-Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std::string& wanted,
+Result<std::vector<std::size_t>> chooseAnimations(const gltf::Scene& scene, const std::string& wanted,
                                                   bool followsTime) {
     std::vector<std::size_t> all(scene.animations.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
@@ -52,10 +52,10 @@ Result<std::vector<std::size_t>> chooseAnimations(const Scene& scene, const std:
     for (const std::size_t index : all) {
         names.push_back(animationName(scene, index));
     }
-    const std::string known = enumeration(names);
+    const std::string known = base::enumeration(names);
     names.emplace_back("all");
     return makeError("animation-unknown", scene.path,
-                     "has no animation \"" + wanted + "\"" + known + suggestion(wanted, names),
+                     "has no animation \"" + wanted + "\"" + known + base::suggestion(wanted, names),
                      "use a name, a number from 0, or all");
 }
 
@@ -86,7 +86,7 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
         ->check(CLI::Validator(
             [](const std::string& text) {
                 double seconds = 0.0;
-                return parseReal(text, 0.0, kMaxSeconds, seconds)
+                return compiler::parseReal(text, 0.0, kMaxSeconds, seconds)
                            ? std::string()
                            : "\"" + text + "\" is no number from 0 to 1000000";
             },
@@ -115,7 +115,7 @@ std::optional<FrameRange> parseFrames(const std::string& text) {
     return FrameRange{*first, *last};
 }
 
-Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene,
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const gltf::Scene& scene,
                                                bool followsTime) {
     if (arguments.frames.empty() && arguments.time.empty()) {
         return std::optional<Movement>();
@@ -133,7 +133,7 @@ Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments,
         }
     } else {
         double seconds = 0.0;
-        parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
+        compiler::parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
         movement.moments.push_back({0, seconds});
     }
     movement.builds = arguments.builds;
@@ -146,4 +146,4 @@ std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64
     return numbered;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct MotionArguments {
     std::string frames;  // "A:B" or "A"; empty: no sequence
@@ -49,10 +49,10 @@ struct Movement {
 
 // Returns nothing if the scene is rendered at rest. With `followsTime` its materials may move, so that a
 // scene without animations has moments, too. Errors: "animation-missing", "animation-unknown".
-Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const Scene& scene,
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const gltf::Scene& scene,
                                                bool followsTime);
 
 // Returns "out.0007.png" for "out.png" and 7.
 std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64_t frame);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <sstream>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -35,7 +35,7 @@ CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& ch
             return std::string();
         }
         return fmt::format("{} is none of {}{}", quoted(text), fmt::join(choices, ", "),
-                           suggestion(text, choices));
+                           base::suggestion(text, choices));
     });
 }
 
@@ -120,7 +120,7 @@ CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_
             ->type_name("N");
     return check(option, [min, max](const std::string& text) {
         std::int64_t number = 0;
-        if (parseWhole(text, min, max, number)) {
+        if (compiler::parseWhole(text, min, max, number)) {
             return std::string();
         }
         return fmt::format("{} is no whole number from {} to {}", quoted(text), min, max);
@@ -132,7 +132,7 @@ CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value,
     CLI::Option* option = command.add_option(flags, value, help)->type_name("X");
     return check(option, [min, max](const std::string& text) {
         double number = 0.0;
-        return parseReal(text, min, max, number)
+        return compiler::parseReal(text, min, max, number)
                    ? std::string()
                    : fmt::format("{} is no number from {} to {}", quoted(text), min, max);
     });
@@ -192,4 +192,4 @@ void addWords(const CLI::Option& option, std::vector<std::string>& words) {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 // The work of a subcommand once its command line is parsed. Returns the exit code.
 using Action = std::function<int(const Console&)>;
@@ -69,4 +69,4 @@ CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, c
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);
 
-}  // namespace glint
+}  // namespace glint::cli

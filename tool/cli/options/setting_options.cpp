@@ -11,28 +11,28 @@
 #include <algorithm>
 #include <limits>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 constexpr std::size_t kHelpColumns = 58;
 
-std::vector<std::string> namesOf(const std::vector<SettingWord>& words) {
+std::vector<std::string> namesOf(const std::vector<compiler::SettingWord>& words) {
     std::vector<std::string> names;
-    for (const SettingWord& word : words) {
+    for (const compiler::SettingWord& word : words) {
         names.push_back(word.name);
     }
     return names;
 }
 
-std::string typeOf(const Descriptor& row) {
+std::string typeOf(const compiler::Descriptor& row) {
     if (!row.values.type.empty()) {
         return std::string(row.values.type);
     }
     switch (row.values.form) {
-        case ValueForm::Whole:
+        case compiler::ValueForm::Whole:
             return "N";
-        case ValueForm::Real:
+        case compiler::ValueForm::Real:
             return "X";
         default:
             return fmt::format("{}", fmt::join(namesOf(wordsOf(row)), "|"));
@@ -40,14 +40,14 @@ std::string typeOf(const Descriptor& row) {
 }
 
 // Returns what the option does, what its words mean, its range and its default.
-std::string helpOf(const Descriptor& row, const Settings& settings) {
-    const SettingValues& values = row.values;
+std::string helpOf(const compiler::Descriptor& row, const compiler::Settings& settings) {
+    const compiler::SettingValues& values = row.values;
     std::string text(row.what);
     std::vector<std::string> others;
-    for (const SettingWord& word : wordsOf(row)) {
+    for (const compiler::SettingWord& word : wordsOf(row)) {
         if (!word.what.empty()) {
             text += fmt::format("; {}: {}", word.name, word.what);
-        } else if (values.form == ValueForm::List) {
+        } else if (values.form == compiler::ValueForm::List) {
             others.push_back(word.name);
         }
     }
@@ -55,31 +55,31 @@ std::string helpOf(const Descriptor& row, const Settings& settings) {
         text += fmt::format("; others: {}", fmt::join(others, ", "));
     }
     text = wrapped(text, kHelpColumns);
-    if (values.form == ValueForm::Whole || values.form == ValueForm::Real) {
-        return withNote(text, fmt::format("({} to {}, default: {})", boundText(values.min),
-                                          boundText(values.max), values.text(settings)));
+    if (values.form == compiler::ValueForm::Whole || values.form == compiler::ValueForm::Real) {
+        return withNote(text, fmt::format("({} to {}, default: {})", compiler::boundText(values.min),
+                                          compiler::boundText(values.max), values.text(settings)));
     }
-    return values.form == ValueForm::Switch
+    return values.form == compiler::ValueForm::Switch
                ? text
                : withNote(text, fmt::format("(default: {})", values.text(settings)));
 }
 
-void addSetting(CLI::App& command, const Descriptor& row, Settings& settings) {
+void addSetting(CLI::App& command, const compiler::Descriptor& row, compiler::Settings& settings) {
     const std::string flags = "--" + std::string(row.name);
     const std::string help = helpOf(row, settings);
     const auto set = [&row, &settings](const CLI::results_t& words) {
         row.values.set(settings, fmt::format("{}", fmt::join(words, ",")));
         return true;
     };
-    CLI::Option* const option = row.values.form == ValueForm::Switch
+    CLI::Option* const option = row.values.form == compiler::ValueForm::Switch
                                     ? command.add_flag_callback(
                                           flags, [set] { set({"on"}); }, help)
                                     : command.add_option(flags, set, help)->type_name(typeOf(row));
     option->group(std::string(row.group));
-    if (row.values.form == ValueForm::Switch) {
+    if (row.values.form == compiler::ValueForm::Switch) {
         return;
     }
-    if (row.values.form == ValueForm::List) {
+    if (row.values.form == compiler::ValueForm::List) {
         option->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',')->allow_extra_args(false);
     }
     keepChoices(*option, namesOf(wordsOf(row)));
@@ -95,7 +95,7 @@ const CLI::Option* givenOption(const CLI::App& command, const std::string& name)
 // Refuses names that only a pack could give.
 void refuseNames(std::string_view setting, const std::vector<std::string>& names) {
     if (!names.empty()) {
-        Descriptor row = *sweptSetting(setting);
+        compiler::Descriptor row = *compiler::sweptSetting(setting);
         row.values.accepts = nullptr;
         row.values.further = {};
         throw CLI::ValidationError("--" + std::string(setting), complaintAbout(row, names.front()));
@@ -104,15 +104,15 @@ void refuseNames(std::string_view setting, const std::vector<std::string>& names
 
 }  // namespace
 
-void addSettings(CLI::App& command, SettingCommand which, Settings& settings) {
-    for (const Descriptor& row : settingsTable()) {
+void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Settings& settings) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
         if ((row.commands & which) != 0) {
             addSetting(command, row, settings);
         }
     }
 }
 
-void settleSettings(const CLI::App& command, const Settings& settings) {
+void settleSettings(const CLI::App& command, const compiler::Settings& settings) {
     if (const CLI::Option* const effects = givenOption(command, "--effects")) {
         for (const std::string alone : {"none", "all"}) {
             const bool named = std::ranges::find(effects->results(), alone) != effects->results().end();
@@ -140,15 +140,15 @@ void settleSettings(const CLI::App& command, const Settings& settings) {
     }
 }
 
-void checkProfile(const CLI::App& command, const Settings& settings) {
+void checkProfile(const CLI::App& command, const compiler::Settings& settings) {
     const CLI::Option* const merge = givenOption(command, "--merge");
-    const bool isNamed = merge != nullptr && !parseMerge(merge->results().front())->file.empty();
-    const MergePolicy policy = settings.compile.plan.merge;
+    const bool isNamed = merge != nullptr && !compiler::parseMerge(merge->results().front())->file.empty();
+    const compiler::MergePolicy policy = settings.compile.plan.merge;
     if (isNamed && givenOption(command, "--profile") != nullptr) {
         throw CLI::ValidationError("--merge",
                                    "names a profile, and so does --profile; give only one of them");
     }
-    if (policy == MergePolicy::Profile && settings.profile.empty()) {
+    if (policy == compiler::MergePolicy::Profile && settings.profile.empty()) {
         throw CLI::ValidationError(
             "--merge", "profile needs the hits that `glint render --profile FILE` counted: profile:FILE");
     }
@@ -158,21 +158,21 @@ void checkProfile(const CLI::App& command, const Settings& settings) {
     }
 }
 
-void addProfileInput(CLI::App& command, Settings& settings) {
+void addProfileInput(CLI::App& command, compiler::Settings& settings) {
     addText(command, "--profile", settings.profile, "FILE",
             "hits that `glint render --profile FILE` counted, for\n"
             "--merge profile; --merge auto uses them too")
         .group("Shaders");
 }
 
-void addCalibration(CLI::App& command, Settings& settings) {
+void addCalibration(CLI::App& command, compiler::Settings& settings) {
     addText(command, "--calibration", settings.calibration, "FILE.json",
             "device.json of `glint bench --calibrate`: what strategies\n"
             "cost on a device (default: constants that are built in)")
         .group("Shaders");
 }
 
-void addReadingOptions(CLI::App& command, Settings& settings) {
+void addReadingOptions(CLI::App& command, compiler::Settings& settings) {
     addText(command, "--variant", settings.variant, "NAME",
             "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
     addFlag(command, "--strict-paths", settings.strictPaths,
@@ -183,31 +183,31 @@ void addReadingOptions(CLI::App& command, Settings& settings) {
         .allow_extra_args(false);
 }
 
-void addHostOption(CLI::App& command, Settings& settings) {
+void addHostOption(CLI::App& command, compiler::Settings& settings) {
     addText(command, "--host", settings.compile.host, "DIR",
             "read geometry, materials, textures, lights and sky by the\n"
             "functions in this folder's GLSL (docs/host.md)")
         .group("Shaders");
 }
 
-Result<ImportOptions> importOptions(const Settings& settings, bool decodeImages) {
-    const Result<const MaterialModel*> model = loadMaterialModel(settings.materials);
+Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, bool decodeImages) {
+    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(settings.materials);
     if (!model) {
         return model.error();
     }
     for (const std::string& name : settings.compile.effects.ofPacks) {
         if (findEffect((*model)->effects, name) == 0) {
             std::vector<std::string> names;
-            for (const EffectDeclaration& effect : (*model)->effects) {
+            for (const materials::EffectDeclaration& effect : (*model)->effects) {
                 names.push_back(effect.name);
             }
-            return makeError(
-                "effect-unknown", "",
-                fmt::format("neither Glint nor a pack has an effect \"{}\"{}", name, suggestion(name, names)),
-                "correct --effects, or add the pack by --materials");
+            return makeError("effect-unknown", "",
+                             fmt::format("neither Glint nor a pack has an effect \"{}\"{}", name,
+                                         base::suggestion(name, names)),
+                             "correct --effects, or add the pack by --materials");
         }
     }
-    ImportOptions options;
+    gltf::ImportOptions options;
     options.decodeImages = decodeImages;
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;
@@ -215,4 +215,4 @@ Result<ImportOptions> importOptions(const Settings& settings, bool decodeImages)
     return options;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

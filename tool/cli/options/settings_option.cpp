@@ -11,7 +11,7 @@
 #include <optional>
 #include <string_view>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -59,22 +59,23 @@ Result<CompletedLine> completeLine(const CLI::App& app, std::span<const char* co
     if (!file || file->empty()) {
         return line;
     }
-    const Result<Configuration> settings = measure::readSettings(*file);
+    const Result<compiler::Configuration> settings = measure::readSettings(*file);
     if (!settings) {
         return settings.error();
     }
     line.file = *file;
     const bool isPackaged = given(arguments, "--package").has_value();
-    Configuration taken;
+    compiler::Configuration taken;
     for (const auto& [name, value] : *settings) {
         const std::string option = "--" + name;
-        const bool isDecided = isPackaged && sweptSetting(name)->stage == SettingStage::Package;
+        const bool isDecided =
+            isPackaged && compiler::sweptSetting(name)->stage == compiler::SettingStage::Package;
         if (command->get_option_no_throw(option) != nullptr && !given(arguments, option) && !isDecided) {
             taken.emplace(name, value);
             line.options.push_back(option);
         }
     }
-    const std::vector<std::string> words = wordsOf(taken);
+    const std::vector<std::string> words = compiler::wordsOf(taken);
     line.words.insert(line.words.begin() + 1, words.begin(), words.end());
     return line;
 }
@@ -91,4 +92,4 @@ std::optional<Diagnostic> blameFile(const CompletedLine& line, const std::string
     return std::nullopt;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

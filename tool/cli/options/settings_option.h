@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 // Adds --settings FILE, for commands that have some of settingNames() as options.
 void addSettingsFile(CLI::App& command, std::string& file);
@@ -31,4 +31,4 @@ Result<CompletedLine> completeLine(const CLI::App& app, std::span<const char* co
 // Returns the error "settings-file" if a complaint of CLI11 is about an option that came from the file.
 std::optional<Diagnostic> blameFile(const CompletedLine& line, const std::string& complaint);
 
-}  // namespace glint
+}  // namespace glint::cli

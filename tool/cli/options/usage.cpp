@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -44,7 +44,7 @@ std::vector<std::string> optionNames(const CLI::App& app) {
 }
 
 std::string unknownOption(const CLI::App& app, const std::string& name) {
-    return "unknown option " + name + suggestion(name, optionNames(app));
+    return "unknown option " + name + base::suggestion(name, optionNames(app));
 }
 
 // Returns the first unknown long option, with a suggestion.
@@ -117,7 +117,7 @@ std::optional<Slip> findSlip(const CLI::App& app, std::span<const char* const> a
     }
     const CLI::App* command = commandNamed(app, first);
     if (command == nullptr) {
-        return Slip{"", "unknown command \"" + first + "\"" + suggestion(first, commandNames(app))};
+        return Slip{"", "unknown command \"" + first + "\"" + base::suggestion(first, commandNames(app))};
     }
     std::optional<std::string> message = findUnknownOption(*command, arguments.subspan(1));
     if (!message) {
@@ -137,4 +137,4 @@ std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

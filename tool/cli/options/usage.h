@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-namespace glint {
+namespace glint::cli {
 
 struct Slip {
     std::string command;  // empty: glint itself
@@ -27,4 +27,4 @@ public:
     std::string make_option_opts(const CLI::Option* option) const override;
 };
 
-}  // namespace glint
+}  // namespace glint::cli

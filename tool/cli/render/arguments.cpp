@@ -4,7 +4,7 @@
 #include "cli/options/settings_option.h"
 #include "image/image_file.h"
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
@@ -12,12 +12,12 @@ constexpr const char* kMap = "--environment";
 constexpr const char* kRotation = "--environment-rotation";
 constexpr const char* kMapIntensity = "--environment-intensity";
 
-void addEnvironmentOptions(CLI::App& command, Settings& settings) {
+void addEnvironmentOptions(CLI::App& command, compiler::Settings& settings) {
     addText(command, kMap, settings.environment, "FILE",
             "light the scene by this equirectangular map, .hdr or\n.exr, instead of a gradient")
         .check(CLI::Validator(
             [](const std::string& text) {
-                const Result<RadianceFormat> format = radianceFormat(text);
+                const Result<image::RadianceFormat> format = image::radianceFormat(text);
                 return format ? std::string() : "\"" + text + "\" does not end in .hdr or .exr";
             },
             ""))
@@ -44,7 +44,7 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
         .check(CLI::Validator(
             [](const std::string& text) {
                 double stops = 0.0;
-                return text == "auto" || parseReal(text, -kMaxExposure, kMaxExposure, stops)
+                return text == "auto" || compiler::parseReal(text, -kMaxExposure, kMaxExposure, stops)
                            ? std::string()
                            : "\"" + text + "\" is neither auto nor a number from -32 to 32";
             },
@@ -94,7 +94,7 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
         throw CLI::ValidationError("--profile",
                                    "counts the shaders that --package decides; leave out one of them");
     }
-    if (command.count("--merge") > 0 && arguments.compile.plan.merge != MergePolicy::None) {
+    if (command.count("--merge") > 0 && arguments.compile.plan.merge != compiler::MergePolicy::None) {
         throw CLI::ValidationError("--profile",
                                    "counts the hits of every permutation, each of which needs a shader of "
                                    "its own: leave out --merge " +
@@ -103,9 +103,9 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
     if (arguments.strategy != package::kStrategyVisibility) {
         throw CLI::ValidationError("--profile",
                                    "needs --strategy visibility, which orders hits by shader, not " +
-                                       sweptSetting("strategy")->values.text(arguments));
+                                       compiler::sweptSetting("strategy")->values.text(arguments));
     }
-    arguments.compile.plan.merge = MergePolicy::None;
+    arguments.compile.plan.merge = compiler::MergePolicy::None;
 }
 
 // Throws a CLI::ParseError if an option is given that --package decides.
@@ -116,9 +116,10 @@ void checkPackageChoice(const CLI::App& command) {
     if (command.count("--host") > 0) {
         throw CLI::ValidationError("--host", "is decided by --package; leave out one of them");
     }
-    for (const Descriptor& row : settingsTable()) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
         const std::string option = "--" + std::string(row.name);
-        const bool isDecided = (row.commands & kOfRender) != 0 && row.stage == SettingStage::Package;
+        const bool isDecided =
+            (row.commands & compiler::kOfRender) != 0 && row.stage == compiler::SettingStage::Package;
         if (isDecided && command.count(option) > 0) {
             throw CLI::ValidationError(option, "is decided by --package; leave out one of them");
         }
@@ -133,7 +134,7 @@ void addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addSettingsFile(command, arguments.settingsFile);
     addPictureOptions(command, arguments);
     addEnvironmentOptions(command, arguments);
-    addSettings(command, kOfRender, arguments);
+    addSettings(command, compiler::kOfRender, arguments);
     addCalibration(command, arguments);
     addHostOption(command, arguments);
     addDeviceOptions(command, arguments);
@@ -178,4 +179,4 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
     });
 }
 
-}  // namespace glint
+}  // namespace glint::cli

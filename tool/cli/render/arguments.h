@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 constexpr double kMaxExposure = 32.0;  // stops, either way
 
-struct RenderArguments : Settings {
+struct RenderArguments : compiler::Settings {
     std::string scene;
     std::string output;
     MotionArguments motion;
@@ -38,4 +38,4 @@ void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
                       const std::function<void()>& then);
 
-}  // namespace glint
+}  // namespace glint::cli

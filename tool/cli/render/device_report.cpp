@@ -12,17 +12,17 @@
 #include <string_view>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
-Json stagesToJson(VkShaderStageFlags stages) {
+base::Json stagesToJson(VkShaderStageFlags stages) {
     constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
         {VK_SHADER_STAGE_VERTEX_BIT, "vertex"},       {VK_SHADER_STAGE_FRAGMENT_BIT, "fragment"},
         {VK_SHADER_STAGE_COMPUTE_BIT, "compute"},     {VK_SHADER_STAGE_RAYGEN_BIT_KHR, "ray-generation"},
         {VK_SHADER_STAGE_ANY_HIT_BIT_KHR, "any-hit"}, {VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, "closest-hit"},
         {VK_SHADER_STAGE_MISS_BIT_KHR, "miss"}};
-    Json list = Json::array();
+    base::Json list = base::Json::array();
     for (const auto& [bit, name] : kNames) {
         if ((stages & bit) != 0) {
             list.push_back(name);
@@ -35,14 +35,14 @@ Json stagesToJson(VkShaderStageFlags stages) {
 constexpr std::array kFormats{"bool", "int64", "uint64", "float64"};
 static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
 
-Json toJson(const PipelineExecutable& executable) {
-    Json statistics = Json::array();
+base::Json toJson(const PipelineExecutable& executable) {
+    base::Json statistics = base::Json::array();
     for (const PipelineStatistic& statistic : executable.statistics) {
         statistics.push_back(
             {{"name", statistic.name},
              {"description", statistic.description},
              {"format", kFormats[statistic.value.index()]},
-             {"value", std::visit([](auto value) { return Json(value); }, statistic.value)}});
+             {"value", std::visit([](auto value) { return base::Json(value); }, statistic.value)}});
     }
     return {{"name", executable.name},
             {"description", executable.description},
@@ -51,16 +51,16 @@ Json toJson(const PipelineExecutable& executable) {
             {"statistics", std::move(statistics)}};
 }
 
-Json toJson(const std::vector<PipelineStatistics>& pipelines) {
-    Json list = Json::array();
+base::Json toJson(const std::vector<PipelineStatistics>& pipelines) {
+    base::Json list = base::Json::array();
     for (const PipelineStatistics& pipeline : pipelines) {
-        Json executables = Json::array();
+        base::Json executables = base::Json::array();
         for (const PipelineExecutable& executable : pipeline.executables) {
             executables.push_back(toJson(executable));
         }
         list.push_back({{"name", pipeline.name},
-                        {"creationMs", orNull(pipeline.creationMs)},
-                        {"cacheHit", orNull(pipeline.cacheHit)},
+                        {"creationMs", base::orNull(pipeline.creationMs)},
+                        {"cacheHit", base::orNull(pipeline.cacheHit)},
                         {"executables", std::move(executables)}});
     }
     return list;
@@ -85,8 +85,8 @@ const char* kindOf(const MemoryItem& item) {
     return item.isImage ? "image" : "buffer";
 }
 
-Json toJson(const std::vector<MemoryItem>& items) {
-    Json list = Json::array();
+base::Json toJson(const std::vector<MemoryItem>& items) {
+    base::Json list = base::Json::array();
     for (const MemoryItem& item : items) {
         list.push_back({{"name", item.name},
                         {"kind", kindOf(item)},
@@ -99,18 +99,18 @@ Json toJson(const std::vector<MemoryItem>& items) {
 
 }  // namespace
 
-Json cacheToJson(const PipelineReport& report) {
+base::Json cacheToJson(const PipelineReport& report) {
     if (!report.cache) {
         return nullptr;
     }
     return {{"file", report.cache->file},
             {"loadedBytes", report.cache->loadedBytes},
             {"savedBytes", report.cache->savedBytes},
-            {"hits", orNull(report.making.cacheHits)}};
+            {"hits", base::orNull(report.making.cacheHits)}};
 }
 
-Json statisticsToJson(const PipelineReport& report) {
-    return report.statistics ? toJson(*report.statistics) : Json(nullptr);
+base::Json statisticsToJson(const PipelineReport& report) {
+    return report.statistics ? toJson(*report.statistics) : base::Json(nullptr);
 }
 
 std::string toText(const PipelineReport& report) {
@@ -127,7 +127,7 @@ std::string toText(const PipelineReport& report) {
     return text;
 }
 
-Json toJson(const StartReport& start) {
+base::Json toJson(const StartReport& start) {
     return {{"deviceMs", start.deviceMs},
             {"uploadMs", start.uploadMs},
             {"rendererMs", start.rendererMs},
@@ -192,7 +192,7 @@ std::uint64_t bytesOf(const std::vector<MemoryItem>& items) {
                            [](std::uint64_t sum, const MemoryItem& item) { return sum + item.bytes; });
 }
 
-Json toJson(const MemoryReport& memory) {
+base::Json toJson(const MemoryReport& memory) {
     const std::uint64_t frameBytes = bytesOf(memory.frame);
     const std::uint64_t sceneBytes = bytesOf(memory.scene);
     return {{"frame", toJson(memory.frame)},
@@ -218,4 +218,4 @@ std::string toText(const MemoryReport& memory) {
     return formatTable(rows);
 }
 
-}  // namespace glint
+}  // namespace glint::cli

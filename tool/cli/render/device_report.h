@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct PipelineCacheReport {
     std::string file;
@@ -42,12 +42,12 @@ struct PipelineReport {
 };
 
 // Returns null if there is none.
-Json cacheToJson(const PipelineReport& report);
-Json statisticsToJson(const PipelineReport& report);
+base::Json cacheToJson(const PipelineReport& report);
+base::Json statisticsToJson(const PipelineReport& report);
 // Returns "8 in 12.3 ms by 4 threads; cache of 1.2 MiB, 8 found in it".
 std::string toText(const PipelineReport& report);
 
-Json toJson(const StartReport& start);
+base::Json toJson(const StartReport& start);
 std::string toText(const StartReport& start);
 
 // The kinds of statistics that a column of tableOf() collects. Drivers name their statistics as they like.
@@ -65,7 +65,7 @@ struct MemoryReport {
 
 std::uint64_t bytesOf(const std::vector<MemoryItem>& items);
 
-Json toJson(const MemoryReport& memory);
+base::Json toJson(const MemoryReport& memory);
 std::string toText(const MemoryReport& memory);
 
-}  // namespace glint
+}  // namespace glint::cli

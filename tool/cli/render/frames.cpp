@@ -12,14 +12,15 @@
 #include <memory>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
 // Renders picture after picture with one scene on the device and one renderer.
 class FrameLoop {
 public:
-    FrameLoop(const FrameSetup& setup, Scene& scene, scene_view::SceneViewData& data, RenderReport& report)
+    FrameLoop(const FrameSetup& setup, gltf::Scene& scene, scene_view::SceneViewData& data,
+              RenderReport& report)
         : setup_(setup), scene_(scene), data_(data), report_(report), camera_(setup.camera) {}
 
     // The scene is uploaded in the pose of the first moment.
@@ -35,13 +36,13 @@ public:
         if (setup_.environment == nullptr) {
             report_.sky = sky_;
         }
-        const Clock::time_point begin = Clock::now();
+        const base::Clock::time_point begin = base::Clock::now();
         Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, package, data_.view());
         if (!uploaded) {
             return uploaded.error();
         }
-        const Clock::time_point onDevice = Clock::now();
-        report_.start.uploadMs = millisecondsBetween(begin, onDevice);
+        const base::Clock::time_point onDevice = base::Clock::now();
+        report_.start.uploadMs = base::millisecondsBetween(begin, onDevice);
         gpuScene_ = std::move(*uploaded);
         report_.sceneStatistics = gpuScene_->statistics();
         Result<std::unique_ptr<Renderer>> renderer =
@@ -49,7 +50,7 @@ public:
         if (!renderer) {
             return renderer.error();
         }
-        report_.start.rendererMs = millisecondsSince(onDevice);
+        report_.start.rendererMs = base::millisecondsSince(onDevice);
         renderer_ = std::move(*renderer);
         // The effect whose rays may end on the screen; there is one of Glint's own.
         const std::uint32_t onScreen = package.shape().effects.screenStarts;
@@ -77,18 +78,18 @@ public:
 
     // Moves the uploaded scene to a later moment.
     Status advance(const Moment& moment, FrameReport& frame) {
-        const Clock::time_point begin = Clock::now();
+        const base::Clock::time_point begin = base::Clock::now();
         if (Status posed = pose(moment); !posed) {
             return posed;
         }
-        frame.poseMs = millisecondsSince(begin);
+        frame.poseMs = base::millisecondsSince(begin);
         MotionView motion = data_.motion();
         motion.builds = setup_.movement->builds;
-        const Clock::time_point updated = Clock::now();
+        const base::Clock::time_point updated = base::Clock::now();
         if (Status status = gpuScene_->updateAndWait(motion); !status) {
             return status;
         }
-        frame.updateMs = millisecondsSince(updated);
+        frame.updateMs = base::millisecondsSince(updated);
         const Result<MotionStatistics> statistics = gpuScene_->motion();
         if (!statistics) {
             return statistics.error();
@@ -106,16 +107,16 @@ public:
         // asked for.
         options.countsLight = !setup_.arguments.stats.empty();
         options.seed = report_.seed;
-        const Clock::time_point begin = Clock::now();
+        const base::Clock::time_point begin = base::Clock::now();
         const bool countsHits = !setup_.arguments.profileOutput.empty();
         const auto afterSample = [&] {
             if (!std::exchange(begun_, true)) {
-                report_.start.firstSampleMs = millisecondsSince(begin);
+                report_.start.firstSampleMs = base::millisecondsSince(begin);
             }
             return countsHits ? addHits() : okStatus();
         };
         Result<LinearImage> image = renderer_->render(options, report_.samples, afterSample);
-        frame.renderMs = millisecondsSince(begin);
+        frame.renderMs = base::millisecondsSince(begin);
         report_.renderMs += frame.renderMs;
         if (!image) {
             return image;
@@ -129,7 +130,7 @@ public:
     // Returns the exposure for the surfaces of the last picture.
     Result<double> exposureOf(const LinearImage& image) {
         const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
-        return surfaces ? Result<double>(automaticExposure(image, *surfaces)) : surfaces.error();
+        return surfaces ? Result<double>(image::automaticExposure(image, *surfaces)) : surfaces.error();
     }
 
 private:
@@ -185,7 +186,7 @@ private:
     }
 
     const FrameSetup& setup_;
-    Scene& scene_;
+    gltf::Scene& scene_;
     scene_view::SceneViewData& data_;
     RenderReport& report_;
     CameraView camera_;
@@ -198,7 +199,7 @@ private:
 
 }  // namespace
 
-Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
+Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, gltf::Scene& scene,
                     scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
                     RenderReport& report) {
     FrameLoop loop(setup, scene, data, report);
@@ -235,10 +236,10 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
             report.exposure = *exposure;
             report.exposureAutomatic = setup.arguments.exposure == "auto";
             if (!report.exposureAutomatic) {
-                parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
+                compiler::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
-        if (Status written = writeImage(frame.image, *image, report.exposure); !written) {
+        if (Status written = image::writeImage(frame.image, *image, report.exposure); !written) {
             return written;
         }
         if (isSequence) {
@@ -248,4 +249,4 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -14,7 +14,7 @@
 #include <functional>
 #include <optional>
 
-namespace glint {
+namespace glint::cli {
 
 struct FrameSetup {
     const RenderArguments& arguments;
@@ -28,8 +28,8 @@ struct FrameSetup {
 // Renders and writes every picture, and fills in the measurements. `scene` and `data`, which was made from
 // it, are left in the last pose. `accept` is called before each picture is written. Its error ends the work;
 // if it returns false, the work ends without an error.
-Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, Scene& scene,
+Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, gltf::Scene& scene,
                     scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
                     RenderReport& report);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -8,7 +8,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::cli {
 
 namespace fs = std::filesystem;
 
@@ -46,7 +46,7 @@ void PipelineCacheFile::add(bool reports) {
     if (!fs::exists(path_, error)) {
         return;
     }
-    const Result<Bytes> bytes = readFile(path_, kMostBytes);
+    const Result<base::Bytes> bytes = base::readFile(path_, kMostBytes);
     if (!bytes) {
         if (reports) {
             console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(),
@@ -54,7 +54,7 @@ void PipelineCacheFile::add(bool reports) {
         }
         return;
     }
-    const std::uint64_t hash = hashBytes(*bytes);
+    const std::uint64_t hash = base::hashBytes(*bytes);
     if (std::exchange(seenHash_, hash) == hash) {
         return;
     }
@@ -87,7 +87,7 @@ void PipelineCacheFile::save() {
         return;
     }
     fs::create_directories(path_.parent_path(), error);
-    const Status written = writeFile(path_, *data);
+    const Status written = base::writeFile(path_, *data);
     if (written) {
         savedBytes_ = data->size();
     } else {
@@ -97,4 +97,4 @@ void PipelineCacheFile::save() {
     }
 }
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace glint {
+namespace glint::cli {
 
 struct PipelineArguments {
     std::string cache;  // empty: beside the compiled shaders
@@ -62,4 +62,4 @@ private:
     std::uint64_t seenHash_ = 0;  // of the file when it was read last
 };
 
-}  // namespace glint
+}  // namespace glint::cli

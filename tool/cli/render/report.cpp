@@ -10,11 +10,11 @@
 #include <algorithm>
 #include <numbers>
 
-namespace glint {
+namespace glint::cli {
 
 namespace {
 
-Json toJson(const std::optional<EnvironmentReport>& environment) {
+base::Json toJson(const std::optional<EnvironmentReport>& environment) {
     if (!environment) {
         return nullptr;
     }
@@ -24,14 +24,14 @@ Json toJson(const std::optional<EnvironmentReport>& environment) {
             {"halfFloat", statistics.halfFloat}, {"filterMs", statistics.filterMs}};
 }
 
-Json toJson(const std::optional<scene_view::SkyChoice>& sky) {
+base::Json toJson(const std::optional<scene_view::SkyChoice>& sky) {
     if (!sky) {
         return nullptr;
     }
     return {{"scale", sky->scale},
             {"automatic", sky->automatic},
             {"luminance", scene_view::meanIlluminance(sky->sky()) / std::numbers::pi},
-            {"lightIlluminance", orNull(sky->lights)}};
+            {"lightIlluminance", base::orNull(sky->lights)}};
 }
 
 constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
@@ -45,8 +45,8 @@ constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
     }
 }
 
-Json toJson(const std::vector<FrameReport>& frames) {
-    Json list = Json::array();
+base::Json toJson(const std::vector<FrameReport>& frames) {
+    base::Json list = base::Json::array();
     for (const FrameReport& frame : frames) {
         list.push_back({{"frame", frame.frame},
                         {"seconds", frame.seconds},
@@ -103,10 +103,10 @@ constexpr Gate kGates[] = {
     {"cone", &EffectCounters::skippedCone},
 };
 
-Json effectsToJson(const FrameCounters& counters) {
-    Json list = Json::array();
+base::Json effectsToJson(const FrameCounters& counters) {
+    base::Json list = base::Json::array();
     for (const EffectCounters& effect : counters.effects) {
-        Json skipped = Json::object();
+        base::Json skipped = base::Json::object();
         for (const Gate& gate : kGates) {
             skipped[gate.name] = effect.*gate.count;
         }
@@ -182,15 +182,15 @@ Status checkOrder(const RenderReport& report) {
         "this is a defect of Glint or of the driver: please report it, and try another --ordering");
 }
 
-Json toJson(const RenderReport& report) {
+base::Json toJson(const RenderReport& report) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
     const FrameCounters& counters = report.counters;
-    Json passes = Json::array();
+    base::Json passes = base::Json::array();
     for (const PassTiming& pass : report.passes) {
-        passes.push_back(
-            Json{{"name", pass.name},
-                 {"shaderId", pass.pass == Pass::ShadeCase ? Json(pass.shaderId) : Json(nullptr)},
-                 {"milliseconds", pass.milliseconds}});
+        passes.push_back(base::Json{
+            {"name", pass.name},
+            {"shaderId", pass.pass == Pass::ShadeCase ? base::Json(pass.shaderId) : base::Json(nullptr)},
+            {"milliseconds", pass.milliseconds}});
     }
     return {{"scene", report.scene},
             {"image", report.image},
@@ -198,10 +198,10 @@ Json toJson(const RenderReport& report) {
             {"driver", report.driver},
             {"strategy", report.strategy},
             {"strategyChoice",
-             report.strategyChoice ? strategyChoiceToJson(*report.strategyChoice) : Json(nullptr)},
+             report.strategyChoice ? strategyChoiceToJson(*report.strategyChoice) : base::Json(nullptr)},
             {"tracer", report.tracer},
-            {"ordering", orNull(report.ordering)},
-            {"merge", orNull(report.merge)},
+            {"ordering", base::orNull(report.ordering)},
+            {"merge", base::orNull(report.merge)},
             {"alpha", report.alpha},
             {"width", report.width},
             {"height", report.height},
@@ -212,7 +212,7 @@ Json toJson(const RenderReport& report) {
             {"exposureAutomatic", report.exposureAutomatic},
             {"sky", toJson(report.sky)},
             {"cases", report.cases},
-            {"compileMs", orNull(report.compileMs)},
+            {"compileMs", base::orNull(report.compileMs)},
             {"environment", toJson(report.environment)},
             {"sceneStatistics",
              {{"triangles", scene.triangles},
@@ -321,4 +321,4 @@ std::string toText(const RenderReport& report, Detail detail) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::cli

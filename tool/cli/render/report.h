@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::cli {
 
 struct EnvironmentReport {
     std::string file;
@@ -41,7 +41,7 @@ struct RenderReport {
     std::string device;
     std::string driver;
     std::string strategy;
-    std::optional<StrategyAdvice> strategyChoice;  // with --strategy auto
+    std::optional<compiler::StrategyAdvice> strategyChoice;  // with --strategy auto
     std::string tracer;
     std::optional<std::string> ordering;  // of hits, where the strategy orders them
     std::optional<std::string> merge;     // absent: a package was given
@@ -79,7 +79,7 @@ struct RenderReport {
 // these.
 Status checkOrder(const RenderReport& report);
 
-Json toJson(const RenderReport& report);
+base::Json toJson(const RenderReport& report);
 std::string toText(const RenderReport& report, Detail detail);
 
-}  // namespace glint
+}  // namespace glint::cli

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -208,4 +208,4 @@ Result<GlslUnit> flatten(std::string_view name, std::string_view text, const Sou
     return flattener.takeUnit();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

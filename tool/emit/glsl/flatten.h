@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // The side of shared headers to keep. They hold a C++ side and a GLSL side, told apart by __cplusplus.
 enum class FlattenSide { Glsl, Cpp };
@@ -27,4 +27,4 @@ using SourceLookup = std::function<std::optional<std::string_view>(std::string_v
 Result<GlslUnit> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
                          FlattenSide side);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -281,4 +281,4 @@ std::vector<GlslItem> splitGlsl(std::string_view glsl) {
     return Splitter(glsl).split();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

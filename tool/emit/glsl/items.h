@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 enum class GlslItemKind : std::uint8_t {
     Blank,    // one line
@@ -31,4 +31,4 @@ struct GlslItem {
 // a line, a prototype, directives that cross its borders) has no name.
 std::vector<GlslItem> splitGlsl(std::string_view glsl);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::string prefixNames(std::string_view glsl) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -114,4 +114,4 @@ std::string essentialText(std::string_view glsl) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

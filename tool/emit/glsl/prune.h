@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the unit without the functions, constants and macros that the rest does not reach. Comments right
 // above them are dropped too. In doubt an item stays: the text keeps its meaning, and a second call changes
@@ -17,4 +17,4 @@ GlslUnit dropUnused(const GlslUnit& unit);
 // that has no debug information.
 std::string essentialText(std::string_view glsl);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -130,4 +130,4 @@ std::string makeReadable(const GlslUnit& unit, std::string_view header) {
     return text;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns a text that has no branches that its own #defines decide against, no parts that are unused or only
 // for C++, and one place for its extensions. It begins with the lines of `header`, each a comment, unless the
@@ -14,4 +14,4 @@ namespace glint {
 // debug information.
 std::string makeReadable(const GlslUnit& unit, std::string_view header);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -252,4 +252,4 @@ GlslUnit expandMacros(const GlslUnit& unit, std::string_view file) {
     return result;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // Drops the branches of conditionals that earlier #defines decide against, and the directives of decided
 // conditionals. Undecided ones stay. It decides these conditions: NAME, NAME == number, NAME != number, and
@@ -16,4 +16,4 @@ GlslUnit resolveConditionals(const GlslUnit& unit);
 // dropped.
 GlslUnit expandMacros(const GlslUnit& unit, std::string_view file);
 
-}  // namespace glint
+}  // namespace glint::compiler

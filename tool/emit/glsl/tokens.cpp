@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -65,4 +65,4 @@ std::vector<std::string_view> identifiersOf(std::string_view line) {
     return words;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns `text` without blanks at both ends.
 std::string_view trim(std::string_view text);
@@ -49,4 +49,4 @@ void forEachPiece(std::string_view text, const Visit& visit) {
 // Returns the identifiers of a line in order, without those in comments.
 std::vector<std::string_view> identifiersOf(std::string_view line);
 
-}  // namespace glint
+}  // namespace glint::compiler

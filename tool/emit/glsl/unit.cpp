@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace glint {
+namespace glint::compiler {
 
 std::uint32_t GlslUnit::fileNumber(std::string_view file) {
     // Most lines come from the file of the line before.
@@ -74,4 +74,4 @@ std::string GlslUnit::withPlaces() const {
     return placed;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // The text of one shader without #include and #line.
 class GlslUnit {
@@ -53,4 +53,4 @@ private:
     bool afterBlank_ = true;
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

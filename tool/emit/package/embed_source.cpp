@@ -12,7 +12,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -30,7 +30,7 @@ bool isRead(const PackageFile& file) {
 }
 
 // Reads a word in little-endian order; bytes beyond the end are 0.
-std::uint64_t wordAt(const Bytes& bytes, std::size_t offset) {
+std::uint64_t wordAt(const base::Bytes& bytes, std::size_t offset) {
     std::uint64_t word = 0;
     for (std::size_t i = std::min(bytes.size(), offset + kWordBytes); i > offset; --i) {
         word = word << 8U | bytes[i - 1];
@@ -49,12 +49,12 @@ void appendArray(std::string& text, const PackageFile& file, std::size_t index) 
     text += "\n};\n";
 }
 
-std::string firstLine(const SceneList& scenes) {
+std::string firstLine(const gltf::SceneList& scenes) {
     return fmt::format("// Made by glint {} from {}. Do not edit.\n", toolVersion(),
                        commentText(scenes.fileNames()));
 }
 
-std::string makeHeaderText(const SceneList& scenes, const std::string& scope) {
+std::string makeHeaderText(const gltf::SceneList& scenes, const std::string& scope) {
     return firstLine(scenes) + fmt::format(
                                    "#pragma once\n\n"
                                    "#include <glint/embedded_file.h>\n\n"
@@ -73,7 +73,7 @@ Diagnostic writeError(const fs::path& path, const Diagnostic& cause) {
 
 }  // namespace
 
-EmbeddedSource makeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
+EmbeddedSource makeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
                                   const std::string& headerName) {
     const std::string scope = headerNamespace(scenes.scenes().front().path);
     std::string text = firstLine(scenes) + fmt::format(
@@ -109,18 +109,19 @@ fs::path embeddedHeader(const fs::path& source) {
     return header.replace_extension(".h");
 }
 
-Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
-                                                    const fs::path& source) {
+Result<std::vector<base::StagedFile>> stageEmbeddedSource(const gltf::SceneList& scenes,
+                                                          const CompiledPackage& package,
+                                                          const fs::path& source) {
     const fs::path header = embeddedHeader(source);
     const EmbeddedSource made = makeEmbeddedSource(scenes, package, header.filename().string());
     // If this fails, writing the files reports it.
     std::error_code ignored;
     fs::create_directories(source.parent_path(), ignored);
-    std::vector<StagedFile> staged;
+    std::vector<base::StagedFile> staged;
     for (const auto& [path, text] : {std::pair(header, std::string_view(made.header)),
                                      std::pair(source, std::string_view(made.source))}) {
-        removeAbandoned(path);
-        Result<StagedFile> file = StagedFile::create(path, asBytes(text));
+        base::removeAbandoned(path);
+        Result<base::StagedFile> file = base::StagedFile::create(path, base::asBytes(text));
         if (!file) {
             return writeError(path, file.error());
         }
@@ -129,12 +130,13 @@ Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, con
     return staged;
 }
 
-Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package, const fs::path& source) {
-    Result<std::vector<StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
+Status writeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
+                           const fs::path& source) {
+    Result<std::vector<base::StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
     if (!staged) {
         return staged.error();
     }
-    for (StagedFile& file : *staged) {
+    for (base::StagedFile& file : *staged) {
         if (Status written = file.commit(); !written) {
             return writeError(source, written.error());
         }
@@ -142,4 +144,4 @@ Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& packa
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

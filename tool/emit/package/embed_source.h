@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 struct EmbeddedSource {
     std::string header;  // declares glint::scene_x::embeddedPackage()
@@ -17,7 +17,7 @@ struct EmbeddedSource {
 };
 
 // Returns the files that Package::load() reads, as arrays of 64-bit words.
-EmbeddedSource makeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
+EmbeddedSource makeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
                                   const std::string& headerName);
 
 // Returns the name of the header beside a source: "room_package.h" for "room_package.cpp".
@@ -25,10 +25,11 @@ std::filesystem::path embeddedHeader(const std::filesystem::path& source);
 
 // Stages both files, ready to be moved to their place. It creates the folder and removes staged files that
 // killed runs left behind. Error "output-write".
-Result<std::vector<StagedFile>> stageEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
-                                                    const std::filesystem::path& source);
+Result<std::vector<base::StagedFile>> stageEmbeddedSource(const gltf::SceneList& scenes,
+                                                          const CompiledPackage& package,
+                                                          const std::filesystem::path& source);
 // Writes both files, each as a whole and only if it changed. It creates the folder. Error "output-write".
-Status writeEmbeddedSource(const SceneList& scenes, const CompiledPackage& package,
+Status writeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
                            const std::filesystem::path& source);
 
-}  // namespace glint
+}  // namespace glint::compiler

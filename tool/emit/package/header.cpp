@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace mustache = kainjow::mustache;
 
@@ -36,9 +36,9 @@ std::string cppLiteral(std::string_view text) {
     return literal + "\"";
 }
 
-mustache::data featureList(const MaterialModel& model) {
+mustache::data featureList(const materials::MaterialModel& model) {
     mustache::data list(mustache::data::type::list);
-    for (const Feature& info : model.features) {
+    for (const materials::Feature& info : model.features) {
         std::string name(info.name);
         name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
         mustache::data entry;
@@ -62,7 +62,7 @@ mustache::data caseMasks(const Plan& plan) {
     return list;
 }
 
-mustache::data materialNames(const Scene& scene) {
+mustache::data materialNames(const gltf::Scene& scene) {
     mustache::data list(mustache::data::type::list);
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         mustache::data entry;
@@ -73,10 +73,10 @@ mustache::data materialNames(const Scene& scene) {
     return list;
 }
 
-mustache::data sceneTables(const SceneList& scenes) {
+mustache::data sceneTables(const gltf::SceneList& scenes) {
     mustache::data list(mustache::data::type::list);
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
-        const Scene& scene = scenes.scenes()[i];
+        const gltf::Scene& scene = scenes.scenes()[i];
         mustache::data entry;
         entry.set("index", fmt::format("{}", i));
         entry.set("literal", cppLiteral(scenes.name(i)));
@@ -138,7 +138,7 @@ std::string headerNamespace(const std::string& scenePath) {
     return name;
 }
 
-Result<std::string> makeHeader(const SceneList& scenes, const Plan& plan, const SourceSet& sources,
+Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                const PlanOptions& options) {
     Result<std::string> interop = interopDeclarations();
     if (!interop) {
@@ -161,4 +161,4 @@ Result<std::string> makeHeader(const SceneList& scenes, const Plan& plan, const 
     return renderTemplate(sources, "glint_tables.h.mustache", context);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,13 +7,13 @@
 
 #include <string>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns the header's text. Has the errors of renderTemplate() and flatten().
-Result<std::string> makeHeader(const SceneList& scenes, const Plan& plan, const SourceSet& sources,
+Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                const PlanOptions& options);
 
 // Returns the namespace within glint: "scene_" and the file's name, as an identifier.
 std::string headerNamespace(const std::string& scenePath);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -99,7 +99,7 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
         std::error_code error;
         fs::create_directories((fresh / file->name).parent_path(), error);
         Status written = error ? Status(placeError(folder, error.message())) : okStatus();
-        written = written ? writeStaged(fresh / file->name, file->bytes) : written;
+        written = written ? base::writeStaged(fresh / file->name, file->bytes) : written;
         if (!written) {
             return placeError(folder / file->name, written.error().message);
         }
@@ -123,4 +123,4 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

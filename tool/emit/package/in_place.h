@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Removes the files `leaving` (names relative to `folder`) and moves those of `arriving` in. A reader sees
 // the earlier tables.bin, none, or the new one with all files that it names. On error "output-write"
@@ -17,4 +17,4 @@ namespace glint {
 Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::vector<std::string>& leaving,
                       const std::filesystem::path& folder);
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -11,7 +11,7 @@
 #define GLINT_STRUCT(type) \
     { #type, static_cast < std::uint32_t>(sizeof(gpu::type)), k##type }
 
-namespace glint {
+namespace glint::compiler {
 
 namespace {
 
@@ -213,4 +213,4 @@ std::span<const StructLayout> deformLayouts() {
     return kDeformStructs;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 struct MemberLayout {
     std::string_view name;
@@ -24,4 +24,4 @@ std::span<const StructLayout> interopLayouts();
 // runtime fills them.
 std::span<const StructLayout> deformLayouts();
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns 2^n for n bits, as a whole number if every JSON reader takes it exactly.
 inline nlohmann::ordered_json countToJson(double count) {
@@ -88,4 +88,4 @@ inline nlohmann::ordered_json effectsToJson(const EffectPlan& plan) {
     return list;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

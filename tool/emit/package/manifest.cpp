@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 using ManifestJson = nlohmann::ordered_json;
 
@@ -30,19 +30,19 @@ std::string relativeName(const std::string& path, const std::string& scenePath) 
     return (isBelow ? relative : file.filename()).generic_string();
 }
 
-ManifestJson sources(const Scene& scene) {
+ManifestJson sources(const gltf::Scene& scene) {
     ManifestJson list = ManifestJson::array();
-    for (const SourceFile& file : scene.files) {
+    for (const gltf::SourceFile& file : scene.files) {
         list.push_back({{"file", relativeName(file.path, scene.path)},
                         {"bytes", file.bytes},
-                        {"hash", hexHash(file.hash)}});
+                        {"hash", base::hexHash(file.hash)}});
     }
     return list;
 }
 
-ManifestJson features(const MaterialModel& model) {
+ManifestJson features(const materials::MaterialModel& model) {
     ManifestJson list = ManifestJson::array();
-    for (const Feature& feature : model.features) {
+    for (const materials::Feature& feature : model.features) {
         list.push_back({{"name", feature.name},
                         {"bit", feature.bit},
                         {"lobe", feature.isLobe},
@@ -74,7 +74,7 @@ ManifestJson valueOf(const std::string& text) {
     return number.is_number() ? number : ManifestJson(text);
 }
 
-ManifestJson settingsOf(const MaterialModel& model, const CompileSettings& compile) {
+ManifestJson settingsOf(const materials::MaterialModel& model, const CompileSettings& compile) {
     Settings settings;
     settings.compile = compile;
     ManifestJson object{{"hitLobes", model.names(compile.plan.keys.keptLobes & model.lobes)}};
@@ -94,9 +94,9 @@ ManifestJson hostNames(const CompileSettings& settings) {
 }
 
 // Returns the names of the declarations of packs.
-ManifestJson packNames(const MaterialModel& model) {
+ManifestJson packNames(const materials::MaterialModel& model) {
     std::set<std::string> names;
-    for (const FeatureCode& code : model.code) {
+    for (const materials::FeatureCode& code : model.code) {
         if (code.isOfPack) {
             names.insert(code.name);
         }
@@ -110,10 +110,10 @@ ManifestJson maxShadersOf(const PlanOptions& options) {
     return budget > 0 ? ManifestJson(budget) : ManifestJson(nullptr);
 }
 
-ManifestJson materialsToJson(const SceneList& scenes, const std::vector<int>& materials) {
+ManifestJson materialsToJson(const gltf::SceneList& scenes, const std::vector<int>& materials) {
     ManifestJson list = ManifestJson::array();
     for (const int material : materials) {
-        const SceneList::Place place = scenes.place(material);
+        const gltf::SceneList::Place place = scenes.place(material);
         list.push_back({{"scene", place.scene},
                         {"index", place.index},
                         {"name", scenes.materials()[static_cast<std::size_t>(material)].name}});
@@ -122,19 +122,19 @@ ManifestJson materialsToJson(const SceneList& scenes, const std::vector<int>& ma
 }
 
 // The places have no names; shaders[] has those.
-ManifestJson materialPlaces(const SceneList& scenes, const std::vector<int>& materials) {
+ManifestJson materialPlaces(const gltf::SceneList& scenes, const std::vector<int>& materials) {
     ManifestJson list = ManifestJson::array();
     for (const int material : materials) {
-        const SceneList::Place place = scenes.place(material);
+        const gltf::SceneList::Place place = scenes.place(material);
         list.push_back({{"scene", place.scene}, {"index", place.index}});
     }
     return list;
 }
 
-ManifestJson sceneList(const SceneList& scenes) {
+ManifestJson sceneList(const gltf::SceneList& scenes) {
     ManifestJson list = ManifestJson::array();
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
-        const Scene& scene = scenes.scenes()[i];
+        const gltf::Scene& scene = scenes.scenes()[i];
         list.push_back(
             {{"name", scenes.name(i)},
              {"source", std::filesystem::path(scene.path).filename().string()},
@@ -154,7 +154,7 @@ ManifestJson moduleEntry(const CompiledModule& module) {
             {"textureFetches", module.statistics.textureFetches},
             {"rayQueries", module.statistics.rayQueries},
             {"branches", module.statistics.branches},
-            {"hash", hexHash(module.hash)}};
+            {"hash", base::hexHash(module.hash)}};
 }
 
 // Lists a case's own modules by strategy. In the uber shader a case is a function, which is listed under
@@ -170,7 +170,7 @@ ManifestJson stages(const CompiledPackage& package, int shaderId) {
     return object;
 }
 
-ManifestJson shaders(const SceneList& scenes, const CompiledPackage& package) {
+ManifestJson shaders(const gltf::SceneList& scenes, const CompiledPackage& package) {
     ManifestJson list = ManifestJson::array();
     for (const Case& shaderCase : package.plan.cases) {
         if (shaderCase.isRetired()) {
@@ -201,7 +201,7 @@ ManifestJson passes(const CompiledPackage& package) {
     return list;
 }
 
-ManifestJson keys(const SceneList& scenes, const CompiledPackage& package) {
+ManifestJson keys(const gltf::SceneList& scenes, const CompiledPackage& package) {
     ManifestJson list = ManifestJson::array();
     for (const Key& key : package.plan.keys) {
         list.push_back({{"features", package.plan.model->names(key.mask)},
@@ -214,7 +214,7 @@ ManifestJson keys(const SceneList& scenes, const CompiledPackage& package) {
     return list;
 }
 
-ManifestJson dropped(const SceneList& scenes, const CompiledPackage& package) {
+ManifestJson dropped(const gltf::SceneList& scenes, const CompiledPackage& package) {
     ManifestJson list = ManifestJson::array();
     for (const DroppedFeature& feature : package.plan.dropped) {
         list.push_back({{"feature", feature.feature},
@@ -224,7 +224,7 @@ ManifestJson dropped(const SceneList& scenes, const CompiledPackage& package) {
     return list;
 }
 
-ManifestJson counts(const SceneList& scenes, const CompiledPackage& package) {
+ManifestJson counts(const gltf::SceneList& scenes, const CompiledPackage& package) {
     return {
         {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
         {"keysPresent", package.plan.keys.size()}, {"cases", caseCount(package.plan)},
@@ -235,8 +235,9 @@ ManifestJson counts(const SceneList& scenes, const CompiledPackage& package) {
 ManifestJson files(const CompiledPackage& package) {
     ManifestJson list = ManifestJson::array();
     for (const PackageFile& file : package.files) {
-        list.push_back(
-            {{"file", file.name}, {"bytes", file.bytes.size()}, {"hash", hexHash(hashBytes(file.bytes))}});
+        list.push_back({{"file", file.name},
+                        {"bytes", file.bytes.size()},
+                        {"hash", base::hexHash(base::hashBytes(file.bytes))}});
     }
     return list;
 }
@@ -255,10 +256,11 @@ namespace {
 
 // The attributes of packs that shaders read, in the order of their values.
 ManifestJson vertexAttributes(const Plan& plan) {
-    const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    const materials::FeatureMask used =
+        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
     ManifestJson list = ManifestJson::array();
-    for (const VertexAttribute& attribute : plan.model->attributes) {
-        const Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
+    for (const materials::VertexAttribute& attribute : plan.model->attributes) {
+        const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
         if ((feature.mask() & used) == 0) {
             continue;
         }
@@ -278,7 +280,7 @@ ManifestJson vertexAttributes(const Plan& plan) {
 
 }  // namespace
 
-std::string makeManifest(const SceneList& scenes, const CompiledPackage& package,
+std::string makeManifest(const gltf::SceneList& scenes, const CompiledPackage& package,
                          const CompileSettings& settings) {
     ManifestJson manifest;
     manifest["format"] = kManifestFormat;
@@ -310,7 +312,7 @@ std::string makeManifest(const SceneList& scenes, const CompiledPackage& package
 }
 
 std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
-    if (nestsTooDeep({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
+    if (base::nestsTooDeep({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
         return {};
     }
     const ManifestJson manifest = ManifestJson::parse(text, nullptr, false);
@@ -328,4 +330,4 @@ std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
     return names;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -5,22 +5,22 @@
 #include <map>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 using package::TextureEntry;
 
-MaterialTables makeMaterialTables(const Scene& scene, const MaterialLayout& layout) {
+MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout& layout) {
     MaterialTables tables;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> indexOf;
-    for (const Material& material : scene.materials) {
+    for (const materials::Material& material : scene.materials) {
         std::vector<std::uint8_t> record = makeMaterialRecord(material, layout);
         for (std::size_t i = 0; i < material.textures.size(); ++i) {
-            const TextureInfo& info = material.textures[i];
+            const materials::TextureInfo& info = material.textures[i];
             if (info.texture < 0) {
                 continue;
             }
             // A texture that no key reads is in the tables all the same, so that images keep their numbers.
-            const Texture& texture = scene.textures[static_cast<std::size_t>(info.texture)];
+            const gltf::Texture& texture = scene.textures[static_cast<std::size_t>(info.texture)];
             const TextureEntry entry{static_cast<std::uint32_t>(texture.image),
                                      material.isColor(static_cast<int>(i)) ? 1U : 0U};
             const auto [place, isNew] = indexOf.try_emplace(
@@ -46,4 +46,4 @@ MaterialTables makeMaterialTables(const Scene& scene, const MaterialLayout& layo
     return tables;
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

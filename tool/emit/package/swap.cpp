@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -205,4 +205,4 @@ Status StagingFolder::swapInto(const fs::path& folder) {
     return okStatus();
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-namespace glint {
+namespace glint::compiler {
 
 // Returns `folder` as an absolute path with symbolic links resolved, without a trailing slash. It creates the
 // parent folders. Error "output-write".
@@ -55,4 +55,4 @@ private:
     std::filesystem::path path_;
 };
 
-}  // namespace glint
+}  // namespace glint::compiler

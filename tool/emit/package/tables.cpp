@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace glint {
+namespace glint::compiler {
 
 using namespace package;
 
@@ -61,12 +61,12 @@ public:
         content_.resize((content_.size() + kAlignment - 1) / kAlignment * kAlignment);
     }
 
-    Bytes finish(PackageHeader header) {
+    base::Bytes finish(PackageHeader header) {
         const std::size_t start = sizeof(PackageHeader) + sections_.size() * sizeof(PackageSection);
         for (PackageSection& section : sections_) {
             section.offset += start;
         }
-        Bytes file(start);
+        base::Bytes file(start);
         std::memcpy(file.data() + sizeof header, sections_.data(), start - sizeof header);
         file.insert(file.end(), content_.begin(), content_.end());
         header.sectionCount = static_cast<std::uint32_t>(sections_.size());
@@ -74,37 +74,42 @@ public:
         header.contentHash = 0;
         std::memcpy(file.data(), &header, sizeof header);
         const std::span whole(file);
-        header.contentHash = hashBytes(whole.subspan(sizeof header), hashBytes(whole.first(sizeof header)));
+        header.contentHash =
+            base::hashBytes(whole.subspan(sizeof header), base::hashBytes(whole.first(sizeof header)));
         std::memcpy(file.data(), &header, sizeof header);
         return file;
     }
 
 private:
     std::vector<PackageSection> sections_;
-    Bytes content_;
+    base::Bytes content_;
 };
 
-std::uint32_t geometryFlags(const Material& material, FeatureMask key, AlphaPolicy alpha) {
-    const bool tested = alpha == AlphaPolicy::Tested && (key & material.model().mask("alphaMask")) != 0;
+std::uint32_t geometryFlags(const materials::Material& material, materials::FeatureMask key,
+                            package::AlphaPolicy alpha) {
+    const bool tested =
+        alpha != package::AlphaPolicy::Opaque && (key & material.model().mask("alphaMask")) != 0;
+    const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
     return (tested ? gpu::kGeometryAlphaTested : 0U) |
            (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
-           (material.alphaMode == AlphaMode::Mask ? gpu::kGeometryMasked : 0U);
+           (material.alphaMode == materials::AlphaMode::Mask || blended ? gpu::kGeometryMasked : 0U) |
+           (blended ? gpu::kGeometryBlended : 0U);
 }
 
-std::vector<PrimitiveEntry> makePrimitives(const SceneList& scenes, SceneList::Range range, const Plan& plan,
-                                           AlphaPolicy alpha) {
+std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::SceneList::Range range,
+                                           const Plan& plan, package::AlphaPolicy alpha) {
     std::vector<PrimitiveEntry> entries;
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
-        const PrimitiveInputs& inputs = scenes.primitives()[i];
+        const materials::PrimitiveInputs& inputs = scenes.primitives()[i];
         const Key& key = plan.keys[plan.keyOfPrimitive[i]];
-        const Material& material = scenes.materials()[inputs.material];
+        const materials::Material& material = scenes.materials()[inputs.material];
         PrimitiveEntry entry{};
         entry.mesh = static_cast<std::uint32_t>(inputs.mesh);
         entry.primitive = static_cast<std::uint32_t>(inputs.primitive);
         entry.shaderId = static_cast<std::uint32_t>(key.shaderId);
         entry.materialIndex = static_cast<std::uint32_t>(scenes.place(inputs.material).index);
-        const FeatureMask primary = plan.primaryMaskOfPrimitive[i];
-        entry.featureLobes = static_cast<std::uint32_t>(primary & kLobeMask);
+        const materials::FeatureMask primary = plan.primaryMaskOfPrimitive[i];
+        entry.featureLobes = static_cast<std::uint32_t>(primary & materials::kLobeMask);
         entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
         entry.geometryFlags = geometryFlags(material, key.mask, alpha);
         entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
@@ -116,10 +121,12 @@ std::vector<PrimitiveEntry> makePrimitives(const SceneList& scenes, SceneList::R
 }
 
 std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& strings) {
-    const FeatureMask used = plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    const materials::FeatureMask used =
+        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
     std::vector<AttributeEntry> entries;
-    for (const VertexAttribute& attribute : plan.model->attributes) {
-        const FeatureMask feature = plan.model->features[static_cast<std::size_t>(attribute.feature)].mask();
+    for (const materials::VertexAttribute& attribute : plan.model->attributes) {
+        const materials::FeatureMask feature =
+            plan.model->features[static_cast<std::size_t>(attribute.feature)].mask();
         if ((feature & used) == 0) {
             continue;
         }
@@ -143,9 +150,9 @@ std::vector<EffectEntry> makeEffects(const Plan& plan, StringTable& strings) {
     return entries;
 }
 
-std::vector<SamplerEntry> makeSamplers(const Scene& scene) {
+std::vector<SamplerEntry> makeSamplers(const gltf::Scene& scene) {
     std::vector<SamplerEntry> entries;
-    for (const Sampler& sampler : scene.samplers) {
+    for (const gltf::Sampler& sampler : scene.samplers) {
         entries.push_back({static_cast<std::uint32_t>(sampler.wrapU),
                            static_cast<std::uint32_t>(sampler.wrapV),
                            static_cast<std::uint32_t>(sampler.magnification),
@@ -173,7 +180,7 @@ void append(std::vector<Element>& all, const std::vector<Element>& own, std::uin
     all.insert(all.end(), own.begin(), own.end());
 }
 
-Diagnostic indexError(const Scene& scene, std::string what) {
+Diagnostic indexError(const gltf::Scene& scene, std::string what) {
     return makeError("scene-index", scene.path, std::move(what), "import the scene again");
 }
 
@@ -183,22 +190,22 @@ bool within(int index, std::size_t count) {
 
 }  // namespace
 
-Status checkScene(const Scene& scene) {
+Status checkScene(const gltf::Scene& scene) {
     for (std::size_t i = 0; i < scene.textures.size(); ++i) {
-        const Texture& texture = scene.textures[i];
+        const gltf::Texture& texture = scene.textures[i];
         if (!within(texture.image, scene.images.size()) || !within(texture.sampler, scene.samplers.size())) {
             return indexError(scene, fmt::format("texture {} has no image or no sampler", i));
         }
     }
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        for (const TextureInfo& info : scene.materials[i].textures) {
+        for (const materials::TextureInfo& info : scene.materials[i].textures) {
             if (info.texture >= 0 && !within(info.texture, scene.textures.size())) {
                 return indexError(scene, fmt::format("material {} has no texture {}", i, info.texture));
             }
         }
     }
-    for (const Mesh& mesh : scene.meshes) {
-        for (const Primitive& primitive : mesh.primitives) {
+    for (const gltf::Mesh& mesh : scene.meshes) {
+        for (const gltf::Primitive& primitive : mesh.primitives) {
             if (!within(primitive.material, scene.materials.size())) {
                 return indexError(
                     scene, fmt::format("{} has no material {}", primitive.pointer, primitive.material));
@@ -208,8 +215,8 @@ Status checkScene(const Scene& scene) {
     return okStatus();
 }
 
-Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const CompiledModule> modules,
-                 const CompileSettings& settings) {
+base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
+                       std::span<const CompiledModule> modules, const CompileSettings& settings) {
     StringTable strings;
     std::vector<ModuleEntry> moduleEntries;
     for (const CompiledModule& module : modules) {
@@ -221,11 +228,11 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
         cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
                          static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
     }
-    const AlphaPolicy alpha = settings.plan.keys.alpha;
+    const package::AlphaPolicy alpha = settings.plan.keys.alpha;
     const MaterialLayout layout = materialLayoutOf(plan);
     SceneTables tables;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
-        const Scene& scene = scenes.scenes()[i];
+        const gltf::Scene& scene = scenes.scenes()[i];
         const MaterialTables materials = makeMaterialTables(scene, layout);
         SceneEntry entry{};
         entry.name = strings.add(scenes.name(i));
@@ -269,7 +276,7 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     header.bindings = settings.bindings;
     header.maxBounces = settings.maxBounces;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
-    header.alphaTested = alpha == AlphaPolicy::Tested ? 1 : 0;
+    header.alpha = alpha;
     header.materialTextureOffset = layout.textureOffset;
     header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
@@ -277,4 +284,4 @@ Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const Comp
     return writer.finish(header);
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

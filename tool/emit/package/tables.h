@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 
 // Materials in the device's layout, and the textures that they refer to.
 struct MaterialTables {
@@ -19,13 +19,13 @@ struct MaterialTables {
 
 // Makes the material tables. Colour textures are sRGB, the others linear. Requires a scene that checkScene()
 // accepts.
-MaterialTables makeMaterialTables(const Scene& scene, const MaterialLayout& layout);
+MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout& layout);
 
 // Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.
-Status checkScene(const Scene& scene);
+Status checkScene(const gltf::Scene& scene);
 
 // Returns the bytes of the file.
-Bytes makeTables(const SceneList& scenes, const Plan& plan, std::span<const CompiledModule> modules,
-                 const CompileSettings& settings);
+base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
+                       std::span<const CompiledModule> modules, const CompileSettings& settings);
 
-}  // namespace glint
+}  // namespace glint::compiler

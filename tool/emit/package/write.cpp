@@ -1,8 +1,8 @@
 #include "base/staged_file.h"
 #include "emit/compile.h"
 #include "emit/package/in_place.h"
-#include "emit/package/swap.h"
 #include "emit/package/manifest.h"
+#include "emit/package/swap.h"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <string>
 #include <system_error>
 
-namespace glint {
+namespace glint::compiler {
 
 namespace fs = std::filesystem;
 
@@ -31,7 +31,8 @@ using Names = std::set<std::string, std::less<>>;
 
 // Returns the names of the files of the package in `folder`; empty if it holds none.
 Names packageFiles(const fs::path& folder) {
-    if (const Result<Bytes> bytes = readFile(folder / package::kManifestFile, kMaxManifestBytes)) {
+    if (const Result<base::Bytes> bytes =
+            base::readFile(folder / package::kManifestFile, kMaxManifestBytes)) {
         return manifestFiles({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
     }
     return {};
@@ -39,7 +40,7 @@ Names packageFiles(const fs::path& folder) {
 
 // Returns whether tables.bin has the right beginning. This recognises a package whose manifest is lost.
 bool hasTables(const fs::path& folder) {
-    const Result<Bytes> bytes = readFile(folder / package::kTablesFile);
+    const Result<base::Bytes> bytes = base::readFile(folder / package::kTablesFile);
     return bytes && bytes->size() >= sizeof package::kMagic &&
            std::memcmp(bytes->data(), package::kMagic, sizeof package::kMagic) == 0;
 }
@@ -70,13 +71,13 @@ Result<Names> inspectFolder(const fs::path& folder) {
     return names;
 }
 
-bool holdsBytes(const fs::path& path, const Bytes& bytes) {
+bool holdsBytes(const fs::path& path, const base::Bytes& bytes) {
     std::error_code error;
     if (!fs::is_regular_file(fs::symlink_status(path, error)) || fs::file_size(path, error) != bytes.size() ||
         error) {
         return false;
     }
-    const Result<Bytes> present = readFile(path);
+    const Result<base::Bytes> present = base::readFile(path);
     return present && *present == bytes;
 }
 
@@ -120,7 +121,7 @@ Status stagePackage(const CompiledPackage& package, const fs::path& folder, cons
         if (holdsBytes(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
             continue;
         }
-        if (Status status = writeStaged(target, file.bytes); !status) {
+        if (Status status = base::writeStaged(target, file.bytes); !status) {
             return outputError(folder / file.name, status.error().message);
         }
     }
@@ -236,4 +237,4 @@ Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     return swapped ? swapped : orInPlace(package, *earlier, *resolved, swapped.error());
 }
 
-}  // namespace glint
+}  // namespace glint::compiler

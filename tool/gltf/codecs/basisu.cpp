@@ -28,7 +28,7 @@ bool decode(ByteView bytes, Image& image, std::string& problem) {
     makeTables();
     // Blocks lie at multiples of 16 bytes in the file, but a buffer view may start anywhere.
     constexpr std::uintptr_t kAlignment = 16;
-    Bytes aligned;
+    base::Bytes aligned;
     if (reinterpret_cast<std::uintptr_t>(bytes.data()) % kAlignment != 0) {
         aligned.assign(bytes.begin(), bytes.end());
         bytes = aligned;

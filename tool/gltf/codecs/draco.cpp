@@ -160,7 +160,7 @@ bool isVertexType(draco::DataType type) {
 // be read.
 template <typename T>
 bool appendValues(const draco::Mesh& mesh, const draco::PointAttribute& attribute, std::size_t components,
-                  Bytes& bytes) {
+                  base::Bytes& bytes) {
     std::array<T, 4> value{};
     const std::size_t size = components * sizeof(T);
     bytes.resize(mesh.num_points() * size);
@@ -176,7 +176,7 @@ bool appendValues(const draco::Mesh& mesh, const draco::PointAttribute& attribut
 }
 
 bool appendValuesAs(ComponentType componentType, const draco::Mesh& mesh,
-                    const draco::PointAttribute& attribute, std::size_t components, Bytes& bytes) {
+                    const draco::PointAttribute& attribute, std::size_t components, base::Bytes& bytes) {
     switch (componentType) {
         case ComponentType::Byte:
             return appendValues<std::int8_t>(mesh, attribute, components, bytes);
@@ -247,8 +247,8 @@ std::size_t DracoMesh::pointCount() const {
     return mesh_->num_points();
 }
 
-Result<Bytes> DracoMesh::attribute(const Document& document, std::uint32_t id, const ElementFormat& format,
-                                   const std::string& pointer) const {
+Result<base::Bytes> DracoMesh::attribute(const Document& document, std::uint32_t id,
+                                         const ElementFormat& format, const std::string& pointer) const {
     const draco::PointAttribute* attribute = mesh_->GetAttributeByUniqueId(id);
     if (attribute == nullptr) {
         return document.error("draco-attribute", pointer,
@@ -261,7 +261,7 @@ Result<Bytes> DracoMesh::attribute(const Document& document, std::uint32_t id, c
                                           attribute->num_components(), format.components),
                               kExportWithoutDraco);
     }
-    Bytes bytes;
+    base::Bytes bytes;
     if (!isVertexType(attribute->data_type()) ||
         !appendValuesAs(format.componentType, *mesh_, *attribute, format.components, bytes)) {
         return document.error("draco-attribute", pointer,

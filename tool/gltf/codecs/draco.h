@@ -37,8 +37,8 @@ public:
     // Returns the elements of the attribute with that unique identifier, packed tightly in the format of
     // their accessor. The error is "draco-attribute" if there is no such attribute or its values have another
     // form.
-    Result<Bytes> attribute(const Document& document, std::uint32_t id, const ElementFormat& format,
-                            const std::string& pointer) const;
+    Result<base::Bytes> attribute(const Document& document, std::uint32_t id, const ElementFormat& format,
+                                  const std::string& pointer) const;
 
 private:
     explicit DracoMesh(std::unique_ptr<draco::Mesh> mesh);

@@ -49,7 +49,7 @@ std::string nameOf(const Json& json, int image) {
 }
 
 // Returns the encoded bytes. `storage` owns them if they are not in a buffer view.
-Result<ByteView> encodedBytes(Document& document, int image, Bytes& storage) {
+Result<ByteView> encodedBytes(Document& document, int image, base::Bytes& storage) {
     const Json& json = imageJson(document, image);
     if (const Json* view = find(json, "bufferView")) {
         return document.bufferView(view->get<int>());
@@ -63,7 +63,7 @@ Result<ByteView> encodedBytes(Document& document, int image, Bytes& storage) {
         }
         storage = std::move(data->bytes);
     } else {
-        Result<Bytes> bytes = document.readFile(uri, imagePointer(image));
+        Result<base::Bytes> bytes = document.readFile(uri, imagePointer(image));
         if (!bytes) {
             return bytes.error();
         }
@@ -163,7 +163,7 @@ Result<Image> importImage(Document& document, int index) {
     if (!document.options().decodeImages) {
         return image;
     }
-    Bytes storage;
+    base::Bytes storage;
     const Result<ByteView> bytes = encodedBytes(document, index, storage);
     if (!bytes) {
         return bytes.error();

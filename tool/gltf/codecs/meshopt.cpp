@@ -101,7 +101,7 @@ Result<Layout> readLayout(const Document& document, const Json& extension, const
     return layout;
 }
 
-int decode(const Layout& layout, ByteView packed, Bytes& bytes) {
+int decode(const Layout& layout, ByteView packed, base::Bytes& bytes) {
     switch (layout.mode) {
         case Mode::Attributes:
             return meshopt_decodeVertexBuffer(bytes.data(), layout.count, layout.stride, packed.data(),
@@ -116,7 +116,7 @@ int decode(const Layout& layout, ByteView packed, Bytes& bytes) {
     return -1;
 }
 
-void applyFilter(const Layout& layout, Bytes& bytes) {
+void applyFilter(const Layout& layout, base::Bytes& bytes) {
     switch (layout.filter) {
         case FilterKind::None:
             break;
@@ -149,8 +149,8 @@ std::string explain(int code) {
 
 }  // namespace
 
-Result<Bytes> unpackMeshopt(Document& document, const Json& extension, const std::string& pointer,
-                            ByteView packed, std::uint64_t byteLength) {
+Result<base::Bytes> unpackMeshopt(Document& document, const Json& extension, const std::string& pointer,
+                                  ByteView packed, std::uint64_t byteLength) {
     const Result<Layout> layout = readLayout(document, extension, pointer);
     if (!layout) {
         return layout.error();
@@ -173,7 +173,7 @@ Result<Bytes> unpackMeshopt(Document& document, const Json& extension, const std
                               "the scene's compressed buffer views unpack to too much",
                               "split the scene, or raise ImportOptions::maxFileBytes");
     }
-    Bytes bytes(static_cast<std::size_t>(byteLength));
+    base::Bytes bytes(static_cast<std::size_t>(byteLength));
     if (bytes.empty()) {
         return bytes;
     }

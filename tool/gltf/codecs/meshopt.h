@@ -11,7 +11,7 @@ namespace glint::gltf {
 // `byteLength` and `pointer` are those of the buffer view. Errors: "meshopt-layout" (members that contradict
 // each other), "meshopt-decode", "meshopt-size" (more than the packed bytes can hold, or than the budget of
 // ImportOptions::maxFileBytes).
-Result<Bytes> unpackMeshopt(Document& document, const Json& extension, const std::string& pointer,
-                            ByteView packed, std::uint64_t byteLength);
+Result<base::Bytes> unpackMeshopt(Document& document, const Json& extension, const std::string& pointer,
+                                  ByteView packed, std::uint64_t byteLength);
 
 }  // namespace glint::gltf

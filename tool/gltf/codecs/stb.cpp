@@ -52,7 +52,7 @@ bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
     if (!readStbHeader(bytes, image, problem)) {
         return false;
     }
-    problem = findPngExcess(bytes, image.width, image.height);
+    problem = base::findPngExcess(bytes, image.width, image.height);
     return problem.empty();
 }
 

@@ -78,7 +78,7 @@ std::uint32_t largestUnsigned(ComponentType type) {
 }
 
 // Copies the accessor's own elements, without substitutions, tightly packed.
-Status gatherBase(Document& document, int index, std::size_t elementSize, Bytes& elements) {
+Status gatherBase(Document& document, int index, std::size_t elementSize, base::Bytes& elements) {
     const Accessor& accessor = document.accessor(index);
     if (accessor.bufferView < 0) {
         if (!document.chargeZeroElements(accessor.count)) {
@@ -131,7 +131,7 @@ Result<ElementLayout> sparseLayout(Document& document, const std::string& pointe
 }
 
 // Puts the substitutes of a sparse accessor into `elements`.
-Status substituteSparse(Document& document, int index, std::size_t elementSize, Bytes& elements) {
+Status substituteSparse(Document& document, int index, std::size_t elementSize, base::Bytes& elements) {
     const Accessor& accessor = document.accessor(index);
     const Accessor::Sparse& sparse = *accessor.sparse;
     const std::size_t count = sparse.count;
@@ -172,12 +172,12 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
 }
 
 // Returns all elements, tightly packed.
-Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
+Result<base::Bytes> gather(Document& document, int index, std::size_t elementSize) {
     const Accessor& accessor = document.accessor(index);
     if (Status status = document.chargeVertices(accessor.count, accessorPointer(index)); !status) {
         return status.error();
     }
-    Bytes elements;
+    base::Bytes elements;
     if (Status status = gatherBase(document, index, elementSize, elements); !status) {
         return status.error();
     }
@@ -191,7 +191,7 @@ Result<Bytes> gather(Document& document, int index, std::size_t elementSize) {
 
 // Appends the integers of `bytes` as floats.
 template <typename T>
-void appendIntegers(const Bytes& bytes, bool normalized, std::vector<float>& values) {
+void appendIntegers(const base::Bytes& bytes, bool normalized, std::vector<float>& values) {
     const float largest = std::numeric_limits<T>::max();
     values.reserve(bytes.size() / sizeof(T));
     for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
@@ -217,7 +217,7 @@ Result<ElementFormat> floatFormat(const Document& document, int index) {
     return ElementFormat{accessor.componentType, accessor.components, sizeOf(accessor.componentType)};
 }
 
-FloatElements toFloats(const Document& document, int index, Integers integers, const Bytes& bytes) {
+FloatElements toFloats(const Document& document, int index, Integers integers, const base::Bytes& bytes) {
     const Accessor& accessor = document.accessor(index);
     FloatElements result;
     result.components = accessor.components;
@@ -250,7 +250,7 @@ Result<FloatElements> readFloats(Document& document, int index, Integers integer
     if (!format) {
         return format.error();
     }
-    const Result<Bytes> bytes = gather(document, index, format->components * format->componentSize);
+    const Result<base::Bytes> bytes = gather(document, index, format->components * format->componentSize);
     if (!bytes) {
         return bytes.error();
     }
@@ -264,7 +264,7 @@ Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
                               "export the scene again");
     }
     constexpr std::size_t kElements = std::tuple_size_v<Matrix4>;
-    const Result<Bytes> bytes = gather(document, index, kElements * sizeof(float));
+    const Result<base::Bytes> bytes = gather(document, index, kElements * sizeof(float));
     if (!bytes) {
         return bytes.error();
     }
@@ -283,7 +283,7 @@ Result<IndexElements> readIndices(Document& document, int index) {
                               "indices must be scalars of unsigned integers", "export the scene again");
     }
     const std::size_t size = sizeOf(accessor.componentType);
-    const Result<Bytes> bytes = gather(document, index, size);
+    const Result<base::Bytes> bytes = gather(document, index, size);
     if (!bytes) {
         return bytes.error();
     }

@@ -96,9 +96,9 @@ Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std:
 }
 
 Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file) {
-    if (nestsTooDeep(bytes)) {
+    if (base::nestsTooDeep(bytes)) {
         return makeError("json-depth", file,
-                         fmt::format("its JSON is nested more than {} levels deep", kMaxJsonDepth),
+                         fmt::format("its JSON is nested more than {} levels deep", base::kMaxJsonDepth),
                          "remove the deeply nested extras");
     }
     try {

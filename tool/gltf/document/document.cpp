@@ -50,7 +50,7 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& pa
 }
 
 Status Document::parse() {
-    Result<Bytes> bytes = source_.readScene();
+    Result<base::Bytes> bytes = source_.readScene();
     if (!bytes) {
         return bytes.error();
     }
@@ -123,7 +123,7 @@ Result<ByteView> Document::bufferView(int index) {
 }
 
 Result<ByteView> Document::unpackedView(int index, const Json& extension, const std::string& pointer) {
-    std::optional<Bytes>& unpacked = unpackedViews_[static_cast<std::size_t>(index)];
+    std::optional<base::Bytes>& unpacked = unpackedViews_[static_cast<std::size_t>(index)];
     if (!unpacked) {
         const Json* offset = find(extension, "byteOffset");
         const Result<ByteView> packed =
@@ -132,7 +132,7 @@ Result<ByteView> Document::unpackedView(int index, const Json& extension, const 
         if (!packed) {
             return packed.error();
         }
-        Result<Bytes> bytes =
+        Result<base::Bytes> bytes =
             unpackMeshopt(*this, extension, pointer, *packed, views_[static_cast<std::size_t>(index)].length);
         if (!bytes) {
             return bytes.error();
@@ -167,7 +167,7 @@ Result<ByteView> Document::buffer(int index) {
         bytes = *binary_;
     } else {
         if (!buffers_[slot]) {
-            Result<Bytes> loaded = loadBuffer(json, pointer);
+            Result<base::Bytes> loaded = loadBuffer(json, pointer);
             if (!loaded) {
                 return loaded.error();
             }
@@ -183,7 +183,7 @@ Result<ByteView> Document::buffer(int index) {
     return bytes.first(length);
 }
 
-Result<Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointer) {
+Result<base::Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointer) {
     const Json* uri = find(buffer, "uri");
     if (uri == nullptr) {
         if (findMeshopt(buffer) != nullptr) {
@@ -208,7 +208,7 @@ Result<Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointe
     return std::move(data->bytes);
 }
 
-Result<Bytes> Document::readFile(std::string_view uri, const std::string& pointer) {
+Result<base::Bytes> Document::readFile(std::string_view uri, const std::string& pointer) {
     return source_.readRelative(uri, where(pointer + "/uri"));
 }
 

@@ -47,7 +47,7 @@ public:
     // Returns the bytes of a buffer view, decompressed if necessary. The first use of a buffer opens it.
     Result<ByteView> bufferView(int index);
     // Reads the file that a relative URI names.
-    Result<Bytes> readFile(std::string_view uri, const std::string& pointer);
+    Result<base::Bytes> readFile(std::string_view uri, const std::string& pointer);
     // Takes `count` elements from the budget of ImportOptions::maxVertices. The error is "vertex-limit" at
     // `pointer` if the budget is exhausted.
     Status chargeVertices(std::uint64_t count, std::string_view pointer);
@@ -88,18 +88,18 @@ private:
     Result<ByteView> bufferRange(int buffer, std::uint64_t offset, std::uint64_t length,
                                  const std::string& pointer);
     Result<ByteView> unpackedView(int index, const Json& extension, const std::string& pointer);
-    Result<Bytes> loadBuffer(const Json& buffer, const std::string& pointer);
+    Result<base::Bytes> loadBuffer(const Json& buffer, const std::string& pointer);
 
     std::string name_;
     ImportOptions options_;
     FileSource source_;
-    Bytes file_;
+    base::Bytes file_;
     std::optional<ByteView> binary_;  // views file_
     Json json_;
     std::vector<BufferView> views_;
     std::vector<Accessor> accessors_;
-    std::vector<std::optional<Bytes>> buffers_;
-    std::vector<std::optional<Bytes>> unpackedViews_;
+    std::vector<std::optional<base::Bytes>> buffers_;
+    std::vector<std::optional<base::Bytes>> unpackedViews_;
     std::vector<Diagnostic> warnings_;
     std::uint64_t verticesLeft_;
     std::uint64_t unpackedBytesLeft_;

@@ -53,7 +53,7 @@ std::string extensionHint(std::string_view name) {
 
 }  // namespace
 
-bool isSupportedExtension(const MaterialModel& model, std::string_view name) {
+bool isSupportedExtension(const materials::MaterialModel& model, std::string_view name) {
     const int object = model.findObject(name);
     return (object >= 0 && model.objects[static_cast<std::size_t>(object)].isExtension) ||
            std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();

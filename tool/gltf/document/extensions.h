@@ -16,7 +16,7 @@ class Document;
 // it doesn't read. One note names all those that change no picture.
 Status checkExtensions(Document& document);
 
-bool isSupportedExtension(const MaterialModel& model, std::string_view name);
+bool isSupportedExtension(const materials::MaterialModel& model, std::string_view name);
 
 // Returns whether the extension holds only data that no picture shows: metadata, and choices for users.
 bool changesNoPicture(std::string_view name);

@@ -35,8 +35,8 @@ bool liesWithin(const fs::path& path, const fs::path& folder) {
 FileSource::FileSource(const fs::path& scenePath, std::uint64_t maxBytes, OuterLinks links)
     : scenePath_(scenePath), bytesLeft_(maxBytes), links_(links) {}
 
-Result<Bytes> FileSource::read(const fs::path& path) {
-    Result<Bytes> bytes = readFile(path, bytesLeft_);
+Result<base::Bytes> FileSource::read(const fs::path& path) {
+    Result<base::Bytes> bytes = base::readFile(path, bytesLeft_);
     if (!bytes) {
         return bytes;
     }
@@ -45,16 +45,16 @@ Result<Bytes> FileSource::read(const fs::path& path) {
     const bool known =
         std::any_of(files_.begin(), files_.end(), [&](const SourceFile& file) { return file.path == name; });
     if (!known) {
-        files_.push_back({name, bytes->size(), hashBytes(*bytes)});
+        files_.push_back({name, bytes->size(), base::hashBytes(*bytes)});
     }
     return bytes;
 }
 
-Result<Bytes> FileSource::readScene() {
+Result<base::Bytes> FileSource::readScene() {
     return read(scenePath_);
 }
 
-Result<Bytes> FileSource::readRelative(std::string_view uri, const std::string& where) {
+Result<base::Bytes> FileSource::readRelative(std::string_view uri, const std::string& where) {
     const std::string decoded = percentDecode(uri);
     const auto refuse = [&](std::string_view why) {
         return makeError("uri-unsafe", where, fmt::format("the URI \"{}\" {}", uri, why),
@@ -72,7 +72,7 @@ Result<Bytes> FileSource::readRelative(std::string_view uri, const std::string& 
     if (links_ == OuterLinks::Refuse && !liesWithin(path, folder)) {
         return refuse("leaves the scene's folder through a symbolic link, which strict paths forbid");
     }
-    Result<Bytes> bytes = read(path);
+    Result<base::Bytes> bytes = read(path);
     if (!bytes) {
         const Diagnostic& error = bytes.error();
         return makeError(error.id, where, fmt::format("\"{}\": {}", path.string(), error.message),

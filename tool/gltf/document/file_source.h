@@ -24,11 +24,11 @@ public:
     FileSource(const std::filesystem::path& scenePath, std::uint64_t maxBytes, OuterLinks links);
 
     // Reads the scene's own file.
-    Result<Bytes> readScene();
+    Result<base::Bytes> readScene();
 
     // Reads the file that a relative URI of the scene names. The place of errors is `where`: "uri-unsafe",
     // "file-open", "file-size", "file-read".
-    Result<Bytes> readRelative(std::string_view uri, const std::string& where);
+    Result<base::Bytes> readRelative(std::string_view uri, const std::string& where);
 
     // Lists each file once, in the order of opening.
     const std::vector<SourceFile>& files() const {
@@ -36,7 +36,7 @@ public:
     }
 
 private:
-    Result<Bytes> read(const std::filesystem::path& path);
+    Result<base::Bytes> read(const std::filesystem::path& path);
 
     std::filesystem::path scenePath_;
     std::uint64_t bytesLeft_;

@@ -15,7 +15,7 @@ constexpr std::array kTransformRules{rules::numbers("offset", 2), rules::number(
                                      rules::integer("texCoord", 0.0, rules::kMaxInt)};
 constexpr std::array kTextureInfoExtensions{rules::object("KHR_texture_transform", kTransformRules)};
 
-Rule parameterRule(const Parameter& parameter, std::string_view name) {
+Rule parameterRule(const materials::Parameter& parameter, std::string_view name) {
     Rule rule = parameter.channels == 1 ? rules::number(name)
                                         : rules::numbers(name, static_cast<std::size_t>(parameter.channels));
     if (std::isinf(parameter.high)) {
@@ -29,11 +29,11 @@ Rule parameterRule(const Parameter& parameter, std::string_view name) {
 
 }  // namespace
 
-MaterialRules::MaterialRules(const MaterialModel& model) {
+MaterialRules::MaterialRules(const materials::MaterialModel& model) {
     std::vector<Rule> extensions;
     material_ = rulesOf(model, 0);
     for (std::size_t i = 1; i < model.objects.size(); ++i) {
-        const MaterialObject& object = model.objects[i];
+        const materials::MaterialObject& object = model.objects[i];
         nested_.push_back(rulesOf(model, static_cast<int>(i)));
         (object.isExtension ? extensions : material_).push_back(rules::object(object.name, nested_.back()));
     }
@@ -44,22 +44,22 @@ MaterialRules::MaterialRules(const MaterialModel& model) {
     }
 }
 
-std::vector<Rule> MaterialRules::rulesOf(const MaterialModel& model, int object) {
+std::vector<Rule> MaterialRules::rulesOf(const materials::MaterialModel& model, int object) {
     std::vector<Rule> found;
-    for (const Parameter& parameter : model.parameters) {
+    for (const materials::Parameter& parameter : model.parameters) {
         if (parameter.object == object && parameter.place.find('/') == std::string::npos) {
             found.push_back(parameterRule(parameter, parameter.place));
         }
     }
-    for (const MaterialTexture& texture : model.textures) {
-        for (const MaterialTexture::Place& place : texture.places) {
+    for (const materials::MaterialTexture& texture : model.textures) {
+        for (const materials::MaterialTexture::Place& place : texture.places) {
             if (place.object != object) {
                 continue;
             }
             std::vector<Rule>& info = nested_.emplace_back();
             info = {rules::index("index", "/textures", true), rules::integer("texCoord", 0.0, rules::kMaxInt),
                     rules::object("extensions", kTextureInfoExtensions)};
-            for (const Parameter& parameter : model.parameters) {
+            for (const materials::Parameter& parameter : model.parameters) {
                 // A parameter beside a texture: "normalTexture/scale".
                 const std::string_view where = parameter.place;
                 if (parameter.object == object && where.starts_with(place.member + "/")) {

@@ -14,7 +14,7 @@ namespace glint::gltf {
 // The model must outlive the rules.
 class MaterialRules {
 public:
-    explicit MaterialRules(const MaterialModel& model);
+    explicit MaterialRules(const materials::MaterialModel& model);
     MaterialRules(const MaterialRules&) = delete;
     MaterialRules& operator=(const MaterialRules&) = delete;
 
@@ -23,7 +23,7 @@ public:
     }
 
 private:
-    std::vector<Rule> rulesOf(const MaterialModel& model, int object);
+    std::vector<Rule> rulesOf(const materials::MaterialModel& model, int object);
 
     std::deque<std::vector<Rule>> nested_;  // Rule::rules point into it.
     std::vector<Rule> material_;

@@ -26,13 +26,14 @@ void ObjectReader::warn(std::string_view member, std::string message, std::strin
     document_.warn("material-range", pointerTo(member), std::move(message), std::move(hint));
 }
 
-Status ObjectReader::texture(std::string_view member, TextureTable& textures, TextureInfo& info) const {
+Status ObjectReader::texture(std::string_view member, TextureTable& textures,
+                             materials::TextureInfo& info) const {
     const Json* json = find(object_, member);
     if (json == nullptr) {
         return okStatus();
     }
     const Json* texCoord = find(*json, "texCoord");
-    TextureInfo read;
+    materials::TextureInfo read;
     if (const Json* transform = findExtension(*json, "KHR_texture_transform")) {
         read.hasTransform = true;
         read.transform.offset = pairAt(*transform, "offset", read.transform.offset);

@@ -22,7 +22,7 @@ public:
     std::string pointerTo(std::string_view member) const;
     // Reads the texture info of that name into `info`. If there is none, or none that can be used, `info`
     // stays as it is.
-    Status texture(std::string_view member, TextureTable& textures, TextureInfo& info) const;
+    Status texture(std::string_view member, TextureTable& textures, materials::TextureInfo& info) const;
     void warn(std::string_view member, std::string message, std::string hint) const;
 
 private:

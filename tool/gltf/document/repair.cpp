@@ -14,34 +14,34 @@ namespace {
 
 constexpr const char* kRepairHint = "repair the mesh, or export it again";
 
-Double3 widen(const Float3& v) {
+base::Double3 widen(const Float3& v) {
     return {v[0], v[1], v[2]};
 }
 
-Double3 subtract(const Float3& a, const Float3& b) {
+base::Double3 subtract(const Float3& a, const Float3& b) {
     return {static_cast<double>(a[0]) - b[0], static_cast<double>(a[1]) - b[1],
             static_cast<double>(a[2]) - b[2]};
 }
 
 // Returns a vector of unit length, or nothing if the vector is zero or not finite. Doubles can hold the
 // squares of all floats. Products of two squared floats underflow only far below what a float can hold.
-std::optional<Float3> unitVector(const Double3& v) {
+std::optional<Float3> unitVector(const base::Double3& v) {
     const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (!std::isfinite(largest) || largest == 0.0) {
         return std::nullopt;
     }
-    const Double3 scaled{v[0] / largest, v[1] / largest, v[2] / largest};
+    const base::Double3 scaled{v[0] / largest, v[1] / largest, v[2] / largest};
     const double length = std::hypot(scaled[0], scaled[1], scaled[2]);
     const Float3 unit{static_cast<float>(scaled[0] / length), static_cast<float>(scaled[1] / length),
                       static_cast<float>(scaled[2] / length)};
-    return isFinite(unit) ? std::optional(unit) : std::nullopt;
+    return base::isFinite(unit) ? std::optional(unit) : std::nullopt;
 }
 
 void dropBrokenTriangles(Document& document, Primitive& primitive) {
     std::vector<bool> broken(primitive.positions.size());
     std::size_t brokenCount = 0;
     for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
-        if (!isFinite(primitive.positions[i])) {
+        if (!base::isFinite(primitive.positions[i])) {
             broken[i] = true;
             primitive.positions[i] = {};
             ++brokenCount;
@@ -74,8 +74,8 @@ std::vector<Float3> adjacentNormals(const Primitive& primitive, const std::vecto
     const auto& indices = primitive.indices;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const Float3& origin = primitive.positions[indices[i]];
-        const auto normal = unitVector(cross(subtract(primitive.positions[indices[i + 1]], origin),
-                                             subtract(primitive.positions[indices[i + 2]], origin)));
+        const auto normal = unitVector(base::cross(subtract(primitive.positions[indices[i + 1]], origin),
+                                                   subtract(primitive.positions[indices[i + 2]], origin)));
         for (std::size_t corner = i; normal && corner < i + 3; ++corner) {
             const std::uint32_t vertex = indices[corner];
             if (wanted[vertex] && !found[vertex]) {
@@ -112,9 +112,10 @@ void repairNormals(Document& document, Primitive& primitive) {
 
 // Returns a unit vector at right angles to `normal`.
 Float3 anyTangent(const Float3& normal) {
-    const Double3 n = widen(normal);
-    const Double3 axis = std::abs(n[0]) < 0.5 ? Double3{1.0, 0.0, 0.0} : Double3{0.0, 1.0, 0.0};
-    return unitVector(cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
+    const base::Double3 n = widen(normal);
+    const base::Double3 axis =
+        std::abs(n[0]) < 0.5 ? base::Double3{1.0, 0.0, 0.0} : base::Double3{0.0, 1.0, 0.0};
+    return unitVector(base::cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
 }
 
 void repairTangents(Document& document, Primitive& primitive) {
@@ -140,7 +141,7 @@ void replaceNonFinite(Document& document, const Primitive& primitive,
                       std::vector<std::array<float, N>>& values, float substitute, const char* attribute) {
     std::size_t count = 0;
     for (std::array<float, N>& value : values) {
-        if (!isFinite(value)) {
+        if (!base::isFinite(value)) {
             value.fill(substitute);
             ++count;
         }

@@ -35,7 +35,7 @@ int base64Digit(char c) {
     return c == '/' || c == '_' ? 63 : -1;
 }
 
-std::optional<Bytes> decodeBase64(std::string_view text) {
+std::optional<base::Bytes> decodeBase64(std::string_view text) {
     while (!text.empty() && text.back() == '=') {
         text.remove_suffix(1);
     }
@@ -43,7 +43,7 @@ std::optional<Bytes> decodeBase64(std::string_view text) {
     if (text.size() % 4 == 1) {
         return std::nullopt;
     }
-    Bytes bytes;
+    base::Bytes bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
     int bitCount = 0;
@@ -92,7 +92,7 @@ std::optional<DataUri> decodeDataUri(std::string_view uri) {
     if (base64) {
         // '+', '/' and '=' may be percent-encoded.
         const bool encoded = payload.find('%') != std::string_view::npos;
-        std::optional<Bytes> bytes = decodeBase64(encoded ? percentDecode(payload) : payload);
+        std::optional<base::Bytes> bytes = decodeBase64(encoded ? percentDecode(payload) : payload);
         if (!bytes) {
             return std::nullopt;
         }

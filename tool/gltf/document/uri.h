@@ -11,7 +11,7 @@ namespace glint::gltf {
 
 struct DataUri {
     std::string mimeType;  // may be empty
-    Bytes bytes;
+    base::Bytes bytes;
 };
 
 bool isDataUri(std::string_view uri);

@@ -114,7 +114,7 @@ constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
 // The rules of a whole document whose materials are made as `model` says.
 class RootRules {
 public:
-    explicit RootRules(const MaterialModel& model)
+    explicit RootRules(const materials::MaterialModel& model)
         : material_(model),
           attributes_(attributeRules(model)),
           primitive_(with(kPrimitive, object("attributes", attributes_, true))),
@@ -147,9 +147,9 @@ private:
         all.push_back(further);
         return all;
     }
-    static std::vector<Rule> attributeRules(const MaterialModel& model) {
+    static std::vector<Rule> attributeRules(const materials::MaterialModel& model) {
         std::vector<Rule> rules(kAttributeRules.begin(), kAttributeRules.end());
-        for (const VertexAttribute& attribute : model.attributes) {
+        for (const materials::VertexAttribute& attribute : model.attributes) {
             rules.push_back(index(attribute.gltf, "/accessors"));
         }
         return rules;
@@ -217,7 +217,7 @@ std::optional<SchemaError> checkCameras(const Json& root) {
 
 }  // namespace
 
-std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model) {
+std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model) {
     const RootRules rules(model);
     if (auto error = checkObject(root, root, rules.rules(), "")) {
         return error;
@@ -239,7 +239,7 @@ std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model)
     return std::nullopt;
 }
 
-std::vector<bool> usedAccessors(const Json& root, const MaterialModel& model) {
+std::vector<bool> usedAccessors(const Json& root, const materials::MaterialModel& model) {
     std::vector<bool> used(arraySize(root, "/accessors"));
     const auto use = [&](const Json& object, std::string_view name) {
         if (const Json* accessor = find(object, name)) {
@@ -251,7 +251,7 @@ std::vector<bool> usedAccessors(const Json& root, const MaterialModel& model) {
             for (const char* name : kAttributes) {
                 use(primitive["attributes"], name);
             }
-            for (const VertexAttribute& attribute : model.attributes) {
+            for (const materials::VertexAttribute& attribute : model.attributes) {
                 use(primitive["attributes"], attribute.gltf);
             }
             for (const Json& target : arrayMember(primitive, "targets")) {

@@ -11,10 +11,10 @@ namespace glint::gltf {
 
 // Checks types, ranges and references of everything that the importer reads. It checks only the accessors
 // that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare.
-std::optional<SchemaError> checkDocument(Json& root, const MaterialModel& model);
+std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model);
 
 // Returns for each accessor whether the importer reads it. Only these have been checked.
-std::vector<bool> usedAccessors(const Json& root, const MaterialModel& model);
+std::vector<bool> usedAccessors(const Json& root, const materials::MaterialModel& model);
 
 // The attributes of primitives that the importer reads.
 inline constexpr const char* kAttributes[] = {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-namespace glint {
+namespace glint::gltf {
 
 namespace {
 
@@ -55,59 +55,59 @@ constexpr int kPartCount = 3;
 // A texture's place in the JSON of a material.
 struct TexturePlace {
     int texture = 0;
-    const MaterialTexture::Place* place = nullptr;
+    const materials::MaterialTexture::Place* place = nullptr;
 };
 
-std::vector<TexturePlace> texturePlaces(const MaterialModel& model) {
+std::vector<TexturePlace> texturePlaces(const materials::MaterialModel& model) {
     std::vector<TexturePlace> places;
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        for (const MaterialTexture::Place& place : model.textures[i].places) {
+        for (const materials::MaterialTexture::Place& place : model.textures[i].places) {
             places.push_back({static_cast<int>(i), &place});
         }
     }
     return places;
 }
 
-int parameterCount(const MaterialModel& model) {
+int parameterCount(const materials::MaterialModel& model) {
     return static_cast<int>(model.parameters.size());
 }
 
 // Returns the parameter, or null if the property is a transform.
-const Parameter* parameterOf(const MaterialModel& model, int property) {
+const materials::Parameter* parameterOf(const materials::MaterialModel& model, int property) {
     return property < parameterCount(model) ? &model.parameters[static_cast<std::size_t>(property)] : nullptr;
 }
 
-int partOf(const MaterialModel& model, int property) {
+int partOf(const materials::MaterialModel& model, int property) {
     return (property - parameterCount(model)) % kPartCount;
 }
 
-TexturePlace placeOf(const MaterialModel& model, int property) {
+TexturePlace placeOf(const materials::MaterialModel& model, int property) {
     return texturePlaces(model)[static_cast<std::size_t>((property - parameterCount(model)) / kPartCount)];
 }
 
-std::string pathOf(const MaterialModel& model, int object, std::string_view place) {
-    const MaterialObject& row = model.objects[static_cast<std::size_t>(object)];
+std::string pathOf(const materials::MaterialModel& model, int object, std::string_view place) {
+    const materials::MaterialObject& row = model.objects[static_cast<std::size_t>(object)];
     return fmt::format("{}{}{}{}", row.isExtension ? "extensions/" : "", row.name,
                        row.name.empty() ? "" : "/", place);
 }
 
-std::string propertyPath(const MaterialModel& model, int property) {
-    if (const Parameter* parameter = parameterOf(model, property)) {
+std::string propertyPath(const materials::MaterialModel& model, int property) {
+    if (const materials::Parameter* parameter = parameterOf(model, property)) {
         return pathOf(model, parameter->object, parameter->place);
     }
-    const MaterialTexture::Place& place = *placeOf(model, property).place;
+    const materials::MaterialTexture::Place& place = *placeOf(model, property).place;
     return pathOf(model, place.object,
                   fmt::format("{}/extensions/KHR_texture_transform/{}", place.member,
                               kTransformParts[partOf(model, property)]));
 }
 
 // Returns the first number of a material property.
-float* firstOf(Material& material, int property) {
-    const MaterialModel& model = material.model();
-    if (const Parameter* parameter = parameterOf(model, property)) {
+float* firstOf(materials::Material& material, int property) {
+    const materials::MaterialModel& model = material.model();
+    if (const materials::Parameter* parameter = parameterOf(model, property)) {
         return &material.values[static_cast<std::size_t>(parameter->first)];
     }
-    TextureTransform& transform =
+    materials::TextureTransform& transform =
         material.textures[static_cast<std::size_t>(placeOf(model, property).texture)].transform;
     switch (partOf(model, property)) {
         case kOffset:
@@ -126,20 +126,20 @@ double settled(const AnimatableProperty<Object, Number>& row, double value) {
 }
 
 // Returns the value as the material stores it.
-float heldValue(const MaterialModel& model, int property, double value) {
-    const Parameter* const parameter = parameterOf(model, property);
+float heldValue(const materials::MaterialModel& model, int property, double value) {
+    const materials::Parameter* const parameter = parameterOf(model, property);
     return parameter != nullptr ? parameter->hold(value) : static_cast<float>(std::clamp(value, -kMax, kMax));
 }
 
 // A material reads only one of the two base models.
-bool isRead(const Material& material, int property) {
-    const Parameter* const parameter = parameterOf(material.model(), property);
+bool isRead(const materials::Material& material, int property) {
+    const materials::Parameter* const parameter = parameterOf(material.model(), property);
     return parameter == nullptr || material.reads(parameter->object);
 }
 
 }  // namespace
 
-std::optional<int> findMaterialProperty(const MaterialModel& model, std::string_view name) {
+std::optional<int> findMaterialProperty(const materials::MaterialModel& model, std::string_view name) {
     for (int property = 0; property < materialPropertyCount(model); ++property) {
         if (propertyPath(model, property) == name) {
             return property;
@@ -156,18 +156,18 @@ std::optional<int> findCameraProperty(std::string_view name) {
     return findByName(kCameras, name);
 }
 
-int materialPropertyCount(const MaterialModel& model) {
+int materialPropertyCount(const materials::MaterialModel& model) {
     return parameterCount(model) + kPartCount * static_cast<int>(texturePlaces(model).size());
 }
 
-std::string materialPropertyName(const MaterialModel& model, int property) {
+std::string materialPropertyName(const materials::MaterialModel& model, int property) {
     const std::string name = propertyPath(model, property);
     constexpr std::string_view kExtensions = "extensions/";
     return name.starts_with(kExtensions) ? name.substr(kExtensions.size()) : name;
 }
 
-std::size_t materialPropertyWidth(const MaterialModel& model, int property) {
-    const Parameter* const parameter = parameterOf(model, property);
+std::size_t materialPropertyWidth(const materials::MaterialModel& model, int property) {
+    const materials::Parameter* const parameter = parameterOf(model, property);
     return parameter != nullptr                   ? static_cast<std::size_t>(parameter->channels)
            : partOf(model, property) == kRotation ? 1U
                                                   : 2U;
@@ -177,7 +177,7 @@ std::size_t lightPropertyWidth(int property) {
     return kLightValues[property].width;
 }
 
-void setMaterialProperty(Material& material, int property, std::span<const double> values) {
+void setMaterialProperty(materials::Material& material, int property, std::span<const double> values) {
     if (!isRead(material, property)) {
         return;
     }
@@ -210,20 +210,21 @@ void settleCamera(Camera& camera) {
     }
 }
 
-double materialPropertyValue(const Material& material, int property, std::size_t number) {
-    Material copy = material;
+double materialPropertyValue(const materials::Material& material, int property, std::size_t number) {
+    materials::Material copy = material;
     return firstOf(copy, property)[number];
 }
 
-bool setPropertyRange(Material& material, int property, std::size_t number, ValueRange range) {
+bool setPropertyRange(materials::Material& material, int property, std::size_t number, ValueRange range) {
     if (!isRead(material, property)) {
         return false;
     }
-    const MaterialModel& model = material.model();
+    const materials::MaterialModel& model = material.model();
     const bool varies = range.low != range.high;
-    const Parameter* const parameter = parameterOf(model, property);
+    const materials::Parameter* const parameter = parameterOf(model, property);
     if (parameter == nullptr) {
-        TextureInfo& info = material.textures[static_cast<std::size_t>(placeOf(model, property).texture)];
+        materials::TextureInfo& info =
+            material.textures[static_cast<std::size_t>(placeOf(model, property).texture)];
         info.moves = info.moves || varies;
         return varies;
     }
@@ -233,12 +234,12 @@ bool setPropertyRange(Material& material, int property, std::size_t number, Valu
         }
     }
     const bool turns = parameter->isAngle && varies;
-    const ValueInterval held{parameter->hold(range.low), parameter->hold(range.high)};
+    const materials::ValueInterval held{parameter->hold(range.low), parameter->hold(range.high)};
     material.ranges[static_cast<std::size_t>(parameter->first) + number] =
-        turns ? ValueInterval{-std::numbers::pi, std::numbers::pi}
-              : hull({held.low, held.low}, {held.high, held.high});
+        turns ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
+              : materials::hull({held.low, held.low}, {held.high, held.high});
     // Values that are clamped to one are always the same.
     return turns || held.low != held.high;
 }
 
-}  // namespace glint
+}  // namespace glint::gltf

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace glint {
+namespace glint::gltf {
 
 // The numbers of a property are adjacent in its object. Values outside [low, high] are clamped.
 template <typename Object, typename Number>
@@ -28,22 +28,22 @@ struct AnimatableProperty {
 // of its model, then its texture transforms. Each place of a texture has three of those, in this order:
 // offset, rotation, scale.
 
-std::optional<int> findMaterialProperty(const MaterialModel& model, std::string_view name);
+std::optional<int> findMaterialProperty(const materials::MaterialModel& model, std::string_view name);
 std::optional<int> findLightProperty(std::string_view name);
 // `name` starts with the camera's type: "perspective/yfov".
 std::optional<int> findCameraProperty(std::string_view name);
 
 // All numbers of material properties are below this.
-int materialPropertyCount(const MaterialModel& model);
+int materialPropertyCount(const materials::MaterialModel& model);
 // Returns the name without "extensions/" at its start.
-std::string materialPropertyName(const MaterialModel& model, int property);
+std::string materialPropertyName(const materials::MaterialModel& model, int property);
 
-std::size_t materialPropertyWidth(const MaterialModel& model, int property);
+std::size_t materialPropertyWidth(const materials::MaterialModel& model, int property);
 std::size_t lightPropertyWidth(int property);
 
 // `values` has as many numbers as the property is wide. If the material does not read the base model of the
 // property, the property stays as it is.
-void setMaterialProperty(Material& material, int property, std::span<const double> values);
+void setMaterialProperty(materials::Material& material, int property, std::span<const double> values);
 void setLightProperty(Light& light, int property, std::span<const double> values);
 void setCameraProperty(Camera& camera, int property, double value);
 
@@ -59,10 +59,10 @@ struct ValueRange {
 };
 
 // Returns the number that the material has.
-double materialPropertyValue(const Material& material, int property, std::size_t number);
+double materialPropertyValue(const materials::Material& material, int property, std::size_t number);
 
 // `range` bounds all values that the number takes. Planning reads the range in place of the value. Returns
 // false if the number is always the same.
-bool setPropertyRange(Material& material, int property, std::size_t number, ValueRange range);
+bool setPropertyRange(materials::Material& material, int property, std::size_t number, ValueRange range);
 
-}  // namespace glint
+}  // namespace glint::gltf

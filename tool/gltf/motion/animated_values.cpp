@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint {
+namespace glint::gltf {
 
 namespace {
 
@@ -76,7 +76,7 @@ MaterialRanges materialRanges(const Scene& scene) {
     forEachChannel(scene, AnimationPath::Material,
                    [&](const AnimationChannel& channel, const AnimationSampler& sampler) {
                        std::vector<ValueRange>& ranges = all[{channel.target, channel.property}];
-                       const Material& rest =
+                       const materials::Material& rest =
                            scene.animatedMaterials[static_cast<std::size_t>(channel.target)].rest;
                        for (std::size_t i = ranges.size(); i < sampler.width; ++i) {
                            const double value = materialPropertyValue(rest, channel.property, i);
@@ -89,7 +89,8 @@ MaterialRanges materialRanges(const Scene& scene) {
     return all;
 }
 
-std::string describe(const MaterialModel& model, int property, const std::vector<ValueRange>& ranges) {
+std::string describe(const materials::MaterialModel& model, int property,
+                     const std::vector<ValueRange>& ranges) {
     std::string text = materialPropertyName(model, property);
     for (const ValueRange& range : ranges) {
         text +=
@@ -168,15 +169,13 @@ void settleLights(Scene& scene) {
 
 }  // namespace
 
-std::vector<Material> planningMaterials(const Scene& scene) {
-    std::vector<Material> materials = scene.materials;
+std::vector<materials::Material> planningMaterials(const Scene& scene) {
+    std::vector<materials::Material> materials = scene.materials;
     for (const AnimatedMaterial& animated : scene.animatedMaterials) {
         materials[static_cast<std::size_t>(animated.material)] = animated.planned;
     }
     return materials;
 }
-
-namespace gltf {
 
 void settleAnimatedValues(Scene& scene) {
     settleMaterials(scene);
@@ -190,6 +189,4 @@ void settleAnimatedValues(Scene& scene) {
     }
 }
 
-}  // namespace gltf
-
-}  // namespace glint
+}  // namespace glint::gltf

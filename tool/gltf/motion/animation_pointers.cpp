@@ -260,7 +260,7 @@ private:
     }
 
     const Json& json_;
-    const MaterialModel& model_;
+    const materials::MaterialModel& model_;
     const Scene& scene_;
     const NodeNumbers& numbers_;
     Tokens tokens_;

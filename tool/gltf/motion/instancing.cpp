@@ -74,7 +74,7 @@ private:
         std::size_t damaged = 0;
         for (std::size_t i = 0; i < values.size(); ++i) {
             std::copy_n(&elements->values[i * N], N, values[i].begin());
-            if (!isFinite(values[i])) {
+            if (!base::isFinite(values[i])) {
                 values[i].fill(0.0F);
                 ++damaged;
             }

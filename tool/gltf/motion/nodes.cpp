@@ -147,8 +147,8 @@ Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
     }
     const auto triple = [&](const char* name, double fallback) {
         const std::vector<double> values = numbersMember(json, name);
-        return values.size() == 3 ? Double3{values[0], values[1], values[2]}
-                                  : Double3{fallback, fallback, fallback};
+        return values.size() == 3 ? base::Double3{values[0], values[1], values[2]}
+                                  : base::Double3{fallback, fallback, fallback};
     };
     placed.rest = {triple("translation", 0.0),
                    readRotation(document, numbersMember(json, "rotation"), pointer), triple("scale", 1.0)};

@@ -22,7 +22,8 @@ Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
     return product;
 }
 
-Matrix4 compose(const Double3& translation, const std::array<double, 4>& rotation, const Double3& scale) {
+Matrix4 compose(const base::Double3& translation, const std::array<double, 4>& rotation,
+                const base::Double3& scale) {
     const auto [x, y, z, w] = rotation;
     const auto [sx, sy, sz] = scale;
     return {(1 - 2 * (y * y + z * z)) * sx,
@@ -44,9 +45,9 @@ Matrix4 compose(const Double3& translation, const std::array<double, 4>& rotatio
 }
 
 Matrix4 instanceTransform(const Instancing& instancing, std::size_t index) {
-    Double3 translation{};
+    base::Double3 translation{};
     std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};
-    Double3 scale{1.0, 1.0, 1.0};
+    base::Double3 scale{1.0, 1.0, 1.0};
     if (!instancing.translations.empty()) {
         std::copy_n(instancing.translations[index].begin(), 3, translation.begin());
     }
@@ -81,19 +82,19 @@ bool fitsFloat(const Matrix4& matrix) {
                        [](double element) { return std::abs(element) <= kLargest; });
 }
 
-std::optional<Double3> normalized(const Double3& v) {
+std::optional<base::Double3> normalized(const base::Double3& v) {
     const double length = std::hypot(v[0], v[1], v[2]);
     // A shorter vector has fewer digits as a float, or none at all.
     constexpr double kShortest = std::numeric_limits<float>::min();
     if (!(length >= kShortest) || !std::isfinite(length)) {
         return std::nullopt;
     }
-    return Double3{v[0] / length, v[1] / length, v[2] / length};
+    return base::Double3{v[0] / length, v[1] / length, v[2] / length};
 }
 
 std::optional<Matrix4> rigidPart(const Matrix4& m) {
     const auto z = normalized({m[8], m[9], m[10]});
-    const Double3 up{m[4], m[5], m[6]};
+    const base::Double3 up{m[4], m[5], m[6]};
     const auto upDirection = normalized(up);
     if (!z || !upDirection) {
         return std::nullopt;
@@ -105,8 +106,8 @@ std::optional<Matrix4> rigidPart(const Matrix4& m) {
     if (!y) {
         return std::nullopt;
     }
-    const Double3 x{(*y)[1] * (*z)[2] - (*y)[2] * (*z)[1], (*y)[2] * (*z)[0] - (*y)[0] * (*z)[2],
-                    (*y)[0] * (*z)[1] - (*y)[1] * (*z)[0]};
+    const base::Double3 x{(*y)[1] * (*z)[2] - (*y)[2] * (*z)[1], (*y)[2] * (*z)[0] - (*y)[0] * (*z)[2],
+                          (*y)[0] * (*z)[1] - (*y)[1] * (*z)[0]};
     return Matrix4{x[0],    x[1],    x[2],    0, (*y)[0], (*y)[1], (*y)[2], 0,
                    (*z)[0], (*z)[1], (*z)[2], 0, m[12],   m[13],   m[14],   1};
 }

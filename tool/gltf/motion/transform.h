@@ -13,7 +13,8 @@ namespace glint::gltf {
 Matrix4 identity();
 Matrix4 multiply(const Matrix4& a, const Matrix4& b);
 // Returns T * R * S. `rotation` is a unit quaternion (x, y, z, w).
-Matrix4 compose(const Double3& translation, const std::array<double, 4>& rotation, const Double3& scale);
+Matrix4 compose(const base::Double3& translation, const std::array<double, 4>& rotation,
+                const base::Double3& scale);
 // Returns the transform of one placement of a mesh relative to its node. `index` is less than the count.
 Matrix4 instanceTransform(const Instancing& instancing, std::size_t index);
 // Returns the world transforms at which the node draws its mesh, one for each placement. There are none if
@@ -23,7 +24,7 @@ std::vector<Matrix4> placesOf(const Scene& scene, const Node& node);
 bool fitsFloat(const Matrix4& matrix);
 
 // Returns nothing if the vector is shorter than the least normal float or not finite.
-std::optional<Double3> normalized(const Double3& v);
+std::optional<base::Double3> normalized(const base::Double3& v);
 
 // Returns the transform's position and directions without scale, shear or mirroring. Z stays, Y is turned to
 // a right angle with it, and X follows. Returns nothing if Y and Z don't span a plane.

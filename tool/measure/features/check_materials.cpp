@@ -48,7 +48,7 @@ const CheckInfo& infoOf(MaterialCheck check) {
 }
 
 Result<FeatureChecks> checkFeature(const FeatureOnDevice& on) {
-    const FeatureCode& code = *on.feature.code;
+    const materials::FeatureCode& code = *on.feature.code;
     FeatureChecks checks;
     checks.feature = code.name;
     checks.declaration = code.declaration;
@@ -110,7 +110,7 @@ bool FeatureChecks::failed() const {
 }
 
 Result<MaterialChecksReport> checkMaterials(const CheckMaterialsOptions& options, const Observer& observer) {
-    const Result<const MaterialModel*> model = loadMaterialModel(options.packs);
+    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(options.packs);
     if (!model) {
         return model.error();
     }

@@ -34,7 +34,7 @@ Direction toDirection(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
 
-bool isFinite(const FeatureKernelOutput& output) {
+bool isFinite(const compiler::FeatureKernelOutput& output) {
     const auto* const first = reinterpret_cast<const float*>(&output);
     return std::all_of(first, first + sizeof(output) / sizeof(float),
                        [](float value) { return std::isfinite(value); });
@@ -60,7 +60,7 @@ void noteFault(Fault& worst, double distance, const char* what) {
     }
 }
 
-Fault faultOf(const FeatureKernelOutput& output, bool isLayer) {
+Fault faultOf(const compiler::FeatureKernelOutput& output, bool isLayer) {
     Fault worst;
     if (!isFinite(output)) {
         return {std::numeric_limits<double>::infinity(), "a value is NaN or infinite"};
@@ -164,18 +164,18 @@ void keepWorst(CheckOutcome& outcome, double value, bool isWorse, bool fails, st
 
 // Calls the evaluator once with the same material and views, to learn the views in the frame of the surface.
 Result<std::vector<Direction>> surfaceViews(const FeatureOnDevice& on, const std::vector<Direction>& views) {
-    std::vector<FeatureKernelInput> inputs;
+    std::vector<compiler::FeatureKernelInput> inputs;
     for (const CheckedMaterial& material : on.feature.materials) {
         for (const Direction& view : views) {
             inputs.push_back(inputOf(on, material, view, {0, 0, 1}));
         }
     }
-    const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
     if (!outputs) {
         return outputs.error();
     }
     std::vector<Direction> found;
-    for (const FeatureKernelOutput& output : *outputs) {
+    for (const compiler::FeatureKernelOutput& output : *outputs) {
         found.push_back(toDirection(output.view));
     }
     return found;
@@ -207,18 +207,18 @@ Result<std::vector<SeenMaterial>> seenMaterials(const FeatureOnDevice& on) {
 
 Result<std::vector<std::vector<Direction>>> sampleAll(const FeatureOnDevice& on,
                                                       const std::vector<SeenMaterial>& seen) {
-    std::vector<FeatureKernelInput> inputs;
+    std::vector<compiler::FeatureKernelInput> inputs;
     inputs.reserve(seen.size() * on.samples);
     for (std::size_t i = 0; i < seen.size(); ++i) {
         for (std::uint32_t k = 0; k < on.samples; ++k) {
-            FeatureKernelInput input = inputOf(on, *seen[i].material, seen[i].view, {0, 0, 1});
+            compiler::FeatureKernelInput input = inputOf(on, *seen[i].material, seen[i].view, {0, 0, 1});
             const std::array<double, 3> u = randomNumbers(i * on.samples + k, 5);
             std::ranges::transform(u, input.random, [](double value) { return static_cast<float>(value); });
-            input.mode = kKernelSamples;
+            input.mode = compiler::kKernelSamples;
             inputs.push_back(input);
         }
     }
-    const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
     if (!outputs) {
         return outputs.error();
     }
@@ -232,7 +232,7 @@ Result<std::vector<std::vector<Direction>>> sampleAll(const FeatureOnDevice& on,
     return samples;
 }
 
-LobeValues valuesOf(const FeatureKernelOutput& output) {
+LobeValues valuesOf(const compiler::FeatureKernelOutput& output) {
     LobeValues values;
     const auto number = [](float value) { return std::isfinite(value) ? static_cast<double>(value) : 0.0; };
     values.density = number(output.density);
@@ -258,11 +258,11 @@ Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::v
     const std::vector<std::vector<Direction>> none(seen.size());
     const Result<std::vector<LobeIntegrals>> integrals =
         integrateLobes(none, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
-            std::vector<FeatureKernelInput> inputs;
+            std::vector<compiler::FeatureKernelInput> inputs;
             for (const LobeQuery& query : queries) {
                 inputs.push_back(inputOf(whole, bases[query.lobe], seen[query.lobe].view, query.direction));
             }
-            const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+            const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
             if (!outputs) {
                 return outputs.error();
             }
@@ -290,8 +290,8 @@ CheckOutcome outcomeOf(MaterialCheck check, double limit) {
 }
 
 // What one combination and view says about each of the checks.
-void judgeIntegrals(const LobeIntegrals& integrals, const FeatureKernelOutput& shares, double baseEnergy,
-                    std::uint32_t samples, const CheckPlace& place, bool isLayer,
+void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKernelOutput& shares,
+                    double baseEnergy, std::uint32_t samples, const CheckPlace& place, bool isLayer,
                     IntegralOutcomes& outcomes) {
     bool isNormalised = true;
     if (isLayer) {
@@ -356,9 +356,9 @@ std::array<double, 3> randomNumbers(std::uint64_t index, std::uint32_t stream) {
     return numbers;
 }
 
-FeatureKernelInput inputOf(const FeatureOnDevice& on, const CheckedMaterial& material, const Direction& view,
-                           const Direction& light) {
-    FeatureKernelInput input;
+compiler::FeatureKernelInput inputOf(const FeatureOnDevice& on, const CheckedMaterial& material,
+                                     const Direction& view, const Direction& light) {
+    compiler::FeatureKernelInput input;
     input.geometry = material.geometry;
     input.lobe = on.lobe;
     // Each combination is looked at in a place of its own, because some features depend on it.
@@ -379,22 +379,22 @@ Result<CheckOutcome> checkRanges(const FeatureOnDevice& on) {
     if (!surfaceView) {
         return surfaceView.error();
     }
-    std::vector<FeatureKernelInput> inputs;
+    std::vector<compiler::FeatureKernelInput> inputs;
     std::vector<CheckPlace> places;
     for (std::size_t i = 0; i < on.feature.materials.size(); ++i) {
         const CheckedMaterial& material = on.feature.materials[i];
         for (std::size_t k = 0; k < views.size(); ++k) {
             const Direction& seen = (*surfaceView)[i * views.size() + k];
             for (const Direction& light : adverseLights(seen)) {
-                FeatureKernelInput input = inputOf(on, material, views[k], light);
-                input.mode = kKernelSamples;
+                compiler::FeatureKernelInput input = inputOf(on, material, views[k], light);
+                input.mode = compiler::kKernelSamples;
                 std::ranges::copy(adverseRandom(inputs.size()), input.random);
                 inputs.push_back(input);
                 places.push_back(placeOf(material, seen, &light));
             }
         }
     }
-    const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
     if (!outputs) {
         return outputs.error();
     }
@@ -430,7 +430,7 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
         return samples.error();
     }
     // Half of the lights are where the lobe is, the others anywhere above the surface.
-    std::vector<FeatureKernelInput> inputs;
+    std::vector<compiler::FeatureKernelInput> inputs;
     for (std::size_t i = 0; i < seen->size(); ++i) {
         for (std::size_t k = 0; k < kPairs; ++k) {
             const std::array<double, 3> u = randomNumbers(k, 6);
@@ -438,21 +438,22 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
             if (k < kPairs / 2 && (*samples)[i][k][2] > 1e-3) {
                 light = (*samples)[i][k];
             }
-            for (const std::uint32_t mode : {0U, kKernelSwaps}) {
-                FeatureKernelInput input = inputOf(on, *(*seen)[i].material, (*seen)[i].view, light);
+            for (const std::uint32_t mode : {0U, compiler::kKernelSwaps}) {
+                compiler::FeatureKernelInput input =
+                    inputOf(on, *(*seen)[i].material, (*seen)[i].view, light);
                 input.mode = mode;
                 inputs.push_back(input);
             }
         }
     }
-    const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
     if (!outputs) {
         return outputs.error();
     }
     outcome.evaluations = inputs.size();
     for (std::size_t i = 0; i + 1 < outputs->size(); i += 2) {
-        const FeatureKernelOutput& there = (*outputs)[i];
-        const FeatureKernelOutput& back = (*outputs)[i + 1];
+        const compiler::FeatureKernelOutput& there = (*outputs)[i];
+        const compiler::FeatureKernelOutput& back = (*outputs)[i + 1];
         if (!isFinite(there) || !isFinite(back)) {
             continue;  // The check of ranges fails.
         }
@@ -460,7 +461,7 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
         double forth = 0.0;
         double other = 0.0;
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            const auto value = [channel](const FeatureKernelOutput& output) {
+            const auto value = [channel](const compiler::FeatureKernelOutput& output) {
                 return output.reflected[channel] > 0.0F ? static_cast<double>(output.reflected[channel]) /
                                                               std::abs(static_cast<double>(output.side))
                                                         : 0.0;
@@ -500,19 +501,19 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     const bool isLayer = on.lobe != 0;
     const Result<std::vector<LobeIntegrals>> integrals =
         integrateLobes(*samples, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
-            std::vector<FeatureKernelInput> inputs;
+            std::vector<compiler::FeatureKernelInput> inputs;
             inputs.reserve(queries.size());
             for (const LobeQuery& query : queries) {
                 const SeenMaterial& one = (*seen)[query.lobe];
                 inputs.push_back(inputOf(on, *one.material, one.view, query.direction));
             }
-            const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+            const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
             if (!outputs) {
                 return outputs.error();
             }
             std::vector<LobeValues> values;
             values.reserve(outputs->size());
-            for (const FeatureKernelOutput& output : *outputs) {
+            for (const compiler::FeatureKernelOutput& output : *outputs) {
                 values.push_back(valuesOf(output));
             }
             return values;
@@ -520,11 +521,11 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     if (!integrals) {
         return integrals.error();
     }
-    std::vector<FeatureKernelInput> straight;
+    std::vector<compiler::FeatureKernelInput> straight;
     for (const SeenMaterial& one : *seen) {
         straight.push_back(inputOf(on, *one.material, one.view, {0, 0, 1}));
     }
-    const Result<std::vector<FeatureKernelOutput>> shares = on.evaluator.run(straight);
+    const Result<std::vector<compiler::FeatureKernelOutput>> shares = on.evaluator.run(straight);
     if (!shares) {
         return shares.error();
     }

@@ -45,7 +45,7 @@ Direction tiltedDirection(double angle, double azimuth);
 // Numbers in [0, 1) that are the same on every machine: two or three for each index.
 std::array<double, 3> randomNumbers(std::uint64_t index, std::uint32_t stream);
 // Makes the input for one evaluation. `light` is in the frame of the surface, `view` in the world.
-FeatureKernelInput inputOf(const FeatureOnDevice& on, const CheckedMaterial& material, const Direction& view,
-                           const Direction& light);
+compiler::FeatureKernelInput inputOf(const FeatureOnDevice& on, const CheckedMaterial& material,
+                                     const Direction& view, const Direction& light);
 
 }  // namespace glint::measure

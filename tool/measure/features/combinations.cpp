@@ -53,20 +53,20 @@ std::vector<Choice> choicesOf(const std::vector<std::vector<float>>& values, std
 
 // What one feature's combinations are made of.
 struct Ingredients {
-    std::vector<const Parameter*> parameters;
+    std::vector<const materials::Parameter*> parameters;
     std::vector<std::vector<float>> values;
-    std::vector<const MaterialTexture*> textures;
+    std::vector<const materials::MaterialTexture*> textures;
 };
 
-Ingredients ingredientsOf(const MaterialModel& model, const FeatureCode& code) {
+Ingredients ingredientsOf(const materials::MaterialModel& model, const materials::FeatureCode& code) {
     Ingredients found;
-    for (const Parameter& parameter : model.parameters) {
+    for (const materials::Parameter& parameter : model.parameters) {
         if (parameter.feature == code.feature && code.feature >= 0 && parameter.aliasOf < 0) {
             found.parameters.push_back(&parameter);
             found.values.push_back(checkedValues(parameter));
         }
     }
-    for (const MaterialTexture& texture : model.textures) {
+    for (const materials::MaterialTexture& texture : model.textures) {
         if (model.features[static_cast<std::size_t>(texture.feature)].lobe == code.feature) {
             found.textures.push_back(&texture);
         }
@@ -74,9 +74,9 @@ Ingredients ingredientsOf(const MaterialModel& model, const FeatureCode& code) {
     return found;
 }
 
-Material baseMaterial(const MaterialModel& model, int number) {
+materials::Material baseMaterial(const materials::MaterialModel& model, int number) {
     const CheckedBase& base = kCheckedBases[number];
-    Material material(model);
+    materials::Material material(model);
     material["baseColorFactor"] = {1.0F, 1.0F, 1.0F, 1.0F};
     material["metallicFactor"] = base.metallic;
     material["roughnessFactor"] = base.roughness;
@@ -84,9 +84,9 @@ Material baseMaterial(const MaterialModel& model, int number) {
 }
 
 // One texture whose texels are at the ends of the range and between, as they come from files.
-void addCheckedTexture(Scene& scene) {
+void addCheckedTexture(gltf::Scene& scene) {
     constexpr int kSide = 8;
-    Image image;
+    gltf::Image image;
     image.name = "checked";
     image.width = kSide;
     image.height = kSide;
@@ -97,21 +97,21 @@ void addCheckedTexture(Scene& scene) {
                                                                          : bits >> 24U));
     }
     scene.images.push_back(std::move(image));
-    Sampler sampler;
+    gltf::Sampler sampler;
     sampler.mipmapped = false;
     scene.samplers.push_back(sampler);
     scene.textures.push_back({0, 0});
 }
 
 // A square of two metres in the plane z = 0, whose front faces +Z.
-Primitive squareOf(int material, const MaterialModel& model) {
-    Primitive square;
-    for (const VertexAttribute& attribute : model.attributes) {
-        if (std::ranges::find(square.attributes, attribute.gltf, &VertexValues::name) !=
+gltf::Primitive squareOf(int material, const materials::MaterialModel& model) {
+    gltf::Primitive square;
+    for (const materials::VertexAttribute& attribute : model.attributes) {
+        if (std::ranges::find(square.attributes, attribute.gltf, &gltf::VertexValues::name) !=
             square.attributes.end()) {
             continue;
         }
-        VertexValues& given = square.attributes.emplace_back();
+        gltf::VertexValues& given = square.attributes.emplace_back();
         given.name = attribute.gltf;
         given.channels = static_cast<std::uint32_t>(attribute.channels);
         for (std::uint32_t i = 0; i < 4 * given.channels; ++i) {
@@ -128,11 +128,11 @@ Primitive squareOf(int material, const MaterialModel& model) {
     return square;
 }
 
-std::uint32_t addSquare(Scene& scene, const Material& material) {
+std::uint32_t addSquare(gltf::Scene& scene, const materials::Material& material) {
     const auto number = static_cast<int>(scene.materials.size());
     scene.materials.push_back(material);
     scene.meshes.push_back({{}, {squareOf(number, material.model())}});
-    Node node;
+    gltf::Node node;
     node.mesh = number;
     for (const std::size_t diagonal : {0U, 5U, 10U, 15U}) {
         node.world[diagonal] = 1.0;
@@ -142,29 +142,30 @@ std::uint32_t addSquare(Scene& scene, const Material& material) {
 }
 
 // Whether the square's key has the feature.
-bool hasFeature(const Material& material, int feature) {
-    PrimitiveInputs inputs;
+bool hasFeature(const materials::Material& material, int feature) {
+    materials::PrimitiveInputs inputs;
     inputs.hasNormals = true;
     inputs.hasTangents = true;
     inputs.hasTexCoords0 = true;
     inputs.attributes = ~std::uint64_t{0};
-    return feature < 0 || (makeKey(material, inputs, {}) &
+    return feature < 0 || (compiler::makeKey(material, inputs, {}) &
                            material.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
 }
 
 // One combination, before it is known whether its key has the feature.
 struct Combined {
-    Material material;
+    materials::Material material;
     CheckPlace place;
 };
 
-Combined combine(const MaterialModel& model, const FeatureCode& code, const Ingredients& ingredients,
-                 const Choice& choice, int base, bool textured) {
+Combined combine(const materials::MaterialModel& model, const materials::FeatureCode& code,
+                 const Ingredients& ingredients, const Choice& choice, int base, bool textured) {
     Combined made{baseMaterial(model, base), {}};
-    made.material.alphaMode = code.opacity.empty() ? AlphaMode::Opaque : AlphaMode::Mask;
+    made.material.alphaMode =
+        code.opacity.empty() ? materials::AlphaMode::Opaque : materials::AlphaMode::Mask;
     made.place.base = kCheckedBases[base].name;
     for (std::size_t i = 0; i < choice.size(); ++i) {
-        const Parameter& parameter = *ingredients.parameters[i];
+        const materials::Parameter& parameter = *ingredients.parameters[i];
         const float value = ingredients.values[i][choice[i]];
         made.material[parameter.name] = value;
         made.place.parameters.emplace_back(
@@ -175,7 +176,7 @@ Combined combine(const MaterialModel& model, const FeatureCode& code, const Ingr
         made.material.give(model.objects[static_cast<std::size_t>(object)].name);
     }
     if (textured) {
-        for (const MaterialTexture* const texture : ingredients.textures) {
+        for (const materials::MaterialTexture* const texture : ingredients.textures) {
             made.material.texture(texture->name).texture = 0;
         }
         made.place.parameters.emplace_back("textures", std::vector<float>{1.0F});
@@ -183,8 +184,9 @@ Combined combine(const MaterialModel& model, const FeatureCode& code, const Ingr
     return made;
 }
 
-std::vector<CheckedMaterial> addCombinations(const MaterialModel& model, const FeatureCode& code,
-                                             std::uint32_t most, Scene& scene) {
+std::vector<CheckedMaterial> addCombinations(const materials::MaterialModel& model,
+                                             const materials::FeatureCode& code, std::uint32_t most,
+                                             gltf::Scene& scene) {
     const Ingredients ingredients = ingredientsOf(model, code);
     std::vector<CheckedMaterial> made;
     std::set<Choice> known;
@@ -216,7 +218,7 @@ std::vector<CheckedMaterial> addCombinations(const MaterialModel& model, const F
 
 }  // namespace
 
-std::vector<float> checkedValues(const Parameter& parameter) {
+std::vector<float> checkedValues(const materials::Parameter& parameter) {
     const double fallback = static_cast<double>(parameter.fallback[0]);
     const bool hasLow = std::isfinite(parameter.low) && parameter.low > -1e30;
     const bool hasHigh = std::isfinite(parameter.high) && parameter.high < 1e30;
@@ -240,14 +242,14 @@ std::vector<float> checkedValues(const Parameter& parameter) {
     return values;
 }
 
-Result<CheckedScene> makeCheckedScene(const MaterialModel& model, std::uint32_t combinations) {
+Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std::uint32_t combinations) {
     CheckedScene made;
     made.scene.path = "check-materials";
     addCheckedTexture(made.scene);
     for (int base = 0; base < static_cast<int>(std::size(kCheckedBases)); ++base) {
         made.bases.push_back(addSquare(made.scene, baseMaterial(model, base)));
     }
-    for (const FeatureCode& code : model.code) {
+    for (const materials::FeatureCode& code : model.code) {
         if (!code.isOfPack) {
             continue;
         }

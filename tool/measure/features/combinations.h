@@ -21,7 +21,7 @@ struct CheckedMaterial {
 };
 
 struct CheckedFeature {
-    const FeatureCode* code = nullptr;
+    const materials::FeatureCode* code = nullptr;
     std::vector<CheckedMaterial> materials;
 };
 
@@ -35,7 +35,7 @@ inline constexpr CheckedBase kCheckedBases[] = {{"white dielectric", 0.0F, 1.0F}
                                                 {"white metal", 1.0F, 0.5F}};
 
 struct CheckedScene {
-    Scene scene;
+    gltf::Scene scene;
     std::vector<CheckedFeature> features;
     std::vector<std::uint32_t> bases;  // the squares that have a base alone
 };
@@ -43,9 +43,9 @@ struct CheckedScene {
 // Makes a square with normals, tangents, UVs and all declared attributes for up to `combinations`
 // combinations of the parameters of each feature of a pack. Combinations for which the feature changes
 // nothing are left out. Error "check-unreachable" if none is left.
-Result<CheckedScene> makeCheckedScene(const MaterialModel& model, std::uint32_t combinations);
+Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std::uint32_t combinations);
 
 // The values at which a parameter is checked: a usual one, the least and the greatest.
-std::vector<float> checkedValues(const Parameter& parameter);
+std::vector<float> checkedValues(const materials::Parameter& parameter);
 
 }  // namespace glint::measure

@@ -14,11 +14,11 @@ namespace {
 constexpr std::size_t kMostOfRun = 1U << 17U;
 
 // The package of the checked scene: as few modules as packages have.
-CompileSettings checkedSettings() {
-    CompileSettings settings;
+compiler::CompileSettings checkedSettings() {
+    compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility;
     settings.tracers = package::kTracerRayQuery;
-    settings.plan.merge = MergePolicy::All;
+    settings.plan.merge = compiler::MergePolicy::All;
     settings.effects = {};
     settings.emitHeader = false;
     return settings;
@@ -26,7 +26,7 @@ CompileSettings checkedSettings() {
 
 }  // namespace
 
-Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const Scene& scene,
+Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::Scene& scene,
                                                                    const CheckMaterialsOptions& options,
                                                                    const Observer& observer) {
     std::unique_ptr<FeatureEvaluator> evaluator(new FeatureEvaluator);
@@ -40,15 +40,15 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const Scene& 
     evaluator->context_ = std::move(*context);
 
     observer.progress("compiling");
-    CompileSettings settings = checkedSettings();
+    compiler::CompileSettings settings = checkedSettings();
     if ((evaluator->context_->handles().tracers & package::kTracerRayQuery) == 0) {
         settings.tracers = package::kTracerRayPipeline;
     }
-    const Result<CompiledPackage> compiled = compilePackage(scene, settings);
+    const Result<compiler::CompiledPackage> compiled = compilePackage(scene, settings);
     if (!compiled) {
         return compiled.error();
     }
-    Result<FeatureKernel> kernel = compileFeatureKernel(scene, compiled->plan, settings);
+    Result<compiler::FeatureKernel> kernel = compileFeatureKernel(scene, compiled->plan, settings);
     if (!kernel) {
         return kernel.error();
     }
@@ -80,22 +80,22 @@ std::uint32_t FeatureEvaluator::lobeOf(const std::string& layer) const {
     return found == layers_.end() ? 0 : static_cast<std::uint32_t>(found - layers_.begin()) + 1;
 }
 
-Result<std::vector<FeatureKernelOutput>> FeatureEvaluator::run(
-    std::span<const FeatureKernelInput> inputs) const {
-    std::vector<FeatureKernelOutput> outputs(inputs.size());
-    constexpr std::size_t kWordsIn = sizeof(FeatureKernelInput) / sizeof(std::uint32_t);
-    constexpr std::size_t kWordsOut = sizeof(FeatureKernelOutput) / sizeof(std::uint32_t);
+Result<std::vector<compiler::FeatureKernelOutput>> FeatureEvaluator::run(
+    std::span<const compiler::FeatureKernelInput> inputs) const {
+    std::vector<compiler::FeatureKernelOutput> outputs(inputs.size());
+    constexpr std::size_t kWordsIn = sizeof(compiler::FeatureKernelInput) / sizeof(std::uint32_t);
+    constexpr std::size_t kWordsOut = sizeof(compiler::FeatureKernelOutput) / sizeof(std::uint32_t);
     for (std::size_t first = 0; first < inputs.size(); first += kMostOfRun) {
         const std::size_t count = std::min(kMostOfRun, inputs.size() - first);
         std::vector<std::uint32_t> words(count * kWordsIn);
-        std::memcpy(words.data(), inputs.data() + first, count * sizeof(FeatureKernelInput));
+        std::memcpy(words.data(), inputs.data() + first, count * sizeof(compiler::FeatureKernelInput));
         const Result<std::vector<std::uint32_t>> found =
             kernel_->run(words, static_cast<std::uint32_t>(count), count * kWordsOut);
         if (!found) {
             return found.error();
         }
         std::memcpy(static_cast<void*>(outputs.data() + first), found->data(),
-                    count * sizeof(FeatureKernelOutput));
+                    count * sizeof(compiler::FeatureKernelOutput));
     }
     return outputs;
 }

@@ -22,7 +22,7 @@ class FeatureEvaluator {
 public:
     // Compiles the scene as pictures of it would be, and the kernel. Reports what the device is. Has the
     // errors of compilePackage(), Context::createHeadless() and GpuScene::upload().
-    static Result<std::unique_ptr<FeatureEvaluator>> create(const Scene& scene,
+    static Result<std::unique_ptr<FeatureEvaluator>> create(const gltf::Scene& scene,
                                                             const CheckMaterialsOptions& options,
                                                             const Observer& observer);
 
@@ -30,7 +30,8 @@ public:
     // layer.
     std::uint32_t lobeOf(const std::string& layer) const;
     // Has the errors of SceneKernel::run().
-    Result<std::vector<FeatureKernelOutput>> run(std::span<const FeatureKernelInput> inputs) const;
+    Result<std::vector<compiler::FeatureKernelOutput>> run(
+        std::span<const compiler::FeatureKernelInput> inputs) const;
     std::string deviceName() const;
     // Has the errors of checkValidation().
     Status validate(const Observer& observer) const;

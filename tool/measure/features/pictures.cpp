@@ -57,7 +57,7 @@ std::vector<DiscPlace> discPlaces(std::uint32_t side, std::uint32_t left, std::u
 Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
     constexpr double kViews[] = {0.1, 0.7, 1.3};
     LinearImage image = blankImage(std::size(kViews) * kDiscSide, kDiscSide, 0.0F);
-    std::vector<FeatureKernelInput> inputs;
+    std::vector<compiler::FeatureKernelInput> inputs;
     std::vector<std::size_t> pixels;
     for (std::uint32_t number = 0; number < std::size(kViews); ++number) {
         for (const DiscPlace& place : discPlaces(kDiscSide, number * kDiscSide, image.width)) {
@@ -68,12 +68,12 @@ Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
             pixels.push_back(place.pixel);
         }
     }
-    const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
     if (!outputs) {
         return outputs.error();
     }
     std::vector<float> brightness;
-    for (const FeatureKernelOutput& output : *outputs) {
+    for (const compiler::FeatureKernelOutput& output : *outputs) {
         brightness.push_back(*std::ranges::max_element(output.reflected));
     }
     std::ranges::sort(brightness);
@@ -93,19 +93,19 @@ Result<FeaturePicture> paintFurnace(const FeatureOnDevice& on) {
     LinearImage image = blankImage(kSphereSide, kSphereSide, kFurnaceGrey);
     const FeatureOnDevice whole{on.evaluator, on.scene, on.feature, 0, on.samples};
     const std::vector<DiscPlace> places = discPlaces(kSphereSide, 0, kSphereSide);
-    std::vector<FeatureKernelInput> inputs;
+    std::vector<compiler::FeatureKernelInput> inputs;
     for (const DiscPlace& place : places) {
         for (std::uint32_t k = 0; k < kSphereSamples; ++k) {
-            FeatureKernelInput input =
+            compiler::FeatureKernelInput input =
                 inputOf(whole, on.feature.materials.front(),
                         tiltedDirection(std::asin(place.radius()), place.azimuth()), {0, 0, 1});
-            input.mode = kKernelSamples;
+            input.mode = compiler::kKernelSamples;
             const std::array<double, 3> u = randomNumbers(place.pixel * kSphereSamples + k, 7);
             std::ranges::transform(u, input.random, [](double value) { return static_cast<float>(value); });
             inputs.push_back(input);
         }
     }
-    const Result<std::vector<FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
+    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
     if (!outputs) {
         return outputs.error();
     }

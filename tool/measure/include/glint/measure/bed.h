@@ -22,9 +22,9 @@
 #include <string_view>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 class ModuleCache;
-}
+}  // namespace glint::compiler
 
 namespace glint::measure {
 
@@ -98,21 +98,21 @@ public:
     // Reads the environment map, and chooses the camera and the device. Messages go to `observer`.
     // `observer`, `scene` and `cache`, which may be null, must outlive the result. Errors of
     // Context::createHeadless() and of files.
-    static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const Settings& base,
-                                                    const Scene& scene, ModuleCache* cache);
+    static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const compiler::Settings& base,
+                                                    const gltf::Scene& scene, compiler::ModuleCache* cache);
 
     // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
     // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
     // ones. Has the errors of each of these steps.
-    Result<Mount> mount(const Configuration& configuration, const std::string& package = {});
+    Result<Mount> mount(const compiler::Configuration& configuration, const std::string& package = {});
 
     Context& context() {
         return *context_;
     }
-    const Settings& base() const {
+    const compiler::Settings& base() const {
         return base_;
     }
-    const Scene& scene() const {
+    const gltf::Scene& scene() const {
         return scene_;
     }
     const std::string& cameraName() const {
@@ -135,15 +135,16 @@ public:
     }
 
 private:
-    BenchBed(const Observer& observer, Settings base, const Scene& scene, ModuleCache* cache)
+    BenchBed(const Observer& observer, compiler::Settings base, const gltf::Scene& scene,
+             compiler::ModuleCache* cache)
         : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache) {}
     Status settleChoices();
-    Result<std::shared_ptr<MountedPackage>> mountPackage(const Settings& arguments);
+    Result<std::shared_ptr<MountedPackage>> mountPackage(const compiler::Settings& arguments);
 
     const Observer& observer_;
-    Settings base_;
-    const Scene& scene_;
-    ModuleCache* cache_;
+    compiler::Settings base_;
+    const gltf::Scene& scene_;
+    compiler::ModuleCache* cache_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;
     CameraView camera_;

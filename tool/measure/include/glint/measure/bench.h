@@ -14,9 +14,9 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 class CacheStore;
-}
+}  // namespace glint::compiler
 
 namespace glint::measure {
 
@@ -46,7 +46,7 @@ struct BenchSettings {
 // strategies, advice. The caller has set the others (file, rounds, seed, batch, quick, metric) before. `plan`
 // is that of the bed's scene and settings. A point that can't be measured is a warning. `store` keeps the
 // reference; it may be null. Errors: of the reference and of the device, "validation".
-Status runBench(const Observer& observer, const BenchSettings& settings, const PlanOptions& plan,
-                BenchBed& bed, CacheStore* store, BenchReport& report);
+Status runBench(const Observer& observer, const BenchSettings& settings, const compiler::PlanOptions& plan,
+                BenchBed& bed, compiler::CacheStore* store, BenchReport& report);
 
 }  // namespace glint::measure

@@ -18,9 +18,9 @@
 #include <string>
 #include <vector>
 
-namespace glint {
+namespace glint::compiler {
 class ModuleCache;
-}
+}  // namespace glint::compiler
 
 namespace glint::measure {
 
@@ -82,7 +82,7 @@ double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member);
 void settleEntry(CalibrationEntry& entry);
 
 struct CalibrationSettings {
-    Settings render;
+    compiler::Settings render;
     std::string output;                // folder of calibration.json
     bool quick = false;                // fewer numbers of cases and of rays
     std::vector<std::uint32_t> cases;  // empty: by `quick`
@@ -99,7 +99,7 @@ inline constexpr const char* kCalibrationFile = "calibration.json";
 inline constexpr const char* kDeviceFile = "device.json";
 
 // Opens the device that `render` names, without a window. Has the errors of Context::createHeadless().
-Result<std::unique_ptr<Context>> openCalibrationDevice(const Settings& render);
+Result<std::unique_ptr<Context>> openCalibrationDevice(const compiler::Settings& render);
 
 // Compiles all scenes, and then measures them one after another. Writes calibration.json after each group of
 // scenes, so that an interrupted run keeps its measurements. The caller has set command, date, machine,
@@ -107,7 +107,7 @@ Result<std::unique_ptr<Context>> openCalibrationDevice(const Settings& render);
 // run and "calibrate-picture" of pictures that are wrong. Errors: of the device, of compiling,
 // "bench-folder", "file-write", "validation".
 Status runCalibration(const Observer& observer, const CalibrationSettings& settings, Context& context,
-                      ModuleCache* cache, CalibrationReport& report);
+                      compiler::ModuleCache* cache, CalibrationReport& report);
 
 // Fits the constants of the device to the calibration.json in `folder`, as scripts do with other
 // measurements, and writes device.json beside it. Too few measurements are a note, and the result is empty.

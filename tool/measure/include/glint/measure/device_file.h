@@ -15,14 +15,14 @@
 namespace glint::measure {
 
 struct DeviceFile {
-    DeviceCosts costs;
+    compiler::DeviceCosts costs;
     FitQuality quality;
 };
 
 // Fits the constants of a device to measurements on it. `device` holds everything except its strategies. Adds
 // notes "calibration-points" about points that were left out. Returns an error with that id if no strategy
 // could be fitted.
-Result<DeviceFile> fitDevice(DeviceCosts device, std::span<const CalibrationPoint> points,
+Result<DeviceFile> fitDevice(compiler::DeviceCosts device, std::span<const CalibrationPoint> points,
                              std::vector<Diagnostic>& notes);
 
 // Returns JSON in the format of docs/schemas/device.json.
@@ -32,7 +32,7 @@ std::string toText(const DeviceFile& file);
 Result<DeviceFile> readDeviceFile(const std::filesystem::path& path);
 
 struct CalibrationPoints {
-    DeviceCosts device;  // without strategies
+    compiler::DeviceCosts device;  // without strategies
     std::vector<CalibrationPoint> points;
 };
 

@@ -20,7 +20,7 @@ namespace glint::measure {
 enum class ErrorMetric { RelMse, Trimmed, Rmse, Flip };
 std::string_view nameOf(ErrorMetric metric);  // as the JSON has it: "relMse"
 ErrorMetric metricNamed(std::string_view name);
-double valueOf(ErrorMetric metric, const ImageErrors& errors);
+double valueOf(ErrorMetric metric, const image::ImageErrors& errors);
 
 enum class PointKind { Default, Single, Pair, Search, Package };
 std::string_view nameOf(PointKind kind);
@@ -31,16 +31,16 @@ inline constexpr std::string_view kShadeCases = "shade cases";
 // Each list has one entry for each round, in the order of rounds. Times are milliseconds of the device.
 struct BenchPoint {
     PointKind kind = PointKind::Single;
-    Configuration configuration;  // what differs from the default
-    std::string name;             // for people
-    std::string package;          // folder of one that was given; empty: compiled
-    std::vector<double> times;    // of a picture
-    std::vector<double> ratios;   // to the default in the same round
+    compiler::Configuration configuration;  // what differs from the default
+    std::string name;                       // for people
+    std::string package;                    // folder of one that was given; empty: compiled
+    std::vector<double> times;              // of a picture
+    std::vector<double> ratios;             // to the default in the same round
     std::map<std::string, std::vector<double>> passes;
     std::vector<double> hitMs;      // what strategies differ in
     std::vector<HitTimes> hits;     // its passes
     std::vector<double> hitRatios;  // of hitMs to that of the default in the same round
-    std::vector<ImageErrors> errors;
+    std::vector<image::ImageErrors> errors;
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
     bool sameImage = true;            // as the default's, bit by bit, in every round
     LinearImage image;                // of the first round

@@ -38,7 +38,8 @@ struct Profile {
 
 // Returns what scenes and plan give, without hits. Requires a plan that gives each key its own case, in the
 // order of the keys.
-Profile makeProfile(const SceneList& scenes, const Plan& plan, const KeyOptions& options);
+Profile makeProfile(const gltf::SceneList& scenes, const compiler::Plan& plan,
+                    const materials::KeyOptions& options);
 
 std::string toText(const Profile& profile);
 
@@ -47,11 +48,12 @@ Result<Profile> readProfile(const std::filesystem::path& path);
 
 // Writes the profile of a picture. `hits` is indexed by shader ID of a plan with `options`, in which every
 // key has its own case. Adds to `warnings` if there are no hits. Has the errors of writeFile().
-Status writeProfile(const std::string& file, const SceneList& scenes, const PlanOptions& options,
-                    std::span<const std::uint64_t> hits, std::vector<Diagnostic>& warnings);
+Status writeProfile(const std::string& file, const gltf::SceneList& scenes,
+                    const compiler::PlanOptions& options, std::span<const std::uint64_t> hits,
+                    std::vector<Diagnostic>& warnings);
 
 struct PlanChoice {
-    PlanOptions options;
+    compiler::PlanOptions options;
     std::vector<Diagnostic> warnings;
     std::vector<Diagnostic> notes;
 };
@@ -60,6 +62,6 @@ struct PlanChoice {
 // policy that `auto` stands for. Notes say what was chosen. Warns of keys that
 // the scene has and the profile lacks, and of a profile that was made with other settings. Has the errors of
 // readProfile().
-Result<PlanChoice> choosePlan(const Settings& settings, const SceneList& scenes);
+Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes);
 
 }  // namespace glint::measure

@@ -16,28 +16,31 @@ namespace glint::measure {
 
 // Returns the facts of the scene and the request on which the values worth trying depend. BenchFacts of the
 // device are left out.
-BenchFacts factsOf(const Settings& settings, const Scene& scene, const PlanOptions& plan);
+compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Scene& scene,
+                             const compiler::PlanOptions& plan);
 
 // Returns whether the picture gets a light that the scene lacks.
-bool addsSun(const Settings& settings, const Scene& scene);
-HeadlessOptions deviceOptions(const Settings& settings);
+bool addsSun(const compiler::Settings& settings, const gltf::Scene& scene);
+HeadlessOptions deviceOptions(const compiler::Settings& settings);
 // Returns the scene as it is uploaded, with the light that it may lack and the sizes of lights.
-scene_view::SceneViewData sceneView(const Settings& settings, const Scene& scene);
+scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gltf::Scene& scene);
 // Gives lights the sizes that the settings ask for.
-void sizeLights(const Settings& settings, scene_view::SceneViewData& scene);
+void sizeLights(const compiler::Settings& settings, scene_view::SceneViewData& scene);
 // Returns the settings of a package with these strategies and tracers.
-CompileSettings compileSettings(const Settings& settings, const PlanOptions& plan);
+compiler::CompileSettings compileSettings(const compiler::Settings& settings,
+                                          const compiler::PlanOptions& plan);
 // Returns the settings of the package that is compiled for a picture if none is given. `tracers` are those of
 // the device.
-CompileSettings compileSettings(const Settings& settings, const PlanOptions& plan, std::uint32_t tracers,
-                                const Scene& scene);
-RendererOptions rendererOptions(const Settings& settings);
+compiler::CompileSettings compileSettings(const compiler::Settings& settings,
+                                          const compiler::PlanOptions& plan, std::uint32_t tracers,
+                                          const gltf::Scene& scene);
+RendererOptions rendererOptions(const compiler::Settings& settings);
 // Returns the sky that `sky` asks for. With `auto` it follows the lights at the pose of `scene`, from which
 // `view` was made. A scene without lights of its own keeps the default sky, to which the sun belongs.
-scene_view::SkyChoice chooseSky(const Settings& settings, const Scene& scene,
+scene_view::SkyChoice chooseSky(const compiler::Settings& settings, const gltf::Scene& scene,
                                 const scene_view::SceneViewData& view);
 // `environment` may be null.
-FrameOptions frameOptions(const Settings& settings, const CameraView& camera,
+FrameOptions frameOptions(const compiler::Settings& settings, const CameraView& camera,
                           const scene_view::SkyChoice& sky, const Environment* environment);
 
 }  // namespace glint::measure

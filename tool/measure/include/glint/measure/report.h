@@ -19,10 +19,10 @@ namespace glint::measure {
 // accuracy needs.
 struct Reference {
     LinearImage image;
-    Configuration configuration;  // over the base
-    std::uint32_t samples = 0;    // a pixel
-    double exposure = 0.0;        // stops: automatic, for every measure and picture of the bench
-    ImageErrors noise;            // of the reference itself
+    compiler::Configuration configuration;  // over the base
+    std::uint32_t samples = 0;              // a pixel
+    double exposure = 0.0;                  // stops: automatic, for every measure and picture of the bench
+    image::ImageErrors noise;               // of the reference itself
     // The root of noise.trimmed. A light that few rays find leaves outliers after any number of samples, and
     // these would otherwise dominate the error.
     double relativeError = 0.0;
@@ -97,7 +97,7 @@ struct BenchReport {
     double seconds = 0.0;
     ErrorMetric metric = ErrorMetric::RelMse;
     Reference reference;
-    Configuration base;
+    compiler::Configuration base;
     std::vector<Setting> settings;
     std::vector<BenchPoint> points;  // the default first
     std::vector<std::size_t> front;  // indices of points, from the fastest

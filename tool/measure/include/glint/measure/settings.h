@@ -27,21 +27,23 @@ struct Setting {
 
 // Returns the settings for which `base`, the default configuration, has a value. With `quick` they have fewer
 // values.
-std::vector<Setting> settingsFor(const BenchFacts& facts, const Configuration& base, bool quick);
+std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compiler::Configuration& base,
+                                 bool quick);
 
 // Returns the configuration of the reference: every approximation is off, and other settings keep their
 // value.
-Configuration exactValues(const BenchFacts& facts);
+compiler::Configuration exactValues(const compiler::BenchFacts& facts);
 
 // Returns `configuration`, to be applied over `base`, without values that have no effect: an ordering if
 // nothing is ordered, and values that equal those of `base`.
-Configuration simplified(const Configuration& configuration, const Configuration& base);
+compiler::Configuration simplified(const compiler::Configuration& configuration,
+                                   const compiler::Configuration& base);
 
 // Returns the value of a setting at a point: its own, or that of `base`.
-const std::string& valueOf(std::string_view name, const Configuration& configuration,
-                           const Configuration& base);
+const std::string& valueOf(std::string_view name, const compiler::Configuration& configuration,
+                           const compiler::Configuration& base);
 
 // Returns "spp 4, ssr 16", or "default" for an empty configuration.
-std::string nameOf(const Configuration& configuration);
+std::string nameOf(const compiler::Configuration& configuration);
 
 }  // namespace glint::measure

@@ -11,11 +11,11 @@
 namespace glint::measure {
 
 // Returns the text of a file. `origin` is the command line that it comes from.
-std::string settingsText(const Configuration& settings, const std::string& origin);
+std::string settingsText(const compiler::Configuration& settings, const std::string& origin);
 
 // Has the errors of readFile(), and "settings-file" if the file has another format or a setting that Glint
 // does not know.
-Result<Configuration> readSettings(const std::filesystem::path& file);
+Result<compiler::Configuration> readSettings(const std::filesystem::path& file);
 
 // Returns the error "settings-file" about the place `pointer` of a file, or about the whole file if that is
 // empty.

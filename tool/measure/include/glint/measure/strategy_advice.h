@@ -20,7 +20,7 @@ namespace glint::measure {
 
 // The constants on which an estimate is based.
 struct KnownCosts {
-    DeviceCosts device;
+    compiler::DeviceCosts device;
     bool builtIn = true;
 };
 // Returns the costs in the file, or the built-in costs for the type of device if no file is named. Has the
@@ -33,19 +33,22 @@ std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
                                             std::optional<package::Tracer> tracer, const Package* package);
 
 // Returns the rounds of a frame of each scene, for all scenes together. `plan` is that of the scenes.
-std::vector<Round> roundsOf(const SceneList& scenes, const Plan& plan, const PlanOptions& options,
-                            const FrameShape& shape);
+std::vector<compiler::Round> roundsOf(const gltf::SceneList& scenes, const compiler::Plan& plan,
+                                      const compiler::PlanOptions& options,
+                                      const compiler::FrameShape& shape);
 
 // Returns the choice among `available`. Error "calibration-strategies" if there are constants for none of
 // them.
-Result<StrategyAdvice> adviseStrategy(const KnownCosts& costs, const std::vector<Round>& rounds,
-                                      const std::vector<std::string>& available, double pixels);
+Result<compiler::StrategyAdvice> adviseStrategy(const KnownCosts& costs,
+                                                const std::vector<compiler::Round>& rounds,
+                                                const std::vector<std::string>& available, double pixels);
 
 // Advises for one scene, before anything is rendered. The candidates are what the device can run: of
 // `package` if it is not null, else of a package that would be compiled by `plan`. Warns "calibration-device"
 // if the calibration is for another device. Has the errors of knownCosts() and adviseStrategy().
-Result<StrategyAdvice> adviseRender(const Settings& arguments, const PlanOptions& plan,
-                                    const Context& context, const Scene& scene, const Package* package,
-                                    std::vector<Diagnostic>& warnings);
+Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& arguments,
+                                              const compiler::PlanOptions& plan, const Context& context,
+                                              const gltf::Scene& scene, const Package* package,
+                                              std::vector<Diagnostic>& warnings);
 
 }  // namespace glint::measure

@@ -66,7 +66,7 @@ struct FitQuality {
 };
 
 struct DeviceFit {
-    std::vector<StrategyCosts> strategies;  // in the order of kStrategyNames
+    std::vector<compiler::StrategyCosts> strategies;  // in the order of kStrategyNames
     FitQuality quality;
     std::vector<std::string> omitted;  // sentences that say which strategy has no constants, or which point
                                        // was not usable
@@ -78,6 +78,6 @@ struct DeviceFit {
 DeviceFit fitStrategies(std::span<const CalibrationPoint> points, double subgroupSize);
 
 // Returns the point in the form that the model takes.
-Round roundOf(const CalibrationPoint& point);
+compiler::Round roundOf(const CalibrationPoint& point);
 
 }  // namespace glint::measure

@@ -14,16 +14,18 @@
 namespace glint::measure {
 
 // Returns one configuration for each value of each setting that differs from the default.
-std::vector<Configuration> singles(std::span<const Setting> settings, const Configuration& base);
+std::vector<compiler::Configuration> singles(std::span<const Setting> settings,
+                                             const compiler::Configuration& base);
 
 // Returns configurations that change two settings whose effects do not simply add up: for instance one that
 // saves time beside the number of samples, or one that shares shaders beside how they are run. With `quick`
 // there are fewer.
-std::vector<Configuration> pairs(std::span<const Setting> settings, const Configuration& base, bool quick);
+std::vector<compiler::Configuration> pairs(std::span<const Setting> settings,
+                                           const compiler::Configuration& base, bool quick);
 
 // A configuration with its time and its error.
 struct Rated {
-    Configuration configuration;
+    compiler::Configuration configuration;
     double time = 0.0;   // any unit
     double error = 0.0;  // of a kind that adds up: relMSE, or squared RMSE
     // Set if the value can't be told from that of the default.
@@ -45,8 +47,9 @@ std::vector<std::size_t> paretoFront(std::span<const Rated> points);
 // both are separable, a sweep over settings finds the front of all combinations exactly. In the second, one
 // setting of each point of the measured front is changed to a neighbouring value, with the ratio and the
 // difference that this value had alone.
-std::vector<Configuration> proposals(std::span<const Setting> settings, const Configuration& base,
-                                     std::span<const Rated> measured, std::size_t count);
+std::vector<compiler::Configuration> proposals(std::span<const Setting> settings,
+                                               const compiler::Configuration& base,
+                                               std::span<const Rated> measured, std::size_t count);
 
 // The measured time and error of a configuration.
 struct Offer {

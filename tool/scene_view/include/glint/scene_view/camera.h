@@ -25,7 +25,7 @@ Bounds worldBounds(const SceneViewData& scene);
 
 // The same at the pose of `scene`, from which `view` was made. For meshes that follow joints or morph targets
 // it uses the deformed vertices.
-Bounds posedBounds(const Scene& scene, const SceneViewData& view);
+Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view);
 
 // Returns the union. An empty box adds nothing.
 Bounds united(const Bounds& a, const Bounds& b);
@@ -37,7 +37,7 @@ CameraView framingCamera(const Bounds& bounds, double aspect);
 
 // Returns camera `index` of the scene, which must have it. Its vertical field of view or height stays, and
 // its width follows `aspect`. Error "camera-matrix" if its node's transform is singular.
-Result<CameraView> sceneCamera(const Scene& scene, std::size_t index, double aspect);
+Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, double aspect);
 
 struct CameraChoice {
     CameraView view;
@@ -45,14 +45,14 @@ struct CameraChoice {
 };
 
 // Returns whether chooseCamera() frames everything instead of taking a camera of the scene.
-bool framesEverything(const Scene& scene, const std::string& wanted);
+bool framesEverything(const gltf::Scene& scene, const std::string& wanted);
 
 // `wanted` is "auto", or the number or name of a camera of the scene. If it is empty, the first camera is
 // used, or "auto" if there is none. Error "camera-unknown".
-Result<CameraChoice> chooseCamera(const Scene& scene, const SceneViewData& view, const std::string& wanted,
-                                  double aspect);
+Result<CameraChoice> chooseCamera(const gltf::Scene& scene, const SceneViewData& view,
+                                  const std::string& wanted, double aspect);
 // The same, with the bounds that an automatic camera frames.
-Result<CameraChoice> chooseCameraAround(const Scene& scene, const Bounds& framed, const std::string& wanted,
-                                        double aspect);
+Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& framed,
+                                        const std::string& wanted, double aspect);
 
 }  // namespace glint::scene_view

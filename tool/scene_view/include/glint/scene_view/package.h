@@ -16,7 +16,7 @@ namespace glint::scene_view {
 
 // Returns the index of the scene within the package: the one with the file's name, or 0 if there is only one.
 // Returns nothing if the package does not know the scene.
-std::optional<std::uint32_t> sceneIn(const Package& package, const Scene& scene);
+std::optional<std::uint32_t> sceneIn(const Package& package, const gltf::Scene& scene);
 
 // The requirements on a package that was compiled earlier.
 struct PackageDemand {
@@ -29,13 +29,14 @@ struct PackageDemand {
 // have the same materials, and for each primitive the same material and features. Error "package-tracer" if
 // it lacks the tracer. `folder` is the place that errors name.
 Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
-                    const Scene& scene);
+                    const gltf::Scene& scene);
 
 // Loads a package that was just compiled, from memory. Has the errors of Package::load().
-Result<Package> loadPackage(const CompiledPackage& compiled);
+Result<Package> loadPackage(const compiler::CompiledPackage& compiled);
 
 // Compiles `scene` and loads the package, without files that the runtime does not read. Modules that `cache`
 // has are not compiled; it may be null. Has the errors of compilePackage().
-Result<Package> compileAndLoad(const Scene& scene, CompileSettings settings, ModuleCache* cache = nullptr);
+Result<Package> compileAndLoad(const gltf::Scene& scene, compiler::CompileSettings settings,
+                               compiler::ModuleCache* cache = nullptr);
 
 }  // namespace glint::scene_view

@@ -37,7 +37,7 @@ struct SceneViewData {
     };
     std::vector<Source> sources;
     // The data to which the spans of primitives, instances and materials point.
-    MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
+    compiler::MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
     std::vector<std::vector<std::uint8_t>> materialRecords;
     std::vector<std::vector<AttributeView>> attributes;
     std::vector<std::vector<MorphTargetView>> targets;
@@ -63,18 +63,18 @@ struct SceneViewData {
 // that are never shown. Positions are in metres, lights in lux (directional) and candela (point and spot).
 // Copies no vertices and no pixels: `scene` must outlive the result. Its images must have been decoded, or
 // the runtime refuses them.
-SceneViewData makeSceneView(const Scene& scene);
+SceneViewData makeSceneView(const gltf::Scene& scene);
 
 // Makes records of materials in the layout of `package`, whose scene `scene` is. A scene with materials that
 // animations change needs this before it is uploaded.
-void useLayoutOf(const Package& package, const Scene& scene, SceneViewData& data);
+void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data);
 
 // Takes the pose of `scene`, from which `data` was made: instances, joints, weights, materials and lights.
 // Lights that were added after those of the scene stay.
-void poseSceneView(const Scene& scene, SceneViewData& data);
+void poseSceneView(const gltf::Scene& scene, SceneViewData& data);
 
 // Returns three rows of four of a column-major matrix.
-std::array<float, 12> toRows(const Matrix4& matrix);
+std::array<float, 12> toRows(const gltf::Matrix4& matrix);
 
 // Returns a light for scenes without one: warm, from the upper left behind the default camera, 3 lux, which
 // is a few times the radiance of the default sky.

@@ -37,7 +37,7 @@ struct LitPatch {
 // which `view` was made. A patch is a triangle, or a part of one if a point or spot light is near. If there
 // are many small triangles, some of them stand for all. The result is deterministic. Triangles that are not
 // finite are left out.
-std::vector<LitPatch> litPatches(const Scene& scene, const SceneViewData& view,
+std::vector<LitPatch> litPatches(const gltf::Scene& scene, const SceneViewData& view,
                                  std::span<const LightView> lights);
 
 // Returns the illuminance of a typical lit surface. It is the log-average by area (Reinhard et al. 2002,
