@@ -17,6 +17,10 @@
 namespace {
 
 using namespace glint;
+using namespace glint::base;
+using namespace glint::materials;
+using namespace glint::gltf;
+using namespace glint::compiler;
 using namespace glint::testing;
 using package::ShadowPlacement;
 
@@ -77,7 +81,7 @@ void expectAllWaysAgree(const Scene& scene, ShadowPlacement shadows, MergePolicy
     settings.tracers = package::kAllTracers;
     settings.shadows = shadows;
     settings.plan.merge = merge;
-    settings.plan.keys.alpha = AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = pathSetup(scene, 32, 24, 2);
