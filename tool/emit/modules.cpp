@@ -59,6 +59,7 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::HitCase, "strategies/hit_shaders/hit_case.rchit.mustache"},
     {ModuleRole::HitUnknown, "strategies/hit_shaders/hit_unknown.rchit"},
     {ModuleRole::HitMiss, "strategies/hit_shaders/hit_miss.rmiss"},
+    {ModuleRole::PathRays, "passes/path_rays.comp"},
     {ModuleRole::Deform, "passes/deform.comp"},
 };
 
@@ -215,7 +216,8 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             static_cast<std::uint32_t>(plan.cases.size()),
             retiredIds(plan),
             std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
-            settings.passes};
+            settings.passes,
+            settings.maxBounces};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,

@@ -6,6 +6,7 @@
 #include "emit/host.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
+#include "emit/modules.h"
 
 #include <fmt/format.h>
 
@@ -113,6 +114,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));
+    text += fmt::format("#define GLINT_PATHS {}\n", flag(package::hasPaths(shapeOf(scenes, plan, settings))));
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());

@@ -101,6 +101,7 @@ compiler::CompileSettings compileSettings(const compiler::Settings& settings,
 RendererOptions rendererOptions(const compiler::Settings& settings) {
     RendererOptions options = settings.renderer;
     options.strategy = settings.strategy.value_or(options.strategy);
+    options.bounces = settings.compile.maxBounces;
     options.checkOrder = settings.validate;
     return options;
 }

@@ -56,6 +56,10 @@ enum class HitRecordFormat : std::uint32_t {
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
 };
 
+// The most bounces that a path may have. It stands for "unlimited": paths that carry little light end
+// earlier.
+inline constexpr std::uint32_t kMaxBounces = 64;
+
 // Which passes a package has.
 enum class Passes : std::uint32_t {
     Frame = 0,  // a whole frame: the raster pass, lighting, effects, and the hits of their rays
@@ -128,6 +132,8 @@ struct PackageHeader {
     Passes passes;
     HitAnswer answer;
     Bindings bindings;
+    std::uint32_t maxBounces;  // of paths: 1 to kMaxBounces
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -183,6 +189,7 @@ enum class ModuleRole : std::uint32_t {
     HitMiss = 24,
     EffectWalk = 25,  // one entry for each effect that follows its rays
     Deform = 26,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
+    PathRays = 27,    // puts the next rays of paths on the list, in packages with several bounces
 };
 
 struct ModuleEntry {
@@ -267,7 +274,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 120);
+static_assert(sizeof(PackageHeader) == 128);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

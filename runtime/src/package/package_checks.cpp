@@ -114,6 +114,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.answer > package::HitAnswer::Surface) {
         return outside("the answer to a ray", static_cast<std::uint32_t>(header.answer));
     }
+    if (header.maxBounces == 0 || header.maxBounces > package::kMaxBounces) {
+        return outside("the number of bounces", header.maxBounces);
+    }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }
@@ -314,6 +317,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     }
     shape.deforms = header.deforms != 0;
     shape.passes = header.passes;
+    shape.maxBounces = header.maxBounces;
     return shape;
 }
 

@@ -198,6 +198,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.alpha = spec.alpha;
     header.precision = spec.precision;
     header.caseCount = spec.caseCount;
+    header.maxBounces = 1;
     header.interopHash = spec.interopHash;
     header.materialTextureOffset = offsetof(TestMaterial, textures);
     header.materialTextureCount = 2;

@@ -274,6 +274,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.passes = settings.passes;
     header.answer = settings.answer;
     header.bindings = settings.bindings;
+    header.maxBounces = settings.maxBounces;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alpha = alpha;
     header.materialTextureOffset = layout.textureOffset;
