@@ -7,6 +7,9 @@
 All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
 package that has those bounces. Prints Markdown: the device time of all passes of a sample, as the median with its
 least and greatest value, and the ratio of each strategy to uber in the same round.
+
+SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
+benchmarks/make_synthetic_scene.py, so that no path leaves it.
 """
 import argparse
 import json
@@ -16,7 +19,37 @@ import statistics
 import subprocess
 import tempfile
 
+from make_synthetic_scene import write_scene
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+SIDE = 8  # squares along an edge of the box
+# Quaternions that turn a square's front from +z to face the box's centre from each of its walls, with the wall's axis.
+WALLS = [(2, -1, (0, 0, 0, 1)), (2, 1, (0, 1, 0, 0)), (0, -1, (0, 0.5 ** 0.5, 0, 0.5 ** 0.5)),
+         (0, 1, (0, -(0.5 ** 0.5), 0, 0.5 ** 0.5)), (1, -1, (-(0.5 ** 0.5), 0, 0, 0.5 ** 0.5)),
+         (1, 1, (0.5 ** 0.5, 0, 0, 0.5 ** 0.5))]
+
+
+def write_box(folder, keys):
+    """Writes a closed box with a camera and a lamp in it; returns the path of scene.gltf."""
+    count = 6 * SIDE * SIDE
+    path = write_scene(folder, count, keys)
+    scene = json.loads(path.read_text())
+    for number, node in enumerate(scene["nodes"]):
+        axis, sign, rotation = WALLS[number // (SIDE * SIDE)]
+        place = [(number // SIDE) % SIDE - (SIDE - 1) / 2, number % SIDE - (SIDE - 1) / 2]
+        place.insert(axis, sign * SIDE / 2)
+        # Slightly too large, so that neighbours overlap and no ray finds a gap.
+        node.update(translation=place, rotation=rotation, scale=[1.001] * 3)
+    scene["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.2, "aspectRatio": 16 / 9, "znear": 0.01}}]
+    scene["nodes"] += [{"camera": 0, "translation": [0, 0, SIDE / 2 - 0.5]},
+                       {"extensions": {"KHR_lights_punctual": {"light": 0}}}]
+    scene["scenes"][0]["nodes"] += [count, count + 1]
+    scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 20}]}}
+    scene["extensionsUsed"] = sorted({*scene.get("extensionsUsed", []), "KHR_lights_punctual"})
+    path.write_text(json.dumps(scene))
+    return path
 
 
 def compile_packages(arguments, folder):
@@ -44,7 +77,7 @@ def spread(values):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("scene", help="a glTF file, or box:K")
     parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", help="default build/release/bin/glint")
     parser.add_argument("--bounces", default="1,2,4,8", help="default 1,2,4,8")
     parser.add_argument("--strategies", default="uber,visibility,sorted-uber,hit-shaders",
@@ -62,13 +95,16 @@ def main():
     chance = random.Random(1)
     with tempfile.TemporaryDirectory(prefix="glint-paths-") as name:
         folder = pathlib.Path(name)
+        title = arguments.scene
+        if title.startswith("box:"):
+            arguments.scene = write_box(folder / "box", int(title[len("box:"):]))
         compile_packages(arguments, folder)
         cases = [(strategy, count) for strategy in arguments.strategies for count in arguments.bounces]
         times = {case: [] for case in cases}
         for _ in range(arguments.rounds):
             for case in chance.sample(cases, len(cases)):
                 times[case].append(device_time(arguments, folder, *case))
-    print(f"{arguments.scene.name}, {arguments.size}, {arguments.rounds} rounds, ms of a sample\n")
+    print(f"{title}, {arguments.size}, {arguments.rounds} rounds, ms of a sample\n")
     print("| bounces | uber, ms | " + " | ".join(f"{strategy} / uber" for strategy in arguments.strategies[1:]) + " |")
     print("|---|---|" + "---|" * (len(arguments.strategies) - 1))
     for count in arguments.bounces:
