@@ -26,21 +26,22 @@ using package::ShadowPlacement;
 
 constexpr const char* kEffects[] = {"shadow", "reflection", "refraction", "indirect-diffuse"};
 
-CompileSettings pathSettings(std::uint32_t bounces,
-                             package::Strategy strategy = package::kStrategyVisibility) {
-    CompileSettings settings;
+compiler::CompileSettings pathSettings(std::uint32_t bounces,
+                                       package::Strategy strategy = package::kStrategyVisibility) {
+    compiler::CompileSettings settings;
     settings.strategies = strategy;
     settings.maxBounces = bounces;
     settings.effects = {false, 0};
     for (const char* const effect : kEffects) {
-        settings.effects.named |= builtinEffects({effect});
+        settings.effects.named |= compiler::builtinEffects({effect});
     }
     settings.effects.maxReflectionRoughness = 1.0F;
-    settings.plan.merge = MergePolicy::None;
+    settings.plan.merge = compiler::MergePolicy::None;
     return settings;
 }
 
-RenderSetup pathSetup(const Scene& scene, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+RenderSetup pathSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height,
+                      std::uint32_t samples) {
     RenderSetup setup = defaultSetup(scene, width, height);
     setup.samples = samples;
     setup.frame.maxReflectionRoughness = 1.0F;
@@ -74,9 +75,9 @@ double meanOf(const LinearImage& image) {
 
 // Renders every strategy with every tracer that the device has, and with every ordering and binning that the
 // first strategy could disagree about.
-void expectAllWaysAgree(const Scene& scene, ShadowPlacement shadows, MergePolicy merge) {
+void expectAllWaysAgree(const gltf::Scene& scene, ShadowPlacement shadows, compiler::MergePolicy merge) {
     constexpr std::uint32_t kBounces = 3;
-    CompileSettings settings = pathSettings(kBounces, package::kStrategyUber);
+    compiler::CompileSettings settings = pathSettings(kBounces, package::kStrategyUber);
     settings.strategies = package::kAllStrategies;
     settings.tracers = package::kAllTracers;
     settings.shadows = shadows;
@@ -117,15 +118,15 @@ void expectAllWaysAgree(const Scene& scene, ShadowPlacement shadows, MergePolicy
 }
 
 TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
-    expectAllWaysAgree(hallScene(), ShadowPlacement::Inline, MergePolicy::None);
+    expectAllWaysAgree(hallScene(), ShadowPlacement::Inline, compiler::MergePolicy::None);
 }
 
 TEST(Paths, DeferredShadowsAndSharedCasesToo) {
-    expectAllWaysAgree(hallScene(), ShadowPlacement::Deferred, MergePolicy::All);
+    expectAllWaysAgree(hallScene(), ShadowPlacement::Deferred, compiler::MergePolicy::All);
 }
 
 TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
-    const Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfMaterials();
     const LoadedScene loaded(scene, pathSettings(3));
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = pathSetup(scene, 24, 16, 2);
@@ -144,7 +145,7 @@ TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
 // A package for one bounce has nothing of paths, and one for more makes the same picture if it is asked for
 // one.
 TEST(Paths, OneBounceIsThePictureWithoutPaths) {
-    const Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfMaterials();
     const LoadedScene plain(scene, pathSettings(1));
     const LoadedScene paths(scene, pathSettings(4));
     ASSERT_TRUE(plain.ok() && paths.ok());
@@ -168,7 +169,7 @@ TEST(Paths, OneBounceIsThePictureWithoutPaths) {
 }
 
 TEST(Paths, MoreBouncesThanThePackageHasAreAnError) {
-    const Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfMaterials();
     const LoadedScene plain(scene, pathSettings(1));
     ASSERT_TRUE(plain.ok());
     RendererOptions options = pathOptions(2);
@@ -179,8 +180,8 @@ TEST(Paths, MoreBouncesThanThePackageHasAreAnError) {
     EXPECT_EQ(renderer.error().id, "package-bounces");
 }
 
-Material diffuse(float albedo, float emission) {
-    Material material;
+materials::Material diffuse(float albedo, float emission) {
+    materials::Material material;
     material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
     material["metallicFactor"] = 0.0F;
     material["roughnessFactor"] = 1.0F;
@@ -190,12 +191,13 @@ Material diffuse(float albedo, float emission) {
 }
 
 // Adds the six walls of a box that faces inwards, from `low` to `high`.
-void addBox(Scene& scene, int material, Float3 low, Float3 high, const Matrix4& world) {
-    const Float3 x{high[0] - low[0], 0, 0};
-    const Float3 y{0, high[1] - low[1], 0};
-    const Float3 z{0, 0, high[2] - low[2]};
-    const Float3 minusX{-x[0], 0, 0};
-    const auto add = [&](Float3 corner, Float3 right, Float3 up) {
+void addBox(gltf::Scene& scene, int material, gltf::Float3 low, gltf::Float3 high,
+            const gltf::Matrix4& world) {
+    const gltf::Float3 x{high[0] - low[0], 0, 0};
+    const gltf::Float3 y{0, high[1] - low[1], 0};
+    const gltf::Float3 z{0, 0, high[2] - low[2]};
+    const gltf::Float3 minusX{-x[0], 0, 0};
+    const auto add = [&](gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
         addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)), world);
     };
     add(low, z, x);                              // floor: z × x = y
@@ -206,8 +208,8 @@ void addBox(Scene& scene, int material, Float3 low, Float3 high, const Matrix4& 
     add({high[0], low[1], low[2]}, z, y);        // right: z × y = -x
 }
 
-Scene closedBox(float albedo, float emission, const Matrix4& world = scaling(1, 1, 1)) {
-    Scene scene = emptyScene();
+gltf::Scene closedBox(float albedo, float emission, const gltf::Matrix4& world = scaling(1, 1, 1)) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     addBox(scene, addMaterial(scene, diffuse(albedo, emission)), {-1.13F, -0.77F, -2.31F},
            {1.29F, 1.07F, 0.93F}, world);
@@ -219,7 +221,7 @@ Scene closedBox(float albedo, float emission, const Matrix4& world = scaling(1, 
 TEST(Paths, AClosedBoxFollowsItsSeries) {
     constexpr float kAlbedo = 0.6F;
     constexpr float kEmission = 0.25F;
-    const Scene scene = closedBox(kAlbedo, kEmission);
+    const gltf::Scene scene = closedBox(kAlbedo, kEmission);
     const LoadedScene loaded(scene, pathSettings(package::kMaxBounces), noLights);
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = pathSetup(scene, 16, 16, 4);
@@ -248,10 +250,10 @@ TEST(Paths, AClosedBoxFollowsItsSeries) {
 }
 
 // Returns a rotation about (1, 2, 3), which leaves no coordinate of a box as it was, and a translation.
-Matrix4 placement(double angle, const double (&place)[3]) {
+gltf::Matrix4 placement(double angle, const double (&place)[3]) {
     const double length = std::sqrt(14.0);
     const double axis[3] = {1.0 / length, 2.0 / length, 3.0 / length};
-    Matrix4 matrix{};
+    gltf::Matrix4 matrix{};
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
             const int third = 3 - row - column;
@@ -271,7 +273,7 @@ Matrix4 placement(double angle, const double (&place)[3]) {
 TEST(Paths, AClosedBoxLosesNoRay) {
     // Far from the origin floats are coarse.
     constexpr double kPlace[3] = {1000.0, 300.0, 700.0};
-    const Scene scene = closedBox(1.0F, 0.0F, placement(0.7, kPlace));
+    const gltf::Scene scene = closedBox(1.0F, 0.0F, placement(0.7, kPlace));
     const LoadedScene loaded(scene, pathSettings(16), noLights);
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = pathSetup(scene, 256, 256, 1);
@@ -294,19 +296,20 @@ TEST(Paths, AClosedBoxLosesNoRay) {
 
 // White surfaces under a uniform sky are as bright as the sky, whatever their lobes are.
 TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
-    Scene scene = emptyScene();
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
-    Material rough = diffuse(1.0F, 0.0F);
+    materials::Material rough = diffuse(1.0F, 0.0F);
     rough["specularFactor"] = 1.0F;
     rough["roughnessFactor"] = 0.5F;
-    Material metal = mirrorMaterial();
+    materials::Material metal = mirrorMaterial();
     metal["roughnessFactor"] = 0.4F;
-    Material wall = diffuse(1.0F, 0.0F);
+    materials::Material wall = diffuse(1.0F, 0.0F);
     wall["transmissionFactor"] = 1.0F;
     wall["specularFactor"] = 1.0F;
     wall["roughnessFactor"] = 0.0F;
     wall.doubleSided = true;
-    const auto add = [&](const Material& material, Float3 corner, Float3 right, Float3 up) {
+    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+                         gltf::Float3 up) {
         addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
     };
     add(rough, {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
@@ -332,12 +335,12 @@ TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
 
 // A mirror shows a block of glass, whose single-sided surface the paths enter and leave. `color` is what one
 // metre of the glass lets through.
-double brightnessOfMirroredGlass(Float3 color) {
-    Scene scene = emptyScene();
+double brightnessOfMirroredGlass(gltf::Float3 color) {
+    gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int mirror = addMaterial(scene, mirrorMaterial());
     addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
-    Material glass = diffuse(1.0F, 0.0F);
+    materials::Material glass = diffuse(1.0F, 0.0F);
     glass["specularFactor"] = 1.0F;
     glass["roughnessFactor"] = 0.0F;
     glass["transmissionFactor"] = 1.0F;
@@ -373,13 +376,13 @@ TEST(Paths, GlassAbsorbsOverTheRealDistance) {
 
 // The error of pictures with paths falls with the root of the number of samples.
 TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
-    Scene scene = roomOfMaterials();
-    for (Material& material : scene.materials) {
+    gltf::Scene scene = roomOfMaterials();
+    for (materials::Material& material : scene.materials) {
         material["roughnessFactor"] = std::max<float>(material["roughnessFactor"], 0.5F);
         material["clearcoatRoughnessFactor"] = 0.5F;
     }
-    CompileSettings settings = pathSettings(4, package::kStrategyUber);
-    settings.plan.merge = MergePolicy::All;
+    compiler::CompileSettings settings = pathSettings(4, package::kStrategyUber);
+    settings.plan.merge = compiler::MergePolicy::All;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     const auto render = [&](std::uint32_t samples, std::uint32_t seed) {
