@@ -57,8 +57,8 @@ public:
     std::optional<SurfacePoint> closest(const Ray& ray) const;
     // Returns the nearest existing surface before `farthest`.
     std::optional<SurfacePoint> closest(const Ray& ray, Backs backs, double farthest) const;
-    // Returns a place of a triangle, by the weights of its second and third corner, as a ray along `direction`
-    // meets it. The distance is not set.
+    // Returns a place of a triangle, by the weights of its second and third corner, as a ray along
+    // `direction` meets it. The distance is not set.
     SurfacePoint pointAt(std::uint32_t triangle, double u, double v, const Vec3& direction) const;
     const Triangle& triangle(std::uint32_t index) const {
         return triangles_->at(index);

@@ -56,8 +56,8 @@ struct Surroundings {
     bool nested = false;  // it is a medium of the scene, not the air
 };
 
-// A surface's BSDF, prepared for a view, and its inputs. With `surroundings`, light that enters a volume is not
-// absorbed at its surface, because its path is followed through the volume.
+// A surface's BSDF, prepared for a view, and its inputs. With `surroundings`, light that enters a volume is
+// not absorbed at its surface, because its path is followed through the volume.
 struct SurfaceLobes {
     Inputs inputs;
     const Surroundings* surroundings;

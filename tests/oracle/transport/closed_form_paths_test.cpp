@@ -14,8 +14,8 @@ Json glowing(double albedo, double emission) {
     return material;
 }
 
-// Every wall emits e and reflects ρ, so all of n scatterings together give e (1 + ρ + … + ρⁿ), and no end of them
-// e / (1 - ρ).
+// Every wall emits e and reflects ρ, so all of n scatterings together give e (1 + ρ + … + ρⁿ), and no end of
+// them e / (1 - ρ).
 TEST(PathOracle, AClosedBoxOfDiffuseWallsIsAGeometricSeries) {
     constexpr double kAlbedo = 0.6;
     SceneFile file;
@@ -25,10 +25,11 @@ TEST(PathOracle, AClosedBoxOfDiffuseWallsIsAGeometricSeries) {
     for (const std::uint32_t bounces : {0U, 1U, 4U, kUnlimited}) {
         for (const std::uint32_t roulette : {4U, 0U, kUnlimited}) {
             SCOPED_TRACE(::testing::Message() << bounces << " bounces, roulette from " << roulette);
-            const double sum =
-                bounces == kUnlimited ? 1.0 / (1.0 - kAlbedo) : (1.0 - std::pow(kAlbedo, bounces + 2.0)) / (1.0 - kAlbedo);
-            expectLight(scene, {}, {.bounces = bounces, .rouletteFrom = roulette}, ray, sum * Vec3(0.5, 0.25, 0.0),
-                        0.02, 2000);
+            const double sum = bounces == kUnlimited
+                                   ? 1.0 / (1.0 - kAlbedo)
+                                   : (1.0 - std::pow(kAlbedo, bounces + 2.0)) / (1.0 - kAlbedo);
+            expectLight(scene, {}, {.bounces = bounces, .rouletteFrom = roulette}, ray,
+                        sum * Vec3(0.5, 0.25, 0.0), 0.02, 2000);
         }
     }
 }
@@ -84,8 +85,8 @@ TEST(PathOracle, AnEmissiveTextureLightsByItsTexels) {
     expectLight(scene, {}, {}, toFloor(), 0.8 * factor * Vec3(4.0, 2.0, 1.0), 0.01);
 }
 
-// A black veil passes 1 - alpha, whether a ray to the light or the path itself finds the light. A lamp without a size
-// is found by rays to lights alone.
+// A black veil passes 1 - alpha, whether a ray to the light or the path itself finds the light. A lamp
+// without a size is found by rays to lights alone.
 TEST(PathOracle, BlendedSurfacesPassTheirShare) {
     SceneFile file;
     addLamp(file, true, false);
@@ -109,10 +110,11 @@ TEST(PathOracle, BlendedSurfacesPassTheirShare) {
 TEST(PathOracle, AMirrorCorridorIsAPowerOfItsReflectance) {
     constexpr double kReflectance = 0.9;
     SceneFile file;
-    const int mirror = file.addMaterial({{"pbrMetallicRoughness",
-                                          {{"baseColorFactor", {kReflectance, kReflectance, kReflectance, 1.0}},
-                                           {"metallicFactor", 1.0},
-                                           {"roughnessFactor", 0.0}}}});
+    const int mirror =
+        file.addMaterial({{"pbrMetallicRoughness",
+                           {{"baseColorFactor", {kReflectance, kReflectance, kReflectance, 1.0}},
+                            {"metallicFactor", 1.0},
+                            {"roughnessFactor", 0.0}}}});
     file.addQuad(mirror, {-0.5, -50, 0}, {0, 0, -10}, {0, 100, 0});
     file.addQuad(mirror, {0.5, -50, -10}, {0, 0, 10}, {0, 100, 0});
     const gltf::Scene scene = file.import();
@@ -121,8 +123,8 @@ TEST(PathOracle, AMirrorCorridorIsAPowerOfItsReflectance) {
     const double fresnel = kReflectance + (1.0 - kReflectance) * std::pow(1.0 - cosine, 5.0);
     for (const std::uint32_t roulette : {4U, kUnlimited}) {
         const auto expectPower = [&](std::uint32_t bounces, double truth) {
-            expectLight(scene, uniformSky(1.0), {.bounces = bounces, .rouletteFrom = roulette}, ray, Vec3(truth), 0.02,
-                        2000, 1e-5);
+            expectLight(scene, uniformSky(1.0), {.bounces = bounces, .rouletteFrom = roulette}, ray,
+                        Vec3(truth), 0.02, 2000, 1e-5);
         };
         expectPower(9, 0.0);
         expectPower(10, std::pow(fresnel, 11.0));
@@ -130,12 +132,14 @@ TEST(PathOracle, AMirrorCorridorIsAPowerOfItsReflectance) {
     }
 }
 
-// Light is reflected at both sides of a slab any number of times: (1 - F)² a / (1 - F² a²), where a passes once.
+// Light is reflected at both sides of a slab any number of times: (1 - F)² a / (1 - F² a²), where a passes
+// once.
 TEST(PathOracle, ASlabOfGlassIsTheSeriesOfItsReflections) {
     const Vec3 color(0.3, 0.6, 0.9);
     SceneFile file;
     const Glass glass{1.5, 1.0, 0.5, color, 0.0};
-    file.addBox(std::vector<int>(6, file.addMaterial(glassMaterial(glass))), {-900, -0.4, -900}, {900, 0.0, 900}, false);
+    file.addBox(std::vector<int>(6, file.addMaterial(glassMaterial(glass))), {-900, -0.4, -900},
+                {900, 0.0, 900}, false);
     const gltf::Scene scene = file.import();
     // Only light from below counts: the sky is its cosine there, and black above.
     const GradientSky below{Vec3(0.0), Vec3(0.0), Vec3(1.0)};
@@ -170,8 +174,8 @@ TEST(PathOracle, ASphereOfGlassAbsorbsAlongItsChords) {
     }
 }
 
-// The floor under a pane of thin glass sees 1 - F of a white sky. The pane reflects F of what the floor sends up, and
-// the floor sends it up again.
+// The floor under a pane of thin glass sees 1 - F of a white sky. The pane reflects F of what the floor sends
+// up, and the floor sends it up again.
 TEST(PathOracle, LightThroughThinGlassIsCountedOnce) {
     SceneFile file;
     file.addQuad(file.addMaterial(diffuseMaterial(Vec3(0.8))), {-500, 0, 500}, {1000, 0, 0}, {0, 0, -1000});
@@ -185,11 +189,11 @@ TEST(PathOracle, LightThroughThinGlassIsCountedOnce) {
     for (const ShadowThrough through : {ShadowThrough::Opaque, ShadowThrough::Alpha, ShadowThrough::Glass}) {
         SCOPED_TRACE(static_cast<int>(through));
         const Ray ray = rayTo({0, 0.5, 0.3}, {0, 0, 0});
-        expectLight(scene, uniformSky(1.0), {.bounces = 0, .shadowThrough = through}, ray, Vec3(first), 0.01, 20000,
-                    1e-3);
-        // All of the reflections between the two.
-        expectLight(scene, uniformSky(1.0), {.shadowThrough = through}, ray, Vec3(first / (1.0 - 0.8 * mean)), 0.01,
+        expectLight(scene, uniformSky(1.0), {.bounces = 0, .shadowThrough = through}, ray, Vec3(first), 0.01,
                     20000, 1e-3);
+        // All of the reflections between the two.
+        expectLight(scene, uniformSky(1.0), {.shadowThrough = through}, ray, Vec3(first / (1.0 - 0.8 * mean)),
+                    0.01, 20000, 1e-3);
     }
 }
 
@@ -219,7 +223,8 @@ TEST(PathOracle, LampsWithASizeLightByTheirCap) {
     const gltf::Scene scene = file.import();
     const double half = std::asin(0.8 / 2.0);
     const double truth = 3.0 / 4.0 * 0.5 * (1.0 + std::cos(half)) * 0.8 / kPi;
-    expectLight(scene, {}, {.sizes = {0.8, 0.0}}, rayTo({0.3, 0.5, 0.5}, {0, 0, 0}), Vec3(truth), 1e-3, 10000);
+    expectLight(scene, {}, {.sizes = {0.8, 0.0}}, rayTo({0.3, 0.5, 0.5}, {0, 0, 0}), Vec3(truth), 1e-3,
+                10000);
 }
 
 }  // namespace

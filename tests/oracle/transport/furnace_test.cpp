@@ -11,12 +11,16 @@ using namespace glint::oracle;
 struct Body {
     std::string name;
     Json material;
-    double absorbed = 0.0;  // at most
+    // At most. Diffuse light is what no channel of the film, the coat or the sheen reflects: the others lose
+    // some.
+    double absorbed = 0.0;
 };
 
 Json material(double metallic, double roughness) {
     return {{"pbrMetallicRoughness",
-             {{"baseColorFactor", {1.0, 1.0, 1.0, 1.0}}, {"metallicFactor", metallic}, {"roughnessFactor", roughness}}}};
+             {{"baseColorFactor", {1.0, 1.0, 1.0, 1.0}},
+              {"metallicFactor", metallic},
+              {"roughnessFactor", roughness}}}};
 }
 
 Json with(Json base, const std::string& extension, Json values) {
@@ -28,8 +32,9 @@ std::vector<Body> bodies() {
     Json thin = with(material(0.0, 0.3), "KHR_materials_transmission", {{"transmissionFactor", 1.0}});
     Json glass = with(with(material(0.0, 0.0), "KHR_materials_transmission", {{"transmissionFactor", 1.0}}),
                       "KHR_materials_volume", {{"thicknessFactor", 1.0}});
-    Json leaf = with(material(0.0, 0.6), "KHR_materials_diffuse_transmission",
-                     {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {1.0, 1.0, 1.0}}});
+    Json leaf =
+        with(material(0.0, 0.6), "KHR_materials_diffuse_transmission",
+             {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {1.0, 1.0, 1.0}}});
     return {{"diffuse", diffuseMaterial(), 1e-6},
             {"dielectric", material(0.0, 0.5), 2e-3},
             {"smooth dielectric", material(0.0, 0.0), 2e-3},
@@ -37,11 +42,16 @@ std::vector<Body> bodies() {
             {"rough metal", material(1.0, 1.0), 2e-3},
             {"mirror", material(1.0, 0.0), 2e-3},
             {"half metal", material(0.5, 0.5), 2e-3},
-            {"clearcoat", with(material(0.0, 0.5), "KHR_materials_clearcoat",
-                               {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.3}}), 0.08},
-            {"sheen", with(material(0.0, 0.5), "KHR_materials_sheen",
-                           {{"sheenColorFactor", {1.0, 1.0, 1.0}}, {"sheenRoughnessFactor", 0.5}}), 0.1},
-            {"iridescence", with(material(0.0, 0.4), "KHR_materials_iridescence", {{"iridescenceFactor", 1.0}}), 2e-3},
+            {"clearcoat",
+             with(material(0.0, 0.5), "KHR_materials_clearcoat",
+                  {{"clearcoatFactor", 1.0}, {"clearcoatRoughnessFactor", 0.3}}),
+             0.08},
+            {"sheen",
+             with(material(0.0, 0.5), "KHR_materials_sheen",
+                  {{"sheenColorFactor", {1.0, 1.0, 1.0}}, {"sheenRoughnessFactor", 0.5}}),
+             0.1},
+            {"iridescence",
+             with(material(0.0, 0.4), "KHR_materials_iridescence", {{"iridescenceFactor", 1.0}}), 0.08},
             {"specular", with(material(0.0, 0.4), "KHR_materials_specular", {{"specularFactor", 0.3}}), 2e-3},
             {"thin glass", thin, 0.02},
             {"glass", glass, 2e-3},
@@ -59,7 +69,8 @@ TEST(PathFurnace, BodiesThatAbsorbNothingVanish) {
         for (const double aside : {0.05, 0.3, 0.45}) {
             SCOPED_TRACE(aside);
             const Estimate light = pathLight(tracer, {{aside, 0.004, 3.0}, {0, 0, -1}}, 2000, 3);
-            EXPECT_LE(light.error.y, 0.02);
+            // One of three colours at a time has the variance of two.
+            EXPECT_LE(light.error.y, 0.07);
             EXPECT_LE(light.mean.y, 1.0 + 5.0 * light.error.y + 1e-3);
             EXPECT_GE(light.mean.y, 1.0 - 5.0 * light.error.y - body.absorbed);
         }

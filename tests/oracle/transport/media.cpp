@@ -13,7 +13,8 @@ Medium mediumOf(const materials::Material& material) {
         medium.ior += Vec3(-spread, 0.0, spread);
     }
     if (material["attenuationDistance"] > 0.0F) {
-        medium.absorption = absorptionOf(toVec(material["attenuationColor"]), material["attenuationDistance"]);
+        medium.absorption =
+            absorptionOf(toVec(material["attenuationColor"]), material["attenuationDistance"]);
     }
     return medium;
 }

@@ -15,8 +15,8 @@ struct Medium {
 };
 Medium mediumOf(const materials::Material& material);
 
-// Surfaces with their front to the ray begin a medium, and backs end the innermost one of their material. A back
-// whose front the ray never met ends nothing.
+// Surfaces with their front to the ray begin a medium, and backs end the innermost one of their material. A
+// back whose front the ray never met ends nothing.
 class Media {
 public:
     // `all` has a medium for each material, and must outlive the object.
@@ -27,8 +27,8 @@ public:
     }
     // Returns the share of light that passes along a distance, which may be infinite.
     Vec3 transmittance(double distance) const;
-    // Returns the medium on the other side of a surface's own: for a front, the one that the ray is in; for a back,
-    // the one that the ray is in once it has left. Sets whether it is a medium of the scene.
+    // Returns the medium on the other side of a surface's own: for a front, the one that the ray is in; for a
+    // back, the one that the ray is in once it has left. Sets whether it is a medium of the scene.
     Vec3 outside(const SurfacePoint& point, bool& nested) const;
     // Passes the surface.
     void cross(const SurfacePoint& point);

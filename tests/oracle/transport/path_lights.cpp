@@ -107,7 +107,8 @@ Vec3 PathSky::radiance(const Vec3& direction) const {
 
 bool PathSky::black() const {
     return map_ ? sums_.back() <= 0.0
-                : gradient_.zenith == Vec3(0.0) && gradient_.horizon == Vec3(0.0) && gradient_.ground == Vec3(0.0);
+                : gradient_.zenith == Vec3(0.0) && gradient_.horizon == Vec3(0.0) &&
+                      gradient_.ground == Vec3(0.0);
 }
 
 Vec3 PathSky::sample(const Vec3& point) const {
@@ -128,7 +129,8 @@ double PathSky::density(const Vec3& direction) const {
         return kUniform;
     }
     const Vec2 uv = coordinates(direction);
-    const auto x = std::min<std::size_t>(static_cast<std::size_t>(std::max(uv.x, 0.0) * map_->width), map_->width - 1);
+    const auto x =
+        std::min<std::size_t>(static_cast<std::size_t>(std::max(uv.x, 0.0) * map_->width), map_->width - 1);
     const auto y = std::min<std::size_t>(static_cast<std::size_t>(uv.y * map_->height), map_->height - 1);
     const double sine = std::max(std::hypot(direction.x, direction.z), 1e-12);
     const double texels = static_cast<double>(map_->width) * map_->height;

@@ -39,11 +39,12 @@ public:
 
 private:
     std::vector<std::uint32_t> triangles_;
-    std::vector<double> sums_;           // of the weights up to a triangle's own
-    std::vector<double> densities_;      // by area, of every triangle of the geometry
+    std::vector<double> sums_;       // of the weights up to a triangle's own
+    std::vector<double> densities_;  // by area, of every triangle of the geometry
 };
 
-// The sky: a gradient, or an equirectangular map as in shaders/host/sky.glsl, whose texels are filtered linearly.
+// The sky: a gradient, or an equirectangular map as in shaders/host/sky.glsl, whose texels are filtered
+// linearly.
 class PathSky {
 public:
     explicit PathSky(const GradientSky& gradient) : gradient_(gradient) {}
@@ -51,8 +52,8 @@ public:
     explicit PathSky(LinearImage map);
 
     Vec3 radiance(const Vec3& direction) const;
-    // Chooses a direction: uniformly for a gradient; a map by the luminance of its texels, one time in ten uniformly.
-    // `point` is uniform in the unit cube.
+    // Chooses a direction: uniformly for a gradient; a map by the luminance of its texels, one time in ten
+    // uniformly. `point` is uniform in the unit cube.
     Vec3 sample(const Vec3& point) const;
     double density(const Vec3& direction) const;  // by solid angle
     bool black() const;

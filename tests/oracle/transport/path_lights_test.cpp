@@ -82,7 +82,8 @@ TEST(PathLights, TrianglesAreChosenByTheirDensity) {
                                                          triangle.positions[2] - triangle.positions[0]));
         EXPECT_NEAR(lights.density(static_cast<std::uint32_t>(i)) * area, shares[i], 1e-12);
     }
-    EXPECT_NEAR(glm::length(middle - Vec3((0.5 + 12.0) / 13.0, 0.5, 24.0 / 13.0)), 0.0, 0.01) << "uniform by area";
+    EXPECT_NEAR(glm::length(middle - Vec3((0.5 + 12.0) / 13.0, 0.5, 24.0 / 13.0)), 0.0, 0.01)
+        << "uniform by area";
 }
 
 }  // namespace

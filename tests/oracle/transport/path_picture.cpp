@@ -178,13 +178,15 @@ PathDifference pathDifference(const LinearImage& device, const PathPicture& trut
         if (different.relative > kDiffers) {
             different.cause = causeOf(different, truth.notes[i]);
             const int material = truth.notes[i].material;
-            different.material = material < 0 ? "sky" : scene.materials[static_cast<std::size_t>(material)].name;
+            different.material =
+                material < 0 ? "sky" : scene.materials[static_cast<std::size_t>(material)].name;
             result.different.push_back(std::move(different));
         }
     }
     const double count = std::max(static_cast<double>(result.pixels), 1.0);
     result.bias = result.mean > 0.0 ? difference / result.mean : 0.0;
-    // The channels of a pixel are not independent, so their mean is taken to have the mean of their variances.
+    // The channels of a pixel are not independent, so their mean is taken to have the mean of their
+    // variances.
     result.biasError = result.mean > 0.0 ? std::sqrt(variances) / result.mean : 0.0;
     result.mean /= count;
     result.deviceMean /= count;
@@ -208,17 +210,18 @@ std::string toText(const PathDifference& difference, std::uint32_t list) {
     for (std::size_t i = 0; i < kPathCauses; ++i) {
         const auto cause = static_cast<PathCause>(i);
         if (countOf(difference, cause) > 0) {
-            text += fmt::format("  {:<18}{} pixels, largest {:.1e}\n", nameOf(cause), countOf(difference, cause),
-                                largestOf(difference, cause));
+            text += fmt::format("  {:<18}{} pixels, largest {:.1e}\n", nameOf(cause),
+                                countOf(difference, cause), largestOf(difference, cause));
         }
     }
     for (std::size_t i = 0; i < std::min<std::size_t>(list, difference.different.size()); ++i) {
         const PathDifferentPixel& pixel = difference.different[i];
         text += fmt::format(
-            "  ({}, {}) {:.2e}, {:.1f} standard errors, {}, {}: device {:.6f} {:.6f} {:.6f}, truth {:.6f} {:.6f} "
+            "  ({}, {}) {:.2e}, {:.1f} standard errors, {}, {}: device {:.6f} {:.6f} {:.6f}, truth {:.6f} "
+            "{:.6f} "
             "{:.6f}\n",
-            pixel.x, pixel.y, pixel.relative, pixel.deviations, nameOf(pixel.cause), pixel.material, pixel.device.x,
-            pixel.device.y, pixel.device.z, pixel.truth.x, pixel.truth.y, pixel.truth.z);
+            pixel.x, pixel.y, pixel.relative, pixel.deviations, nameOf(pixel.cause), pixel.material,
+            pixel.device.x, pixel.device.y, pixel.device.z, pixel.truth.x, pixel.truth.y, pixel.truth.z);
     }
     return text;
 }
@@ -236,13 +239,11 @@ std::string toJson(const PathPicture& truth, const PathSampling& sampling, const
         }
     }
     const double values = 3.0 * static_cast<double>(truth.picture.pixels.size());
-    nlohmann::ordered_json json{{"width", truth.picture.width},
-                                {"height", truth.picture.height},
-                                {"samples", sampling.samples},
-                                {"seed", sampling.seed},
-                                {"mean", mean / values},
-                                {"standardError", std::sqrt(squares / values)},
-                                {"largestRelativeError", largest}};
+    nlohmann::ordered_json json{
+        {"width", truth.picture.width},   {"height", truth.picture.height},
+        {"samples", sampling.samples},    {"seed", sampling.seed},
+        {"mean", mean / values},          {"standardError", std::sqrt(squares / values)},
+        {"largestRelativeError", largest}};
     if (difference != nullptr) {
         nlohmann::ordered_json causes = nlohmann::ordered_json::object();
         for (std::size_t i = 0; i < kPathCauses; ++i) {
@@ -252,17 +253,13 @@ std::string toJson(const PathPicture& truth, const PathSampling& sampling, const
                                                       {"largest", largestOf(*difference, cause)}};
             }
         }
-        json["difference"] = {{"samples", deviceSamples},
-                              {"pixels", difference->pixels},
-                              {"notFinite", difference->notFinite},
-                              {"deviceMean", difference->deviceMean},
-                              {"bias", difference->bias},
-                              {"biasError", difference->biasError},
-                              {"rmse", difference->rootMeanSquare},
-                              {"expectedRmse", difference->expected},
-                              {"relMse", difference->relMse},
-                              {"differing", difference->different.size()},
-                              {"causes", std::move(causes)}};
+        json["difference"] = {
+            {"samples", deviceSamples},           {"pixels", difference->pixels},
+            {"notFinite", difference->notFinite}, {"deviceMean", difference->deviceMean},
+            {"bias", difference->bias},           {"biasError", difference->biasError},
+            {"rmse", difference->rootMeanSquare}, {"expectedRmse", difference->expected},
+            {"relMse", difference->relMse},       {"differing", difference->different.size()},
+            {"causes", std::move(causes)}};
     }
     return json.dump(2) + "\n";
 }

@@ -51,7 +51,7 @@ std::string_view nameOf(PathCause cause);
 struct PathDifferentPixel {
     std::uint32_t x = 0;
     std::uint32_t y = 0;
-    double relative = 0.0;  // of the worst channel, over at least kDark
+    double relative = 0.0;    // of the worst channel, over at least kDark
     double deviations = 0.0;  // of the worst channel, in standard errors
     Vec3 device{0.0};
     Vec3 truth{0.0};
@@ -73,8 +73,8 @@ struct PathDifference {
     std::vector<PathDifferentPixel> different;  // worst first
 };
 
-// Compares with a picture of the device that has that many samples, whose variance is taken to be that of the truth's
-// samples. Both must have the same size.
+// Compares with a picture of the device that has that many samples, whose variance is taken to be that of the
+// truth's samples. Both must have the same size.
 PathDifference pathDifference(const LinearImage& device, const PathPicture& truth, const gltf::Scene& scene,
                               std::uint32_t samples);
 

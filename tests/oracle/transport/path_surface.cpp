@@ -8,7 +8,8 @@ struct PathSurface::Lobes {
     Surroundings around;
     SurfaceLobes surface;
 
-    Lobes(const Textures& textures, const SurfacePoint& point, const Vec3& incoming, const Surroundings& given)
+    Lobes(const Textures& textures, const SurfacePoint& point, const Vec3& incoming,
+          const Surroundings& given)
         : around(given), surface(textures, point, incoming, -1.0, &around) {}
 };
 

@@ -20,8 +20,8 @@ double largestOf(const Vec3& v) {
     return std::max({v.x, v.y, v.z});
 }
 
-// Veach's power heuristic with exponent 2, for the strategy with the first density. An infinite density is that of a
-// single direction.
+// Veach's power heuristic with exponent 2, for the strategy with the first density. An infinite density is
+// that of a single direction.
 double powerWeight(double own, double other) {
     if (other <= 0.0) {
         return 1.0;
@@ -47,8 +47,9 @@ struct PathTracer::Walk {
     Ray ray;
     Vec3 throughput{1.0};
     Media media;
-    Vec3 from{0.0};         // the surface that chose the direction
-    double density = 0.0;   // with which it did; 0: the camera, or light that no surface could have chosen instead
+    Vec3 from{0.0};  // the surface that chose the direction
+    double density =
+        0.0;  // with which it did; 0: the camera, or light that no surface could have chosen instead
     bool overBlend = false;  // the ray has passed a surface of BLEND since
     // With ShadowThrough::Glass: a surface behind the glass has chosen light through it on a straight line.
     bool covered = false;
@@ -75,7 +76,8 @@ PathTracer::PathTracer(const gltf::Scene& scene, PathSky sky, const PathSettings
     : textures_(scene, settings.srgb),
       sky_(std::move(sky)),
       settings_(settings),
-      geometry_(scene, [this](const SurfacePoint& point) { return Inputs(textures_, point).passesAlphaMask(); }),
+      geometry_(scene,
+                [this](const SurfacePoint& point) { return Inputs(textures_, point).passesAlphaMask(); }),
       emissive_(scene, geometry_) {
     for (const materials::Material& material : scene.materials) {
         media_.push_back(mediumOf(material));
@@ -98,7 +100,8 @@ LightCap PathTracer::capOf(const gltf::Light& light, const Vec3& position) const
     return lightCap(light, settings_.sizes, position);
 }
 
-// Goes to the next surface that the path meets. Surfaces of BLEND are there with the probability of their alpha.
+// Goes to the next surface that the path meets. Surfaces of BLEND are there with the probability of their
+// alpha.
 std::optional<SurfacePoint> PathTracer::next(Walk& walk, Random& random, PathNotes* notes) const {
     for (;;) {
         const std::optional<SurfacePoint> point =
@@ -260,8 +263,7 @@ Vec3 PathTracer::chosenLight(const Vertex& vertex, Random& random) const {
     } else {
         const double scale = static_cast<double>(lamps_.size()) / static_cast<double>(kLampsAtOnce);
         for (std::size_t i = 0; i < kLampsAtOnce; ++i) {
-            const auto chosen =
-                static_cast<std::size_t>(random.next() * static_cast<double>(lamps_.size()));
+            const auto chosen = static_cast<std::size_t>(random.next() * static_cast<double>(lamps_.size()));
             sum += scale * lampLight(vertex, *lamps_[chosen], random);
         }
     }
@@ -274,8 +276,8 @@ Vec3 PathTracer::chosenLight(const Vertex& vertex, Random& random) const {
     return sum;
 }
 
-// The emission of a surface that a path finds. The surface before could have chosen it, unless rays to lights do not
-// pass what the path has passed.
+// The emission of a surface that a path finds. The surface before could have chosen it, unless rays to lights
+// do not pass what the path has passed.
 Vec3 PathTracer::emitted(const Walk& walk, const SurfacePoint& point, const PathSurface& surface) const {
     const Vec3 emission = surface.emission();
     if (emission == Vec3(0.0) || (walk.covered && walk.throughGlass)) {

@@ -1,6 +1,6 @@
-// A path tracer in double precision: any number of bounces, one sampling decision over the lobes of each surface, light
-// chosen and found with multiple importance sampling (Veach and Guibas 1995, power heuristic), alpha, glass and media.
-// It shares the BSDF's text with the shaders, and nothing of their transport.
+// A path tracer in double precision: any number of bounces, one sampling decision over the lobes of each
+// surface, light chosen and found with multiple importance sampling (Veach and Guibas 1995, power heuristic),
+// alpha, glass and media. It shares the BSDF's text with the shaders, and nothing of their transport.
 #pragma once
 
 #include "oracle/light.h"
@@ -19,21 +19,23 @@ namespace glint::oracle {
 enum class ShadowThrough : std::uint8_t {
     Opaque,  // nothing but masked holes
     Alpha,   // BLEND, in proportion to 1 - alpha
-    Glass    // that, and KHR_materials_transmission: tint, 1 - Fresnel and absorption on the straight line. Light that
-             // a path finds through glass behind another surface is then left out, as it is already counted.
+    Glass    // that, and KHR_materials_transmission: tint, 1 - Fresnel and absorption on the straight line.
+           // Light that a path finds through glass behind another surface is then left out, as it is already
+           // counted.
 };
 
 inline constexpr std::uint32_t kUnlimited = std::numeric_limits<std::uint32_t>::max();
 
 struct PathSettings {
-    // Light is scattered by at most this many surfaces and one more. What happens between the surfaces of clear glass,
-    // passing and total reflection included, is not counted.
+    // Light is scattered by at most this many surfaces and one more. What happens between the surfaces of
+    // clear glass, passing and total reflection included, is not counted.
     std::uint32_t bounces = kUnlimited;
     ShadowThrough shadowThrough = ShadowThrough::Alpha;
-    // From this number of scatterings on, a path goes on with the probability of its largest throughput, at least 0.05
-    // and at most 0.95; kUnlimited never ends a path so, and follows it down to a throughput of 1e-9.
+    // From this number of scatterings on, a path goes on with the probability of its largest throughput, at
+    // least 0.05 and at most 0.95; kUnlimited never ends a path so, and follows it down to a throughput of
+    // 1e-9.
     std::uint32_t rouletteFrom = 4;
-    LightSizes sizes;
+    LightSizes sizes{};
     SrgbTable srgb = exactSrgb();
 };
 
@@ -82,7 +84,7 @@ private:
     PathSettings settings_;
     SceneGeometry geometry_;
     EmissiveTriangles emissive_;
-    std::vector<Medium> media_;             // by material
+    std::vector<Medium> media_;              // by material
     std::vector<const gltf::Light*> lamps_;  // those that shine
 };
 
