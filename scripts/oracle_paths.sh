@@ -52,7 +52,8 @@ done
 
 paths=()
 if "$glint" render --help | grep -q -- '--bounces'; then
-    paths=(--bounces "$bounces")
+    # All light of a surface goes through rays: nothing of the sky counts without them.
+    paths=(--effects auto,indirect-diffuse --max-roughness 1 --bounces "$bounces")
 else
     echo "oracle_paths.sh: this glint render has no --bounces, so its default is compared" >&2
 fi
