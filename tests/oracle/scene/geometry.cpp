@@ -80,6 +80,11 @@ SceneGeometry::SceneGeometry(const gltf::Scene& scene, PointIsThere isThere)
             }
         }
     }
+    for (const materials::Material& material : scene.materials) {
+        const bool transmits =
+            material["transmissionFactor"] > 0.0F || material["diffuseTransmissionFactor"] > 0.0F;
+        volumes_.push_back(transmits && material["thicknessFactor"] > 0.0F);
+    }
     nearest_ = kOwnSurface * size;
     triangles_ = std::make_unique<Triangles>(std::move(triangles));
 }
@@ -138,14 +143,31 @@ bool SceneGeometry::isThereAt(const TriangleHit& hit, const Ray& ray) const {
     return scene_.materials[material].alphaMode != materials::AlphaMode::Mask || isThere_(pointOf(hit, ray));
 }
 
+SurfacePoint SceneGeometry::pointAt(std::uint32_t triangle, double u, double v, const Vec3& direction) const {
+    return pointOf({0.0, triangle, u, v}, {Vec3(0.0), direction});
+}
+
+bool SceneGeometry::exists(const SurfacePoint& point) const {
+    return scene_.materials[static_cast<std::size_t>(point.material)].alphaMode !=
+               materials::AlphaMode::Mask ||
+           isThere_(point);
+}
+
 std::optional<SurfacePoint> SceneGeometry::closest(const Ray& ray) const {
+    return closest(ray, Backs::None, kInfinity);
+}
+
+std::optional<SurfacePoint> SceneGeometry::closest(const Ray& ray, Backs backs, double farthest) const {
     const auto accepts = [&](const TriangleHit& hit) {
+        const Triangle& triangle = triangles_->at(hit.triangle);
         const bool seen =
-            triangles_->at(hit.triangle).doubleSided || !triangles_->showsBack(hit.triangle, ray.direction);
+            triangle.doubleSided || backs == Backs::All ||
+            (backs == Backs::OfVolumes && volumes_[static_cast<std::size_t>(triangle.material)]) ||
+            !triangles_->showsBack(hit.triangle, ray.direction);
         return seen && isThereAt(hit, ray);
     };
     TriangleHit hit;
-    if (!triangles_->closest(ray.origin, ray.direction, nearest_, kInfinity, accepts, hit)) {
+    if (!triangles_->closest(ray.origin, ray.direction, nearest_, farthest, accepts, hit)) {
         return std::nullopt;
     }
     return pointOf(hit, ray);

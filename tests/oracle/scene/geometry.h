@@ -6,9 +6,11 @@
 #include "oracle/world.h"
 
 #include <array>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace glint::oracle {
 
@@ -34,6 +36,13 @@ struct SurfacePoint {
 // Returns whether a surface exists at a point, for alpha masks.
 using PointIsThere = std::function<bool(const SurfacePoint&)>;
 
+// Which backs of single-sided surfaces rays meet, besides all fronts.
+enum class Backs : std::uint8_t {
+    None,
+    OfVolumes,  // where a volume ends
+    All
+};
+
 class SceneGeometry {
 public:
     // Takes the meshes of all nodes in their rest pose, without skins and morph targets. The scene must
@@ -46,6 +55,16 @@ public:
     // Returns the nearest existing surface, ignoring the backs of single-sided ones. A surface within 1e-9 of
     // the scene's size is the one that the ray starts on, and is ignored.
     std::optional<SurfacePoint> closest(const Ray& ray) const;
+    // Returns the nearest existing surface before `farthest`.
+    std::optional<SurfacePoint> closest(const Ray& ray, Backs backs, double farthest) const;
+    // Returns a place of a triangle, by the weights of its second and third corner, as a ray along
+    // `direction` meets it. The distance is not set.
+    SurfacePoint pointAt(std::uint32_t triangle, double u, double v, const Vec3& direction) const;
+    const Triangle& triangle(std::uint32_t index) const {
+        return triangles_->at(index);
+    }
+    // Returns whether the surface exists at a point: its alpha mask.
+    bool exists(const SurfacePoint& point) const;
     // Returns whether no existing surface, front or back, is nearer than `distance`.
     bool visible(const Ray& ray, double distance) const;
     std::size_t triangleCount() const;
@@ -59,6 +78,7 @@ private:
     PointIsThere isThere_;
     std::vector<Source> sources_;
     std::unique_ptr<Triangles> triangles_;
+    std::vector<bool> volumes_;  // by material
     double nearest_ = 0.0;
 };
 

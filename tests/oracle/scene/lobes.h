@@ -50,9 +50,17 @@ Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     return base;
 }
 
-// A surface's BSDF, prepared for a view, and its inputs.
+// The medium around a surface, for paths that follow light through volumes.
+struct Surroundings {
+    Vec3 ior{1.0};        // of red, green, blue
+    bool nested = false;  // it is a medium of the scene, not the air
+};
+
+// A surface's BSDF, prepared for a view, and its inputs. With `surroundings`, light that enters a volume is
+// not absorbed at its surface, because its path is followed through the volume.
 struct SurfaceLobes {
     Inputs inputs;
+    const Surroundings* surroundings;
     double side;  // 1: seen from the front
     Vec3 view;    // world
     double mirrorLimit;
@@ -64,8 +72,9 @@ struct SurfaceLobes {
     double occlusion = 1.0;
 
     SurfaceLobes(const Textures& textures, const SurfacePoint& point, const Vec3& incoming,
-                 double mirrorRoughness)
+                 double mirrorRoughness, const Surroundings* around = nullptr)
         : inputs(textures, point),
+          surroundings(around),
           side(point.front ? 1.0 : -1.0),
           view(-incoming),
           mirrorLimit(mirrorRoughness) {
@@ -198,9 +207,17 @@ struct SurfaceLobes {
             iors += Vec3(-spread, 0.0, spread);
         }
         bsdf.eta = side < 0.0 ? 1.0 / iors : iors;
-        if (side < 0.0) {
+        if (side < 0.0 && (surroundings == nullptr || has(GLINT_TRANSMISSION))) {
             bsdf.diffuse = Vec3(0.0);
             bsdf.diffuseTransmitted = Vec3(0.0);
+        }
+        if (surroundings != nullptr) {
+            bsdf.eta = side < 0.0 ? surroundings->ior / iors : iors / surroundings->ior;
+            if (surroundings->nested) {
+                // f0 follows from the two media; f90 is the specular factor.
+                bsdf.f0 = Vec3(squared((bsdf.eta.y - 1.0) / (bsdf.eta.y + 1.0)) * bsdf.f90);
+            }
+            return;
         }
         if (material["attenuationDistance"] > 0.0F) {
             const double thickness =

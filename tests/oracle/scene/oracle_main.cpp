@@ -8,12 +8,15 @@
 #include "oracle/scene/input.h"
 #include "oracle/scene/report.h"
 #include "oracle/scene/texels.h"
+#include "oracle/transport/path_picture.h"
 
 #include <glint/scene_view/camera.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -41,6 +44,15 @@ struct Settings {
     std::string filtered;
     std::string writeTexels;
     std::uint32_t list = 0;
+    // Of paths.
+    std::string bounces;  // empty: the renderer with Glint's approximations
+    std::string shadowThrough = "alpha";
+    std::uint32_t rouletteFrom = PathSettings{}.rouletteFrom;
+    bool noRoulette = false;
+    LightSizes sizes;
+    std::string environment;
+    PathSampling sampling;
+    std::string errors;
 };
 
 // The strata are repeated; the spread of the repeats gives the error.
@@ -91,6 +103,104 @@ Result<Difference> compare(const Settings& settings, const OracleInput& input, c
                             {decoding ? &*decoding : nullptr, filtered.pixels.empty() ? nullptr : &filtered});
 }
 
+Result<std::uint32_t> bouncesOf(const std::string& text) {
+    if (text == "unlimited") {
+        return kUnlimited;
+    }
+    std::uint32_t bounces = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), bounces);
+    if (error != std::errc() || end != text.data() + text.size() || bounces == kUnlimited) {
+        return makeError("oracle-bounces", "", "\"" + text + "\" is no number of bounces",
+                         "give a whole number, or unlimited");
+    }
+    return bounces;
+}
+
+Result<PathSky> skyOf(const std::string& environment) {
+    if (environment.empty()) {
+        return PathSky(defaultSky());
+    }
+    Result<LinearImage> map = image::readImage(environment);
+    if (!map) {
+        return map.error();
+    }
+    for (auto& pixel : map->pixels) {
+        for (float& channel : pixel) {
+            channel = std::max(channel, 0.0F);
+        }
+    }
+    return PathSky(std::move(*map));
+}
+
+// Returns the standard errors as an image.
+LinearImage errorsOf(const Picture& picture) {
+    Picture errors = picture;
+    for (Pixel& pixel : errors.pixels) {
+        pixel.mean = pixel.error;
+    }
+    return toImage(errors);
+}
+
+// Renders all of light transport.
+Status runPaths(const Settings& settings, const OracleInput& input) {
+    const Result<std::uint32_t> bounces = bouncesOf(settings.bounces);
+    if (!bounces) {
+        return bounces.error();
+    }
+    Result<PathSky> sky = skyOf(settings.environment);
+    if (!sky) {
+        return sky.error();
+    }
+    PathSettings paths;
+    paths.bounces = *bounces;
+    paths.shadowThrough = settings.shadowThrough == "opaque"  ? ShadowThrough::Opaque
+                          : settings.shadowThrough == "glass" ? ShadowThrough::Glass
+                                                              : ShadowThrough::Alpha;
+    paths.rouletteFrom = settings.noRoulette ? kUnlimited : settings.rouletteFrom;
+    paths.sizes = settings.sizes;
+    if (settings.deviceTexels) {
+        const Result<SrgbTable> table = readTexels(settings.texels);
+        if (!table) {
+            return table.error();
+        }
+        paths.srgb = *table;
+    }
+    const PathTracer tracer(input.scene, std::move(*sky), paths);
+    PathSampling sampling = settings.sampling;
+    sampling.samples = settings.samples;
+    const PathPicture truth = pathPicture(tracer, input.view, sampling);
+    if (!settings.picture.empty()) {
+        if (Status status = image::writeImage(settings.picture, toImage(truth.picture), 0.0); !status) {
+            return status;
+        }
+    }
+    if (!settings.errors.empty()) {
+        if (Status status = image::writeImage(settings.errors, errorsOf(truth.picture), 0.0); !status) {
+            return status;
+        }
+    }
+    std::optional<PathDifference> difference;
+    if (!settings.against.empty()) {
+        const Result<LinearImage> device = readPicture(settings.against, truth.picture);
+        if (!device) {
+            return device.error();
+        }
+        difference = pathDifference(*device, truth, input.scene, settings.deviceSamples);
+        if (!settings.difference.empty()) {
+            if (Status status = image::writeImage(settings.difference,
+                                                  image::differenceMap(*device, toImage(truth.picture)));
+                !status) {
+                return status;
+            }
+        }
+        std::fputs(toText(*difference, settings.list).c_str(), stdout);
+    }
+    return settings.json.empty()
+               ? okStatus()
+               : base::writeFile(settings.json, toJson(truth, sampling, difference ? &*difference : nullptr,
+                                                       settings.deviceSamples));
+}
+
 Status run(const Settings& settings) {
     if (!settings.writeTexels.empty()) {
         return writeTexelScene(settings.writeTexels);
@@ -102,6 +212,9 @@ Status run(const Settings& settings) {
     Result<OracleInput> input = readOracleInput(settings.choice, size->width, size->height);
     if (!input) {
         return input.error();
+    }
+    if (!settings.bounces.empty()) {
+        return runPaths(settings, *input);
     }
     RendererSettings look{.sky = defaultSky(), .mirrorRoughness = settings.mirrorRoughness};
     if (settings.deviceTexels) {
@@ -147,15 +260,49 @@ Status run(const Settings& settings) {
 
 int parseAndRun(int argc, char** argv) {
     CLI::App app{
-        "Render a scene in double precision on the CPU: punctual lights with hard shadows, the sky, one "
-        "mirror "
-        "reflection; and compare a picture of glint render with it",
+        "Render a scene in double precision on the CPU, and compare a picture of glint render with it. "
+        "Without "
+        "--bounces: punctual lights with hard shadows, the sky, one mirror reflection, as glint render "
+        "approximates "
+        "them. With --bounces: all of light transport",
         "glint_oracle"};
     Settings settings;
     app.add_option("SCENE", settings.choice.path, "the scene, .gltf or .glb");
+    CLI::Option* const bounces = app.add_option(
+        "--bounces", settings.bounces,
+        "trace paths: light scatters at this many surfaces and one more, or at any number: N|unlimited");
+    app.add_option("--shadow-through", settings.shadowThrough,
+                   "what rays to lights pass: opaque, nothing; alpha, BLEND; glass, clear glass, too, on the "
+                   "straight "
+                   "line")
+        ->check(CLI::IsMember({"opaque", "alpha", "glass"}))
+        ->capture_default_str()
+        ->needs(bounces);
+    app.add_option("--roulette", settings.rouletteFrom,
+                   "the number of scatterings from which paths end at random, by their throughput")
+        ->capture_default_str()
+        ->needs(bounces);
+    app.add_flag("--no-roulette", settings.noRoulette, "no path ends at random")->needs(bounces);
+    app.add_option("--light-radius", settings.sizes.radius, "metres, of point and spot lights")
+        ->check(CLI::Range(0.0, 1e6))
+        ->needs(bounces);
+    app.add_option("--sun-angle", settings.sizes.sunDiameter, "radians, the diameter of directional lights")
+        ->check(CLI::Range(0.0, 3.0))
+        ->needs(bounces);
+    app.add_option("--environment", settings.environment, "the sky as an equirectangular map, .hdr or .exr")
+        ->needs(bounces);
+    app.add_option("--seed", settings.sampling.seed, "of the paths")->capture_default_str()->needs(bounces);
+    app.add_option("--threads", settings.sampling.threads, "0: one for each core; all give the same picture")
+        ->check(CLI::Range(0U, 1024U))
+        ->capture_default_str()
+        ->needs(bounces);
+    app.add_option("--errors", settings.errors, "write the standard error of each pixel, .exr")
+        ->needs(bounces);
     app.add_option("--size", settings.size, "WxH, pixels, 1 to 4096 each way")->capture_default_str();
-    app.add_option("--spp", settings.samples,
-                   "rays a pixel: 1, through its centre; more, in 4 repeats of strata, at least as many")
+    app.add_option(
+           "--spp,--samples", settings.samples,
+           "rays a pixel: 1, through its centre; more, in 4 repeats of strata, at least as many; paths, at "
+           "random places")
         ->check(CLI::Range(1U, 1U << 20U))
         ->capture_default_str();
     app.add_flag("--device-points", settings.devicePoints, "they lie where samples of glint render do");

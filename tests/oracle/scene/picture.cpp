@@ -21,10 +21,11 @@ Picture pictureOf(const View& view, const PixelAt& pixelAt) {
 
 }  // namespace
 
-void forRows(std::uint32_t count, const std::function<void(std::uint32_t)>& row) {
+void forRows(std::uint32_t count, const std::function<void(std::uint32_t)>& row, std::uint32_t threads) {
     std::atomic<std::uint32_t> next = 0;
-    std::vector<std::jthread> threads(std::max(std::thread::hardware_concurrency(), 1U));
-    for (std::jthread& thread : threads) {
+    std::vector<std::jthread> workers(threads > 0 ? threads
+                                                  : std::max(std::thread::hardware_concurrency(), 1U));
+    for (std::jthread& thread : workers) {
         thread = std::jthread([&] {
             for (std::uint32_t y = next++; y < count; y = next++) {
                 row(y);

@@ -47,7 +47,7 @@ Picture samplePicture(const SceneRenderer& renderer, const View& view, std::uint
 
 LinearImage toImage(const Picture& picture);
 
-// Calls `row` for each of `count` rows, on all cores.
-void forRows(std::uint32_t count, const std::function<void(std::uint32_t)>& row);
+// Calls `row` for each of `count` rows, on all cores or that many threads.
+void forRows(std::uint32_t count, const std::function<void(std::uint32_t)>& row, std::uint32_t threads = 0);
 
 }  // namespace glint::oracle

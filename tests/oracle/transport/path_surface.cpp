@@ -1,0 +1,78 @@
+#include "oracle/transport/path_surface.h"
+
+#include "oracle/scene/lobes.h"
+
+namespace glint::oracle {
+
+struct PathSurface::Lobes {
+    Surroundings around;
+    SurfaceLobes surface;
+
+    Lobes(const Textures& textures, const SurfacePoint& point, const Vec3& incoming,
+          const Surroundings& given)
+        : around(given), surface(textures, point, incoming, -1.0, &around) {}
+};
+
+PathSurface::PathSurface(const Textures& textures, const SurfacePoint& point, const Vec3& incoming,
+                         const Vec3& outsideIor, bool nested)
+    : lobes_(std::make_unique<Lobes>(textures, point, incoming, Surroundings{outsideIor, nested})) {}
+
+PathSurface::~PathSurface() = default;
+
+bool PathSurface::unlit() const {
+    return lobes_->surface.inputs.material().isUnlit();
+}
+
+Vec3 PathSurface::baseColor() const {
+    return Vec3(lobes_->surface.inputs.baseColor());
+}
+
+Vec3 PathSurface::emission() const {
+    return lobes_->surface.emission;
+}
+
+Vec3 PathSurface::scattered(const Vec3& toLight) const {
+    // A lobe counts if its normal and the triangle agree on which side the light is.
+    const SurfaceLobes& l = lobes_->surface;
+    const Vec3 light = l.toFrame(toLight);
+    const double height = glm::dot(geometricNormal(), toLight);
+    const Vec3 base = light.z * height > 0.0 ? glsl::evaluateBase(l.bsdf, l.features(), light) : Vec3(0.0);
+    return glsl::addLayersAbove(l.bsdf.layers, l.features(), l.bsdf.view, light, height, base);
+}
+
+double PathSurface::density(const Vec3& direction) const {
+    const SurfaceLobes& l = lobes_->surface;
+    return glsl::bsdfPdf(l.bsdf, l.features(), l.toFrame(direction));
+}
+
+PathSample PathSurface::sample(const Vec3& point) const {
+    const SurfaceLobes& l = lobes_->surface;
+    const glsl::BsdfSample chosen = glsl::sampleBsdf(l.bsdf, l.features(), point);
+    if (!(chosen.pdf > 0.0)) {
+        return {};
+    }
+    PathSample result;
+    result.direction = glm::normalize(l.frame * chosen.direction);
+    result.density = chosen.pdf;
+    result.weight = scattered(result.direction) / chosen.pdf;
+    return result;
+}
+
+bool PathSurface::clear() const {
+    return !unlit() && lobes_->surface.has(GLINT_TRANSMISSION);
+}
+
+bool PathSurface::volume() const {
+    return !unlit() && lobes_->surface.has(GLINT_VOLUME);
+}
+
+Vec3 PathSurface::straightThrough() const {
+    const SurfaceLobes& l = lobes_->surface;
+    return l.bsdf.transmitted * (glsl::schlickPassed(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z) * l.baseShare());
+}
+
+Vec3 PathSurface::geometricNormal() const {
+    return lobes_->surface.side * lobes_->surface.inputs.point().geometricNormal;
+}
+
+}  // namespace glint::oracle
