@@ -232,6 +232,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
+    GLINT_ADDRESS(LightNode) lightNodes;  // in packages with --lights K: the tree, then the lights without bounds
     GLINT_ADDRESS(Sample) samples;    // samples of every pixel, effect by effect
     GLINT_ADDRESS(Radiance) radiance;  // the radiance that the rays bring, in the same order; kPath* as a float
     GLINT_ADDRESS(Ray) rays;
@@ -258,6 +259,8 @@ struct FrameConstants {
     uint recordsBy;
     uint rayMask;  // instances that share no bit with it are not hit
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
+    uint lightTreeNodes;   // nodes of the tree
+    uint unboundedLights;  // leaves after them
 };
 
 GLINT_INTEROP_END

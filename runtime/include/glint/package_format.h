@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 9;
+inline constexpr std::uint32_t kVersion = 10;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -96,6 +96,9 @@ enum class Ordering : std::uint32_t {
     Count = 6,
 };
 
+// The most lights that a surface chooses by a hierarchy.
+inline constexpr std::uint32_t kMaxLightSamples = 64;
+
 struct PackageHeader {
     char magic[8];
     std::uint32_t version;
@@ -121,6 +124,8 @@ struct PackageHeader {
     Passes passes;
     HitAnswer answer;
     Bindings bindings;
+    std::uint32_t lightSamples;  // lights that a surface chooses by the hierarchy; 0: it takes all, without one
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -260,7 +265,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 120);
+static_assert(sizeof(PackageHeader) == 128);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);
