@@ -148,6 +148,7 @@ TEST(ManyLights, AutoTakesAllOfFew) {
 // choose none of them.
 TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
     gltf::Scene scene = hallOfLights(60);
+    scene.lights.pop_back();  // the sun
     for (gltf::Light& light : scene.lights) {
         light.range = 3.0F;
     }
@@ -172,7 +173,7 @@ TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
     });
     ASSERT_TRUE(moving.ok());
     const double away = meanOf(moving.render(package::kStrategyUber, setupOf(scene, 1, 1)));
-    EXPECT_LT(away, 0.5 * meanOf(reference)) << "only the sun shines";
+    EXPECT_EQ(away, 0.0) << "out of range";
     const Status moved = moving.gpuScene().updateAndWait({instances, lights});
     ASSERT_TRUE(moved) << toString(moved.error());
     const LinearImage image = moving.render(package::kStrategyUber, setupOf(scene, 64, 1));
