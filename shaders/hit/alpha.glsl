@@ -1,9 +1,22 @@
 // The alpha of a candidate, for ray traversal over masked geometry.
 #include "generated/mask_stages.glsl"
+#include "hit/blend.glsl"
 
-// Returns whether the candidate passes its material's alpha test: glTF 2.0, section 3.9.4. It reads mip 0, because
-// traversal knows no footprint. The module's own cases do not matter here: a ray of any case meets masks of all cases.
-bool passesAlphaTest(HostGeometry geometry, uint primitive, vec2 barycentrics) {
+#if GLINT_BLENDED
+
+// What tells a ray from other rays, whichever strategy and tracer sends it.
+uint rayKey(vec3 origin, vec3 direction) {
+    uvec3 a = floatBitsToUint(origin);
+    uvec3 b = floatBitsToUint(direction);
+    return hashOf(hashOf(a.x, a.y, a.z), hashOf(b.x, b.y, b.z), 0u);
+}
+#endif
+
+// Returns whether the ray stops at the candidate: the alpha test of glTF 2.0, section 3.9.4, or with alphaMode BLEND a
+// random choice. It reads mip 0, because traversal knows no footprint. The module's own cases do not matter here: a ray
+// of any case meets masks of all cases.
+bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primitive, vec2 barycentrics) {
+    HostGeometry geometry = hostGeometry(geometryIndex);
     Features features = Features(GLINT_ALPHA_ALWAYS_LOBES, GLINT_ALPHA_ALWAYS_INPUTS, GLINT_ALPHA_SOMETIMES_LOBES,
                                  GLINT_ALPHA_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
     MaterialRecord material = hostMaterials().data[geometry.materialIndex];
@@ -17,5 +30,10 @@ bool passesAlphaTest(HostGeometry geometry, uint primitive, vec2 barycentrics) {
         alpha *= vertexAlpha(geometry, primitive, barycentrics);
     }
     runMaskOpacity(point, features, alpha);
+#if GLINT_BLENDED
+    if ((geometry.flags & kGeometryBlended) != 0u) {
+        return alpha > blendThreshold(rayKey(origin, direction), geometryIndex, primitive);
+    }
+#endif
     return alpha >= material.alphaCutoff;
 }

@@ -1,6 +1,9 @@
 // A ray answered with the light that comes back along it.
 #include "host/sky.glsl"
 #include "hit/samples.glsl"
+#if GLINT_PATHS
+#include "hit/path.glsl"
+#endif
 
 // The light that leaves the hit towards the viewer. `direct` counts only if nothing blocks the shadow ray. The caller
 // of shade() traces that ray, so that one ray query serves every case.
@@ -9,17 +12,41 @@ struct ShadeResult {
     vec3 direct;
     vec3 shadowDirection;  // unit vector
     float shadowDistance;  // metres; 0 if no light reaches the surface and no ray is needed
+#if GLINT_PATHS
+    PathStep path;
+#endif
 };
+
+// The answer of a hit that no light leaves.
+ShadeResult darkness() {
+#if GLINT_PATHS
+    return ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, endOfPath());
+#else
+    return ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+#endif
+}
 
 // The colour of a hit with an unknown shader ID. It occurs only if scene and package disagree.
 ShadeResult shadeUnknown() {
-    return ShadeResult(vec3(1.0, 0.0, 1.0), vec3(0.0), vec3(0.0), 0.0);
+    ShadeResult result = darkness();
+    result.radiance = vec3(1.0, 0.0, 1.0);
+    return result;
+}
+
+// Stores the light of a ray that ends without a surface to shade.
+void resolveEnd(uint target, vec3 radiance, uint path) {
+#if GLINT_PATHS
+    storeRadiance(target, radiance * GLINT_FRAME.paths.data[target].throughput, path);
+    endPath(target);
+#else
+    storeRadiance(target, radiance, path);
+#endif
 }
 
 void resolveMiss(uint target, vec3 direction) {
-    storeRadiance(target, hostSky(direction), kPathMiss);
+    resolveEnd(target, hostSky(direction), kPathMiss);
 }
 
 void resolveUnknown(uint target) {
-    storeRadiance(target, shadeUnknown().radiance, kPathHit);
+    resolveEnd(target, shadeUnknown().radiance, kPathHit);
 }

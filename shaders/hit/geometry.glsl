@@ -55,6 +55,29 @@ vec3 onSide(vec3 direction, vec3 side) {
     return normalize(direction + side * (max(abs(height), 1e-3) - height));
 }
 
+// Returns a vector that takes a point of a triangle away from the edges to which it is closer than `least`. Where two
+// walls meet, rounding may put a point of one behind the other, and a ray from there would leave the room; the
+// clearance along the point's own normal does not help. A point is moved by at most a sixth of the triangle. Edges are
+// in the world, from the first corner; `weights` are the barycentric coordinates.
+vec3 edgeInset(vec3 weights, vec3 edge1, vec3 edge2, float least) {
+    precise vec3 normal = cross(edge1, edge2);
+    precise float area = length(normal);
+    // Each corner's weight is the distance from the opposite edge over the corner's height above it.
+    precise vec3 lengths = vec3(length(edge2 - edge1), length(edge2), length(edge1));
+    precise vec3 missing = max(min(least * lengths / area, vec3(1.0 / 6.0)) - weights, vec3(0.0));
+    precise float sum = missing.x + missing.y + missing.z;
+    if (!(sum > 0.0)) {
+        return vec3(0.0);
+    }
+    // The corner with the largest weight gives what the others get.
+    bool first = weights.x >= weights.y && weights.x >= weights.z;
+    bool second = !first && weights.y >= weights.z;
+    precise float step1 = missing.y - (second ? sum : 0.0);
+    precise float step2 = missing.z - (!first && !second ? sum : 0.0);
+    precise vec3 inset = step1 * edge1 + step2 * edge2;
+    return inset;
+}
+
 // A triangle in its mesh's space, and a point on it.
 struct TrianglePoint {
     vec3 corner;

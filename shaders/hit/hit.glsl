@@ -5,6 +5,9 @@
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
+#if GLINT_PATHS
+#include "hit/path.glsl"
+#endif
 
 #ifndef GLINT_CORNER
 #define GLINT_CORNER(i) hostPosition(geometry, corner[i])
@@ -33,12 +36,20 @@ struct Hit {
 #if GLINT_VERTEX_ATTRIBUTES
     VertexAttributes attributes;  // of packs
 #endif
+#if GLINT_PATHS
+    PathArrival arrival;  // of the hit of a ray
+    vec3 inset;           // from `position` to where rays start, within the triangle's plane: see edgeInset()
+#endif
 };
 
 // Returns the start of a ray from the surface. It lies off the surface, on the side to which `direction` points.
 vec3 rayOrigin(Hit hit, vec3 direction) {
     float side = dot(hit.geometricNormal, direction) < 0.0 ? -1.0 : 1.0;
+#if GLINT_PATHS
+    precise vec3 origin = hit.position + hit.inset + side * hit.clearance * hit.geometricNormal;
+#else
     precise vec3 origin = hit.position + side * hit.clearance * hit.geometricNormal;
+#endif
     return origin;
 }
 
@@ -90,6 +101,9 @@ Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayD
     hit.geometricNormal = hit.frontFace ? front : -front;
     hit.clearance = planeError(front, TrianglePoint(p0, e1, e2, objectPosition), instance.objectToWorld,
                                instance.normalToWorld);
+#if GLINT_PATHS
+    hit.inset = edgeInset(weights, hit.edges[0], hit.edges[1], 2.0 * hit.clearance);
+#endif
 
     hit.normal = front;
     if (hasInput(features, GLINT_NORMALS)) {

@@ -8,12 +8,17 @@
 
 Hit loadHit(HitRecord record, vec3 direction, HostGeometry geometry, Features features) {
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
-    return fetchHit(geometry, record.primitive, barycentrics, direction, record.coneWidth, record.target, features);
+    Hit hit = fetchHit(geometry, record.primitive, barycentrics, direction, record.coneWidth, record.target, features);
+#if GLINT_PATHS
+    RayRecord ray = GLINT_FRAME.rays.data[record.ray];
+    hit.arrival = arrivalOf(record.target, ray.origin, record.coneWidth, ray.coneSpread);
+#endif
+    return hit;
 }
 
 // Returns the direction of the ray of a stored hit.
 vec3 rayDirection(HitRecord record, HostGeometry geometry) {
-#if GLINT_HIT_RECORD_PACKED && !GLINT_STEPS
+#if GLINT_HIT_RECORD_PACKED && !GLINT_STEPS && !GLINT_PATHS
     // It points from the start of the ray to the point of the triangle.
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
     vec3 point = trianglePosition(geometry, record.primitive, barycentrics);
@@ -34,5 +39,8 @@ void resolveHit(Hit hit, ShadeResult result) {
         radiance += lightOrDefer(hit.target, shadow);
     }
     storeRadiance(hit.target, radiance, kPathHit);
+#if GLINT_PATHS
+    storePath(hit, result.path);
+#endif
 }
 #endif

@@ -1,5 +1,8 @@
 // The samples of effects in memory: what primary surfaces send, and the light that comes back.
 #include "hit/bindings.glsl"
+#if GLINT_PATHS
+#include "hit/path.glsl"
+#endif
 
 uint pixelCount() {
     return GLINT_FRAME.width * GLINT_FRAME.height;
@@ -17,9 +20,19 @@ EffectSample noSample(uint outcome) {
 void storeSample(uint target, EffectSample drawn) {
     GLINT_FRAME.samples.data[target] = drawn;
     GLINT_FRAME.radiance.data[target] = vec4(0.0, 0.0, 0.0, float(kPathNone));
+#if GLINT_PATHS
+    beginPath(target);
+#endif
 }
 
-// path is one of kPath*.
+// path is one of kPath*. It is that of the first bounce; further bounces add their light.
 void storeRadiance(uint target, vec3 radiance, uint path) {
+#if GLINT_PATHS
+    if (GLINT_FRAME.bounce > 1u) {
+        // A sample has one ray at a time, so no other thread writes here.
+        GLINT_FRAME.radiance.data[target].rgb += radiance;
+        return;
+    }
+#endif
     GLINT_FRAME.radiance.data[target] = vec4(radiance, float(path));
 }

@@ -5,6 +5,9 @@
 #include "hit/material.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
+#if GLINT_PATHS
+#include "hit/path_sample.glsl"
+#endif
 
 // The dimensions of the random numbers of a sample.
 const uint kDimensionLight = 0u;
@@ -12,9 +15,18 @@ const uint kDimensionHostLight = 1u;  // and the next two; three more for each f
 // The pairs of the sequence.
 const uint kPairLightArea = 5u;
 
+// The same dimension, of the bounce that is shaded.
+uint shadingDimension(uint dimension) {
+#if GLINT_PATHS
+    return dimensionOfBounce(dimension);
+#else
+    return dimension;
+#endif
+}
+
 // A light of the host's list.
 HostLight lightOfHost(Hit hit, uint index) {
-    uint dimension = kDimensionHostLight + 3u * index;
+    uint dimension = shadingDimension(kDimensionHostLight + 3u * index);
     vec3 random = vec3(hostRandom(hit.target, dimension), hostRandom(hit.target, dimension + 1u),
                        hostRandom(hit.target, dimension + 2u));
     return hostLight(index, hit.position, random);
@@ -31,7 +43,7 @@ void aimAtLight(Hit hit, HostLight light, inout ShadeResult result) {
 #if GLINT_EFFECT_SHADOW
     if (hostLightHasSize(light)) {
         vec3 centre = aim.direction;
-        aim = hostSampleLightPoint(light, aim, hostRandomPair(hit.target, kPairLightArea));
+        aim = hostSampleLightPoint(light, aim, hostRandomPair(hit.target, shadingDimension(kPairLightArea)));
         if (aim.distance <= 0.0) {
             // The point is within the light.
             result.radiance += result.direct;
@@ -49,7 +61,7 @@ void aimAtLight(Hit hit, HostLight light, inout ShadeResult result) {
 // would bring without shadows (weighted reservoir sampling, Chao 1982). The result is unbiased, and exact if one light
 // dominates.
 void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult result) {
-    float random = hostRandom(hit.target, kDimensionLight);
+    float random = hostRandom(hit.target, shadingDimension(kDimensionLight));
     uint lights = hostLightCount(hit.position);
     float total = 0.0;
     float chosenWeight = 1.0;
@@ -79,9 +91,33 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
     }
 }
 
+#if GLINT_PATHS
+
+// Lights a surface that is lit. The path's next ray finds the light of the sky and of other surfaces; only at the last
+// bounce the sky stands in for them.
+ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
+    ShadeResult result = darkness();
+    SkyShares sky = wholeSky();
+    if (GLINT_FRAME.bounce == 1u) {
+        changeSkyOfHit(hit, features, sky);
+    }
+    result.radiance = surface.emission;
+    chooseLight(hit, surface, features, result);
+    if (pathGoesOn()) {
+        // An effect that has traced the transmitted light itself leaves none.
+        surface.bsdf.transmitted *= sky.transmitted;
+        result.path = nextStep(hit, surface, features, arrivingShare(hit.arrival, hit.position));
+    } else {
+        result.radiance += ambientLight(surface, features, hit.view, sky);
+    }
+    return result;
+}
+
+#else
+
 // Lights a surface that is lit.
 ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
-    ShadeResult result = ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    ShadeResult result = darkness();
     SkyShares sky = wholeSky();
     changeSkyOfHit(hit, features, sky);
     result.radiance = surface.emission + ambientLight(surface, features, hit.view, sky);
@@ -89,9 +125,41 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     return result;
 }
 
-ShadeResult shade(Hit hit, Features features) {
+#endif
+
+// Returns the light of the hit by itself, whatever path led to it.
+ShadeResult shadeAlone(Hit hit, Features features) {
     if (hasLobe(features, GLINT_UNLIT)) {
-        return ShadeResult(surfaceValues(hit, features).color.rgb, vec3(0.0), vec3(0.0), 0.0);
+        ShadeResult result = darkness();
+        result.radiance = surfaceValues(hit, features).color.rgb;
+        return result;
     }
     return shadeSurface(hit, evaluateSurface(hit, features), features);
 }
+
+#if GLINT_PATHS
+
+// Returns what of that light arrives at the primary surface.
+ShadeResult shade(Hit hit, Features features) {
+    vec3 arriving = arrivingShare(hit.arrival, hit.position);
+    if (hit.arrival.medium != 0u && !hit.frontFace && !showsBack(features)) {
+        // Only rays within a volume meet the back of a single-sided surface. It is not there.
+        ShadeResult result = darkness();
+        if (pathGoesOn()) {
+            result.path = straightStep(hit, arriving);
+        }
+        return result;
+    }
+    ShadeResult result = shadeAlone(hit, features);
+    result.radiance *= arriving;
+    result.direct *= arriving;
+    return result;
+}
+
+#else
+
+ShadeResult shade(Hit hit, Features features) {
+    return shadeAlone(hit, features);
+}
+
+#endif

@@ -13,7 +13,16 @@ struct SurfaceValues {
     GLINT_RELAXED float dielectric; // share of the light below the microfacets that no feature has taken yet
 };
 
+// Whether a hit may show the back of the surface: rays within a volume meet its surface from there.
+bool showsBack(Features features) {
+#if GLINT_PATHS
+    return hasInput(features, GLINT_DOUBLE_SIDED) || hasLobe(features, GLINT_VOLUME);
+#else
+    return hasInput(features, GLINT_DOUBLE_SIDED);
+#endif
+}
+
 // The normals of double-sided materials turn to the viewer.
 float facing(Hit hit, Features features) {
-    return hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace ? -1.0 : 1.0;
+    return showsBack(features) && !hit.frontFace ? -1.0 : 1.0;
 }

@@ -24,12 +24,12 @@ HitRecord hitRecord(RayRecord ray, uint rayIndex, TracePayload found) {
 
 #if GLINT_ALPHA_TESTED
 const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
-#define GLINT_PROCEED(query)                                                                                    \
+#define GLINT_PROCEED(query, origin, direction)                                                                 \
     while (rayQueryProceedEXT(query)) {                                                                         \
         uint candidate = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, false),                      \
                                        rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),             \
                                        rayQueryGetIntersectionGeometryIndexEXT(query, false));                  \
-        if (passesAlphaTest(hostGeometry(candidate),                                                            \
+        if (passesAlphaTest(origin, direction, candidate,                                                       \
                             uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)),                       \
                             rayQueryGetIntersectionBarycentricsEXT(query, false))) {                            \
             rayQueryConfirmIntersectionEXT(query);                                                              \
@@ -37,7 +37,7 @@ const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
     }
 #else
 const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
-#define GLINT_PROCEED(query) rayQueryProceedEXT(query)
+#define GLINT_PROCEED(query, origin, direction) rayQueryProceedEXT(query)
 #endif
 
 // Returns the closest hit of a ray.
@@ -45,7 +45,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, ray.origin, 0.0,
                           ray.direction, kFarDistance);
-    GLINT_PROCEED(query);
+    GLINT_PROCEED(query, ray.origin, ray.direction);
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
         return missRecord(ray, rayIndex);
     }
@@ -66,7 +66,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
                           GLINT_RAY_MASK, origin, 0.0, direction, distance);
-    GLINT_PROCEED(query);
+    GLINT_PROCEED(query, origin, direction);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
 
@@ -74,7 +74,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 float closestDistance(vec3 origin, vec3 direction, float most) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags, GLINT_RAY_MASK, origin, 0.0, direction, most);
-    GLINT_PROCEED(query);
+    GLINT_PROCEED(query, origin, direction);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT
                ? most
                : rayQueryGetIntersectionTEXT(query, true);

@@ -62,6 +62,18 @@ struct RayRecord {
     float coneSpread;  // growth of the width in a metre
 };
 
+// How the path of a sample goes on. There is one for each sample, in packages with paths of several bounces. 56 bytes.
+struct PathState {
+    vec3 origin;
+    uint medium;        // 1 + index of the material whose volume the ray is in; 0 for none
+    vec3 direction;     // unit vector
+    float density;      // with which the direction was sampled, by solid angle; 0 on the ray of the primary surface
+    vec3 throughput;    // factor of the radiance that the ray finds, since the primary surface
+    float coneWidth;    // width of the ray cone at the origin, metres
+    float coneSpread;   // growth of the width in a metre
+    uint goesOn;        // 1 if the ray is to be traced
+};
+
 // The result of a ray. 32 bytes.
 struct HitRecord {
     uint target;     // number of the sample
@@ -137,6 +149,7 @@ GLINT_INTEROP_END
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleArray { EffectSample data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RadianceArray { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PathArray { PathState data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HitArray { HitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PackedHitArray { PackedHitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowArray { ShadowRecord data[]; };
@@ -261,6 +274,11 @@ struct FrameConstants {
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
     uint lightTreeNodes;   // nodes of the tree
     uint unboundedLights;  // leaves after them
+    // In packages with paths of several bounces:
+    GLINT_ADDRESS(Ray) nextRays;  // the list of the next bounce
+    GLINT_ADDRESS(Path) paths;    // of every sample, in the order of the samples
+    uint bounce;      // of the hits that are being shaded, from 1; 0 on primary surfaces
+    uint lastBounce;  // hits of this bounce send no further ray
 };
 
 GLINT_INTEROP_END

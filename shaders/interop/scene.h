@@ -18,7 +18,8 @@ GLINT_INTEROP_BEGIN
 // GeometryRecord::flags
 GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration structure: the candidate must be tested
 GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
-GLINT_CONSTANT(kGeometryMasked, 4u);       // alphaMode MASK: the raster pass tests alpha, whether or not hits do
+GLINT_CONSTANT(kGeometryMasked, 4u);       // the raster pass tests alpha, whether or not hits do
+GLINT_CONSTANT(kGeometryBlended, 8u);      // alphaMode BLEND: alpha is compared with a random number, not with the cutoff
 GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are the host's own
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing

@@ -2,6 +2,7 @@
 // G-buffer: stores which triangle each pixel sees. The lighting pass reads materials, once for each pixel.
 #define GLINT_RASTER
 #include "bsdf/features.glsl"
+#include "hit/blend.glsl"
 #include "host/geometry.glsl"
 #include "host/material.glsl"
 #include "host/texture.glsl"
@@ -58,6 +59,14 @@ void main() {
         }
 #if GLINT_MASK_STAGES
         runMaskOpacity(point, features, alpha);
+#endif
+#if GLINT_BLENDED
+        if ((geometry.flags & kGeometryBlended) != 0u) {
+            uvec2 pixel = uvec2(gl_FragCoord.xy);
+            if (alpha <= blendThreshold(pixel.x + pixel.y * GLINT_FRAME.width, geometryIndex, primitive)) {
+                discard;
+            }
+        } else
 #endif
         if (alpha < material.alphaCutoff) {
             discard;

@@ -8,13 +8,15 @@
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 #include "hit/trace.glsl"
+#include "hit/path_ray.glsl"
 
 GLINT_RAY_WORKGROUP
 
 void main() {
     uint index = listIndex();
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        HitRecord hit = traceRay(GLINT_FRAME.rays.data[index], index, gl_RayFlagsCullBackFacingTrianglesEXT);
+        RayRecord ray = GLINT_FRAME.rays.data[index];
+        HitRecord hit = traceRay(ray, index, rayFlags(ray.target));
         storeHit(index, hit);
         storeKey(index, bucketOfGeometry(hit.geometry));
     }

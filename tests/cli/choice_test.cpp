@@ -81,13 +81,17 @@ TEST_F(Choice, RaysTestAlphaMasksWhereASceneHasThem) {
         const Outcome outcome = run(line);
         EXPECT_EQ(outcome.exit, 0) << outcome.err;
         EXPECT_EQ(outcome.err.find("[alpha-tested]") != std::string::npos, notes) << outcome.err;
-        EXPECT_EQ(outcome.err.find("BLEND is drawn opaque: Spare [alpha-blend]") != std::string::npos,
-                  scene.blended)
-            << outcome.err;
+        for (const auto& [note, asks] : {std::pair{"BLEND is drawn opaque: Floor [alpha-blend]", "tested"},
+                                         std::pair{"[alpha-stochastic]", ""}}) {
+            const bool asked = options.empty() ? *asks == '\0' : options.back() == asks;
+            EXPECT_EQ(outcome.err.find(note) != std::string::npos, scene.blended && asked) << outcome.err;
+        }
         return nlohmann::json::parse(readText(path("package/manifest.json"))).at("alpha").get<std::string>();
     };
     EXPECT_EQ(policy({}, {}, false), "opaque");
-    EXPECT_EQ(policy({.blended = true}, {}, false), "opaque");
+    EXPECT_EQ(policy({.blended = true}, {}, false), "stochastic");
+    EXPECT_EQ(policy({.blended = true}, {"--alpha", "tested"}, false), "tested");
+    EXPECT_EQ(policy({.masked = true, .blended = true}, {}, false), "stochastic");
     EXPECT_EQ(policy({.masked = true}, {}, true), "tested");
     EXPECT_EQ(policy({.masked = true}, {"--alpha", "opaque"}, false), "opaque");
     EXPECT_EQ(policy({.masked = true}, {"--alpha", "tested"}, false), "tested");

@@ -157,7 +157,8 @@ std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const 
         gltf["materials"][1]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.25;
     }
     if (options.blended) {
-        gltf["materials"][2]["alphaMode"] = "BLEND";
+        gltf["materials"][0]["alphaMode"] = "BLEND";
+        gltf["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][3] = 0.5;
     }
     if (options.variants) {
         gltf["extensionsUsed"].push_back("KHR_materials_variants");

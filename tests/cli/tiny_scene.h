@@ -9,7 +9,7 @@ struct TinyScene {
     bool unknownExtension = false;  // in extensionsUsed: a warning
     bool camera = true;
     bool masked = false;    // "Wall" has holes: alphaMode MASK with an alpha below the cut-off
-    bool blended = false;   // "Spare" has alphaMode BLEND
+    bool blended = false;   // "Floor" has alphaMode BLEND
     bool variants = false;  // "Day" gives the floor "Spare"; "Floor" gets a clearcoat
     // In "Slide" the wall moves by 1 m along X in a second, and its morph target lifts its top edge by 1 m.
     // In "Look" the camera moves by 1 m along X.

@@ -29,7 +29,7 @@ struct Room {
     unsigned number;
     const char* name;
     gltf::Scene (*make)();
-    materials::AlphaPolicy alpha;
+    package::AlphaPolicy alpha;
 };
 
 // The choices of a renderer, for one strategy and tracer.
@@ -284,8 +284,8 @@ TEST_P(Combinations, PackedHitsAreClose) {
 
 INSTANTIATE_TEST_SUITE_P(Rooms, Combinations,
                          ::testing::Values(Room{0, "Materials", roomOfMaterials,
-                                                materials::AlphaPolicy::Opaque},
-                                           Room{1, "Fence", roomWithFence, materials::AlphaPolicy::Tested}),
+                                                package::AlphaPolicy::Opaque},
+                                           Room{1, "Fence", roomWithFence, package::AlphaPolicy::Tested}),
                          [](const auto& room) { return std::string(room.param.name); });
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
     RenderSetup setup = squareSetup(scene);
     setup.samples = 3;
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
     // Jitter moves samples of the middle columns to either side, and those of the border off the quads.
     for (std::uint32_t y = 1; y < 31; ++y) {
@@ -67,7 +67,7 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
 
     // A new accumulation starts to count again, and a scene without NaN counts nothing.
     scene.meshes[0].primitives[0].colors[0][1] = 1.0F;
-    const LinearImage sound = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage sound = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(counters.nonFinite, 0U);
     expectColor(at(sound, 8, 16), kGreen, 1e-5F, "repaired");
 }
@@ -84,7 +84,7 @@ TEST_P(HardCases, NumbersThatAreNoneDoNotSpreadFromAMirror) {
                                                {0, 2, 0})));
     RenderSetup setup = squareSetup(scene);
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
     expectColor(at(image, 16, 4), {0, 0, 0}, 0.0F, "sees the infinite wall");
     expectColor(at(image, 16, 28), {1, 1, 1}, 1e-4F, "sees the sky");
@@ -216,7 +216,7 @@ TEST_P(HardCases, TransformsOfEveryKindShowTheSamePicture) {
         gltf::Primitive walls = intoSpace(roomWalls(), space);
         FrameCounters counters;
         const LinearImage image = render(litScene(std::move(walls), matrixOf(space)), setup,
-                                         materials::AlphaPolicy::Opaque, &counters);
+                                         package::AlphaPolicy::Opaque, &counters);
         expectSameImage(image, expected, space.name);
         EXPECT_EQ(counters.nonFinite, 0U);
     }
@@ -233,7 +233,7 @@ TEST_P(HardCases, FlattenedInstancesAreNotThere) {
         addInstance(scene, scene.nodes[0].mesh, flat);
     }
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(image.pixels, expected.pixels);
     EXPECT_EQ(counters.nonFinite, 0U);
 }
@@ -259,8 +259,8 @@ TEST_P(HardCases, DegenerateTrianglesChangeNothing) {
         walls.indices[i] += vertices;
     }
     FrameCounters counters;
-    const LinearImage image = render(litScene(std::move(walls), scaling(1, 1, 1)), setup,
-                                     materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image =
+        render(litScene(std::move(walls), scaling(1, 1, 1)), setup, package::AlphaPolicy::Opaque, &counters);
     expectSameImage(image, expected, "with degenerate triangles");
     EXPECT_EQ(counters.nonFinite, 0U);
 }
@@ -287,7 +287,7 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
         scene.images.back().format = gltf::PixelFormat::Rgba16;
         scene.materials[0].texture("normalTexture").texture = texture;
         FrameCounters counters;
-        const LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+        const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
         ASSERT_TRUE(allFinite(image));
         EXPECT_EQ(counters.nonFinite, 0U);
         expectSameImage(image, expected, "flat normals");

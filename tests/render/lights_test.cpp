@@ -103,7 +103,7 @@ TEST_P(Lights, PunctualLightsFollowTheirExtension) {
 TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
     const auto toImage = [&](const gltf::Scene& scene, const RenderSetup& setup) {
         FrameCounters counters;
-        LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+        LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
         EXPECT_EQ(counters.nonFinite, 0U);
         for (const Pixel& pixel : image.pixels) {
             EXPECT_TRUE(std::isfinite(pixel[0] + pixel[1] + pixel[2]));
@@ -254,8 +254,8 @@ TEST_P(Lights, AlphaIsTestedOrForcedOpaqueAsThePackageSays) {
     const gltf::Scene scene = shadowScene(true, 1);
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    const LinearImage opaque = render(scene, setup, materials::AlphaPolicy::Opaque);
-    const LinearImage tested = render(scene, setup, materials::AlphaPolicy::Tested);
+    const LinearImage opaque = render(scene, setup, package::AlphaPolicy::Opaque);
+    const LinearImage tested = render(scene, setup, package::AlphaPolicy::Tested);
     ASSERT_FALSE(opaque.pixels.empty() || tested.pixels.empty());
     expectColor(at(opaque, 16, 16), {0, 0, 0}, 1e-6F, "opaque: the cut-out plate throws a shadow");
     EXPECT_GT(at(tested, 16, 16)[1], 0.1F) << "tested: it does not";

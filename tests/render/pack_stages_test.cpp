@@ -98,7 +98,7 @@ RenderSetup darkSetup(const gltf::Scene& scene) {
     return setup;
 }
 
-compiler::CompileSettings separateCases(materials::AlphaPolicy alpha = materials::AlphaPolicy::Opaque) {
+compiler::CompileSettings separateCases(package::AlphaPolicy alpha = package::AlphaPolicy::Opaque) {
     compiler::CompileSettings settings;
     settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.keys.alpha = alpha;
@@ -185,7 +185,7 @@ gltf::Scene cutScene() {
 
 TEST(PackStages, OpacityCutsRasterAndShadowsAlike) {
     const gltf::Scene scene = cutScene();
-    const LoadedScene loaded(scene, separateCases(materials::AlphaPolicy::Tested));
+    const LoadedScene loaded(scene, separateCases(package::AlphaPolicy::Tested));
     ASSERT_TRUE(loaded.ok());
     const LinearImage image = loaded.render(package::kStrategyVisibility, darkSetup(scene));
     ASSERT_FALSE(image.pixels.empty());
@@ -254,7 +254,7 @@ TEST(PackStages, EveryStrategyTracerAndMergePolicyGivesOneImage) {
     LinearImage reference;
     int pictures = 0;
     for (const compiler::MergePolicy merge : policies) {
-        compiler::CompileSettings settings = separateCases(materials::AlphaPolicy::Tested);
+        compiler::CompileSettings settings = separateCases(package::AlphaPolicy::Tested);
         settings.plan.merge = merge;
         settings.strategies = package::kAllStrategies;
         settings.tracers = package::kAllTracers;

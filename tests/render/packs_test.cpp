@@ -61,7 +61,7 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
     for (const auto& [merge, strategy] : ways) {
         compiler::CompileSettings settings;
         settings.plan.merge = merge;
-        settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
         settings.strategies = strategy;
         const LoadedScene loaded(*scene, settings);
         ASSERT_TRUE(loaded.ok());

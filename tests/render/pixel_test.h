@@ -40,7 +40,7 @@ inline RenderSetup squareSetup(const gltf::Scene& scene) {
 class PixelTest : public ::testing::TestWithParam<package::Strategy> {
 protected:
     LinearImage render(const gltf::Scene& scene, const RenderSetup& setup,
-                       materials::AlphaPolicy alpha = materials::AlphaPolicy::Opaque,
+                       package::AlphaPolicy alpha = package::AlphaPolicy::Opaque,
                        FrameCounters* counters = nullptr) {
         compiler::CompileSettings settings;
         settings.plan.keys.alpha = alpha;

@@ -23,7 +23,7 @@ TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 0U);
     EXPECT_EQ(counters.of(package::kEffectReflection).skippedSky, 32U * 32U);
@@ -82,7 +82,7 @@ TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
     addInstance(scene, addMesh(scene, makeQuad(blue, {9, -9, 3}, {-18, 0, 0}, {0, 9, 0})));
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     FrameCounters counters;
-    const LinearImage image = render(scene, squareSetup(scene), materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, squareSetup(scene), package::AlphaPolicy::Opaque, &counters);
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 4), kRed, 1e-4F, "above");
@@ -165,7 +165,7 @@ TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
     setup.frame.sky = {kGreen, kGreen, kGreen};
     setup.frame.maxReflectionRoughness = 0.0F;
     FrameCounters counters;
-    const LinearImage image = render(scene, setup, materials::AlphaPolicy::Opaque, &counters);
+    const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");

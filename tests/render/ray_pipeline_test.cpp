@@ -55,7 +55,7 @@ compiler::CompileSettings settingsFor(ShadowPlacement shadows, compiler::MergePo
     settings.tracers = package::kAllTracers;
     settings.shadows = shadows;
     settings.plan.merge = merge;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     return settings;
 }
 
@@ -157,7 +157,7 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
     compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None);
     settings.strategies = package::kStrategyHitShaders;
     const LoadedScene tested(scene, settings);
-    settings.plan.keys.alpha = materials::AlphaPolicy::Opaque;
+    settings.plan.keys.alpha = package::AlphaPolicy::Opaque;
     const LoadedScene opaque(scene, settings);
     ASSERT_TRUE(tested.ok() && opaque.ok());
     const RenderSetup setup = hallSetup(scene);

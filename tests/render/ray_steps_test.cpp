@@ -43,7 +43,7 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     settings.strategies = package::kStrategyUber;
     settings.tracers = package::kAllTracers;
     settings.plan.merge = compiler::MergePolicy::All;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings);
     KnownRays known;
     if (!loaded.ok()) {
@@ -198,7 +198,7 @@ compiler::CompileSettings stepSettings() {
     settings.strategies = package::kAllStrategies;
     settings.tracers = package::kAllTracers;
     settings.plan.merge = compiler::MergePolicy::All;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     settings.bindings.sceneSet = 2;
     settings.bindings.pushOffset = 16;
     return settings;

@@ -48,7 +48,7 @@ protected:
 
     // Renders with both strategies under each of `merges`; all images must be the same.
     void expectAgreement(const gltf::Scene& scene, const std::vector<compiler::MergePolicy>& merges,
-                         materials::AlphaPolicy alpha) {
+                         package::AlphaPolicy alpha) {
         RenderSetup setup = defaultSetup(scene, 64, 36);
         // Everything that is not fully rough sends a ray, so that as many hits as possible are shaded.
         setup.frame.maxReflectionRoughness = 1.0F;
@@ -87,7 +87,7 @@ TEST_P(StrategiesAgree, UnderEveryMergePolicy) {
                         all ? std::vector{compiler::MergePolicy::None, compiler::MergePolicy::Family,
                                           compiler::MergePolicy::All}
                             : std::vector{compiler::MergePolicy::None, compiler::MergePolicy::All},
-                        materials::AlphaPolicy::Opaque);
+                        package::AlphaPolicy::Opaque);
     }
 }
 
@@ -104,7 +104,7 @@ TEST_P(StrategiesAgreeTested, WithAlphaMasks) {
         expectAgreement(*scene,
                         test::nightly() ? std::vector{compiler::MergePolicy::None, compiler::MergePolicy::All}
                                         : std::vector{compiler::MergePolicy::None},
-                        materials::AlphaPolicy::Tested);
+                        package::AlphaPolicy::Tested);
     }
 }
 

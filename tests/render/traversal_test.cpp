@@ -95,7 +95,7 @@ gltf::Scene stripes(bool shuffled) {
 LinearImage render(const gltf::Scene& scene, TraversalOrder order) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings,
                              [&](scene_view::SceneViewData& data) { data.traversalOrder = order; });
     if (!loaded.ok()) {

@@ -251,8 +251,7 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     }
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);
-    report.alpha =
-        nameOf(package->alphaTested() ? materials::AlphaPolicy::Tested : materials::AlphaPolicy::Opaque);
+    report.alpha = nameOf(package->alpha());
     report.cases = package->caseCount();
     for (const package::CaseEntry& entry : package->cases()) {
         report.caseNames.emplace_back(package->string(entry.name));
@@ -338,8 +337,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     const gltf::SceneList scenes({&*scene, 1});
     compiler::Settings planned = static_cast<const compiler::Settings&>(arguments);
     if (!arguments.package.empty()) {
-        planned.alpha =
-            materials::AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
+        planned.alpha = package::AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
     }
     const Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
     if (!plan) {

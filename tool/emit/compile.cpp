@@ -94,6 +94,15 @@ Status checkSettings(const CompileSettings& settings, const std::string& where) 
         return makeError("passes", where, "the renderer of whole frames has bindings of its own",
                          "add --passes steps, or leave out --bindings");
     }
+    if (settings.maxBounces == 0 || settings.maxBounces > package::kMaxBounces) {
+        return makeError("bounces", where,
+                         fmt::format("paths of {} bounces cannot be followed", settings.maxBounces),
+                         fmt::format("choose 1 to {}", package::kMaxBounces));
+    }
+    if (settings.passes == package::Passes::Steps && settings.maxBounces > 1) {
+        return makeError("bounces", where, "the rays of an engine's own end at their first hit",
+                         "leave out --bounces, or --passes steps");
+    }
     if (settings.bindings.pushOffset % 8 != 0) {
         return makeError("bindings", where,
                          fmt::format("push-offset={} is no multiple of 8, which the addresses in the push "

@@ -59,6 +59,7 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::HitCase, "strategies/hit_shaders/hit_case.rchit.mustache"},
     {ModuleRole::HitUnknown, "strategies/hit_shaders/hit_unknown.rchit"},
     {ModuleRole::HitMiss, "strategies/hit_shaders/hit_miss.rmiss"},
+    {ModuleRole::PathRays, "passes/path_rays.comp"},
     {ModuleRole::Deform, "passes/deform.comp"},
 };
 
@@ -211,11 +212,12 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             settings.tracers,
             settings.shadows,
             plan.effects.effects,
-            settings.plan.keys.alpha == materials::AlphaPolicy::Tested,
+            settings.plan.keys.alpha != package::AlphaPolicy::Opaque,
             static_cast<std::uint32_t>(plan.cases.size()),
             retiredIds(plan),
             std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
-            settings.passes};
+            settings.passes,
+            settings.maxBounces};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,

@@ -6,6 +6,7 @@
 #include "emit/host.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
+#include "emit/modules.h"
 
 #include <fmt/format.h>
 
@@ -75,9 +76,15 @@ std::string bindingDefines(const package::Bindings& bindings) {
 }
 
 std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
-    const bool hasMasked = std::ranges::any_of(scenes.materials(), [](const materials::Material& material) {
-        return material.alphaMode == materials::AlphaMode::Mask;
-    });
+    const auto has = [&](materials::AlphaMode mode) {
+        return std::ranges::any_of(scenes.materials(), [mode](const materials::Material& material) {
+            return material.alphaMode == mode;
+        });
+    };
+    const package::AlphaPolicy alphaPolicy = settings.plan.keys.alpha;
+    const bool hasBlended =
+        alphaPolicy == package::AlphaPolicy::Stochastic && has(materials::AlphaMode::Blend);
+    const bool hasMasked = has(materials::AlphaMode::Mask) || hasBlended;
     const auto flag = [](bool value) { return value ? 1 : 0; };
     std::string text = "// The scene as a whole: features of every primary surface, and of some.\n";
     defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
@@ -86,11 +93,11 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     // These macros are separate, so that other features of a scene do not change modules that test alpha.
     text += "// What the alpha test of rays needs of the same.\n";
     const materials::FeatureMask alpha =
-        settings.plan.keys.alpha == materials::AlphaPolicy::Tested ? alphaFeatures(*plan.model) : 0;
+        alphaPolicy != package::AlphaPolicy::Opaque ? alphaFeatures(*plan.model) : 0;
     defineFeatures(text, "GLINT_ALPHA", plan.always & alpha, plan.sometimes & alpha);
     text += "// Settings\n";
-    text += fmt::format("#define GLINT_ALPHA_TESTED {}\n",
-                        flag(settings.plan.keys.alpha == materials::AlphaPolicy::Tested));
+    text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(alphaPolicy != package::AlphaPolicy::Opaque));
+    text += fmt::format("#define GLINT_BLENDED {}\n", flag(hasBlended));
     text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
@@ -108,6 +115,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));
+    text += fmt::format("#define GLINT_PATHS {}\n", flag(package::hasPaths(shapeOf(scenes, plan, settings))));
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());

@@ -35,6 +35,7 @@ constexpr struct {
     {"", "MASK", Fact::Mask, false},
     {"", "BLEND", Fact::Blend, false},
     {"", "raysTestAlpha", Fact::RaysTestAlpha, false},
+    {"", "raysBlend", Fact::RaysBlend, false},
     {"reads", "TEXCOORD_0", Fact::ReadsTexCoord0, false},
     {"reads", "TEXCOORD_1", Fact::ReadsTexCoord1, false},
     {"", "movesTextures", Fact::MovesTextures, false},

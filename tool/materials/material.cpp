@@ -210,7 +210,9 @@ Certainty MaterialFacts::fact(Fact fact) const {
         case Fact::Blend:
             return certain(material_.alphaMode == AlphaMode::Blend);
         case Fact::RaysTestAlpha:
-            return certain(options_.alpha == AlphaPolicy::Tested);
+            return certain(options_.alpha != package::AlphaPolicy::Opaque);
+        case Fact::RaysBlend:
+            return certain(options_.alpha == package::AlphaPolicy::Stochastic);
         case Fact::ReadsTexCoord0:
             return certain(readsTexCoord(0));
         case Fact::ReadsTexCoord1:

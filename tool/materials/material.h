@@ -5,6 +5,7 @@
 #include "materials/material_model.h"
 
 #include <glint/names.h>
+#include <glint/package_format.h>
 
 #include <algorithm>
 #include <array>
@@ -151,17 +152,8 @@ struct PrimitiveInputs {
     }
 };
 
-enum class AlphaPolicy : std::uint8_t { Opaque, Tested };
-inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
-    {AlphaPolicy::Opaque, "opaque", "ignored"},
-    {AlphaPolicy::Tested, "tested", "each candidate hit is tested"},
-};
-constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
-    return kAlphaNames;
-}
-
 struct KeyOptions {
-    AlphaPolicy alpha = AlphaPolicy::Opaque;
+    package::AlphaPolicy alpha = package::AlphaPolicy::Opaque;
     // The lobes that a key may have. If a lobe is left out, inputs that only this lobe reads are left out
     // too.
     FeatureMask keptLobes = kLobeMask;

@@ -221,6 +221,7 @@ enum class Fact : std::uint8_t {
     Mask,
     Blend,
     RaysTestAlpha,   // the package tests alpha
+    RaysBlend,       // the package shows surfaces of alphaMode BLEND by chance
     ReadsTexCoord0,  // a texture that the key reads uses the set
     ReadsTexCoord1,
     MovesTextures,    // a texture that the key reads has a transform

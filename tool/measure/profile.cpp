@@ -168,8 +168,10 @@ void takeHits(const Profile& profile, const Profile& expected, const materials::
 
 // Decides what `--alpha auto` stands for, and says so where a scene has surfaces that are not opaque.
 void chooseAlpha(const compiler::Settings& settings, const gltf::SceneList& scenes, PlanChoice& choice) {
-    if (!settings.alpha && compiler::hasAlphaMasks(scenes.materials(), scenes.primitives())) {
-        choice.options.keys.alpha = materials::AlphaPolicy::Tested;
+    const package::AlphaPolicy needed = compiler::neededAlphaPolicy(scenes.materials(), scenes.primitives());
+    const package::AlphaPolicy chosen = settings.alpha.value_or(needed);
+    choice.options.keys.alpha = chosen;
+    if (!settings.alpha && needed == package::AlphaPolicy::Tested) {
         choice.notes.push_back({Severity::Note, "alpha-tested", "",
                                 "the scene has alpha masks, so rays test them (--alpha tested)",
                                 "--alpha opaque ignores masks where rays hit, which is faster"});
@@ -180,9 +182,19 @@ void chooseAlpha(const compiler::Settings& settings, const gltf::SceneList& scen
             blended.push_back(material.name.empty() ? "a material without a name" : material.name);
         }
     }
-    if (!blended.empty()) {
+    if (needed != package::AlphaPolicy::Stochastic || blended.empty()) {
+        return;
+    }
+    if (chosen != package::AlphaPolicy::Stochastic) {
         choice.notes.push_back({Severity::Note, "alpha-blend", "",
                                 fmt::format("alphaMode BLEND is drawn opaque: {}", someOf(blended)), ""});
+    } else if (!settings.alpha) {
+        choice.notes.push_back(
+            {Severity::Note, "alpha-stochastic", "",
+             fmt::format("alphaMode BLEND is seen with the probability alpha, which is noise at few samples "
+                         "(--alpha stochastic): {}",
+                         someOf(blended)),
+             "--alpha tested draws BLEND opaque, which is faster and free of that noise"});
     }
 }
 
@@ -267,7 +279,6 @@ Result<Profile> readProfile(const std::filesystem::path& path) {
 Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes) {
     PlanChoice choice;
     choice.options = settings.compile.plan;
-    choice.options.keys.alpha = settings.alpha.value_or(materials::AlphaPolicy::Opaque);
     chooseAlpha(settings, scenes, choice);
     if (Status kept = keepPackLobes(settings, scenes, choice.options.keys); !kept) {
         return kept.error();

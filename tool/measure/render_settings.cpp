@@ -28,7 +28,7 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
                              const compiler::PlanOptions& plan) {
     compiler::BenchFacts facts;
     facts.masks = std::ranges::any_of(scene.materials, [](const materials::Material& material) {
-        return material.alphaMode == materials::AlphaMode::Mask;
+        return material.alphaMode != materials::AlphaMode::Opaque;
     });
     facts.furtherLobes = losesLobes(scene, plan);
     facts.textures = !scene.textures.empty();
@@ -103,6 +103,7 @@ compiler::CompileSettings compileSettings(const compiler::Settings& settings,
 RendererOptions rendererOptions(const compiler::Settings& settings) {
     RendererOptions options = settings.renderer;
     options.strategy = settings.strategy.value_or(options.strategy);
+    options.bounces = settings.compile.maxBounces;
     options.checkOrder = settings.validate;
     return options;
 }

@@ -55,7 +55,7 @@ class SurfaceBehaviour {
 public:
     explicit SurfaceBehaviour(const Surface& surface)
         : material_(*surface.material),
-          key_(makeKey(material_, *surface.primitive, {.alpha = materials::AlphaPolicy::Tested})),
+          key_(makeKey(material_, *surface.primitive, {.alpha = package::AlphaPolicy::Tested})),
           facts_(material_, *surface.primitive, options_, key_),
           factors_(material_, *surface.primitive, options_, key_,
                    materials::MaterialFacts::Textures::Ignored) {}

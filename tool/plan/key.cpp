@@ -163,13 +163,19 @@ materials::KeyOptions keepAllLobes(materials::KeyOptions options) {
     return options;
 }
 
-bool hasAlphaMasks(std::span<const materials::Material> materials,
-                   std::span<const materials::PrimitiveInputs> primitives) {
-    return std::ranges::any_of(primitives, [&](const materials::PrimitiveInputs& primitive) {
+package::AlphaPolicy neededAlphaPolicy(std::span<const materials::Material> materials,
+                                       std::span<const materials::PrimitiveInputs> primitives) {
+    package::AlphaPolicy needed = package::AlphaPolicy::Opaque;
+    for (const materials::PrimitiveInputs& primitive : primitives) {
         const materials::Material& material = materials[static_cast<std::size_t>(primitive.material)];
-        return (makeKey(material, primitive, {.alpha = materials::AlphaPolicy::Tested}) &
-                material.model().mask("alphaMask")) != 0;
-    });
+        if ((makeKey(material, primitive, {.alpha = package::AlphaPolicy::Stochastic}) &
+             material.model().mask("alphaMask")) != 0) {
+            needed = std::max(needed, material.alphaMode == materials::AlphaMode::Blend
+                                          ? package::AlphaPolicy::Stochastic
+                                          : package::AlphaPolicy::Tested);
+        }
+    }
+    return needed;
 }
 
 }  // namespace glint::compiler

@@ -89,10 +89,10 @@ materials::FeatureMask makeKey(const materials::Material& material,
 // Returns the same options, but with all lobes, as primary surfaces need them.
 materials::KeyOptions keepAllLobes(materials::KeyOptions options);
 
-// Returns whether rays can meet a surface that an alpha mask makes invisible in places. Requires every
-// PrimitiveInputs::material to index `materials`.
-bool hasAlphaMasks(std::span<const materials::Material> materials,
-                   std::span<const materials::PrimitiveInputs> primitives);
+// Returns the policy under which rays see the alpha of every surface, which is Opaque if all are. Requires
+// every PrimitiveInputs::material to index `materials`.
+package::AlphaPolicy neededAlphaPolicy(std::span<const materials::Material> materials,
+                                       std::span<const materials::PrimitiveInputs> primitives);
 
 // Returns whether the shares of hits are counted rather than expected from the primitives.
 bool countsHits(const PlanOptions& options);

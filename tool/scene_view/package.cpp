@@ -92,8 +92,7 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
         return mismatch(folder,
                         "has no pass for meshes that follow joints or morph targets, as the scene has");
     }
-    const materials::KeyOptions keys{package.alphaTested() ? materials::AlphaPolicy::Tested
-                                                           : materials::AlphaPolicy::Opaque};
+    const materials::KeyOptions keys{package.alpha()};
     for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {
         const package::PrimitiveEntry* entry = known.findPrimitive(
             static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));

@@ -34,6 +34,7 @@ struct CompileSettings {
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
+    std::uint32_t maxBounces = 1;  // of paths: 1 to package::kMaxBounces
     package::Passes passes = package::Passes::Frame;
     package::HitAnswer answer = package::HitAnswer::Radiance;
     package::Bindings bindings{};  // Passes::Steps alone may have other than the default's

@@ -17,7 +17,7 @@ using Configuration = std::map<std::string, std::string, std::less<>>;
 
 // The facts about scene and device on which the values worth trying depend.
 struct BenchFacts {
-    bool masks = false;         // some materials have an alpha mask
+    bool masks = false;         // some materials have the alpha mode MASK or BLEND
     bool furtherLobes = false;  // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool manyLights = false;   // more than --lights auto takes whole

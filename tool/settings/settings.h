@@ -40,7 +40,7 @@ struct Settings {
     std::optional<package::Strategy> strategy = package::kStrategyVisibility;
     // A package also gets the strategy that should be fastest, besides compile.strategies.
     bool advisesStrategy = false;
-    std::optional<materials::AlphaPolicy> alpha{};  // none: tested if the scene has masks
+    std::optional<package::AlphaPolicy> alpha{};  // none: as the scene needs
     Sun sun = Sun::Auto;
     std::optional<double> sky{};       // factor of the default sky's radiance; none: as bright as the lights
     std::uint32_t samples = 1;         // for each pixel

@@ -209,6 +209,14 @@ constexpr Descriptor kRows[] = {
      .what = "the most surfaces that a refracted ray meets; after that it shows the sky",
      .values = number<&Settings::frame, &FrameOptions::maxInterfaces>(1, 64),
      .bench = approximates("64", "2 4 8 16 32", "2 8")},
+    {.name = "bounces",
+     .commands = kMakers,
+     .stage = SettingStage::Choice,
+     .group = kEffectOptions,
+     .what = "the most bounces of a path: rays that its hits send in turn",
+     .values = kBounces,
+     .bench = kNoPicture,
+     .recorded = true},
     {.name = "hit-lobes",
      .commands = kPlanners,
      .stage = SettingStage::Package,
@@ -260,12 +268,12 @@ constexpr Descriptor kRows[] = {
      .commands = kPlanners,
      .stage = SettingStage::Package,
      .group = kShaders,
-     .what = "alpha masks of hits",
-     .values = optional<&Settings::alpha>("tested if the scene has masks"),
-     .bench = approximates("tested", "tested opaque", {},
+     .what = "alpha of hits",
+     .values = optional<&Settings::alpha>("stochastic if the scene has BLEND, tested if it has masks"),
+     .bench = approximates("stochastic", "stochastic tested opaque", {},
                            [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(
-                                   value.empty() && !facts.masks ? "no material has an alpha mask" : "");
+                               return std::string(value.empty() && !facts.masks ? "no material has alpha"
+                                                                                : "");
                            })},
     {.name = "precision",
      .commands = kMakers,

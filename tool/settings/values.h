@@ -463,6 +463,28 @@ inline constexpr SettingValues kLights{
     .max = package::kMaxLightSamples,
     .type = "auto|all|K"};
 
+inline constexpr std::string_view kUnlimited = "unlimited";
+
+inline constexpr SettingValues kBounces{
+    .form = ValueForm::Whole,
+    .text =
+        [](const Settings& settings) {
+            const std::uint32_t bounces = settings.compile.maxBounces;
+            return bounces == package::kMaxBounces ? std::string(kUnlimited) : fmt::format("{}", bounces);
+        },
+    .set =
+        [](Settings& settings, std::string_view text) {
+            settings.compile.maxBounces =
+                text == kUnlimited ? package::kMaxBounces : numberOf<std::uint32_t>(text);
+        },
+    .words =
+        [] {
+            return std::vector<SettingWord>{{std::string(kUnlimited), "64, the most"}};
+        },
+    .min = 1,
+    .max = package::kMaxBounces,
+    .type = "N|unlimited"};
+
 inline constexpr Named<bool> kEnergyNames[] = {{true, "on"}, {false, "off"}};
 inline constexpr Named<bool> kFalloffNames[] = {
     {false, "none", "all count alike"},

@@ -65,6 +65,8 @@ public:
     bool supports(package::Strategy strategy) const;
     // Whether masked geometry must be built non-opaque, so that rays run alpha tests.
     bool alphaTested() const;
+    // What rays do with the alpha of materials.
+    package::AlphaPolicy alpha() const;
     // Returns the strategies, the tracers, the placement of shadow rays and whatever else decides which
     // modules the package has.
     package::PackageShape shape() const;

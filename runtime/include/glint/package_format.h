@@ -44,10 +44,21 @@ enum class ShadowPlacement : std::uint32_t {
 };
 
 // How a hit is stored between passes.
+// What rays do with the alpha of a material.
+enum class AlphaPolicy : std::uint32_t {
+    Opaque = 0,      // nothing: whatever they hit is opaque
+    Tested = 1,      // alphaMode MASK is tested, and BLEND is opaque
+    Stochastic = 2,  // as above, but a ray stops at BLEND with the probability alpha
+};
+
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
 };
+
+// The most bounces that a path may have. It stands for "unlimited": paths that carry little light end
+// earlier.
+inline constexpr std::uint32_t kMaxBounces = 64;
 
 // Which passes a package has.
 enum class Passes : std::uint32_t {
@@ -107,8 +118,8 @@ struct PackageHeader {
     // The 64-bit XXH3 hash of every byte after this header. Its seed is the hash of this header with a
     // contentHash of 0.
     std::uint64_t contentHash;
-    std::uint32_t strategies;   // Strategy bits
-    std::uint32_t alphaTested;  // 1: masked geometry must be built non-opaque
+    std::uint32_t strategies;  // Strategy bits
+    AlphaPolicy alpha;
     std::uint32_t caseCount;
     std::uint32_t interopHash;  // low 32 bits of the hash of the interop headers the shaders were built with
     std::uint32_t tracers;      // Tracer bits
@@ -124,8 +135,8 @@ struct PackageHeader {
     Passes passes;
     HitAnswer answer;
     Bindings bindings;
+    std::uint32_t maxBounces;  // of paths: 1 to kMaxBounces
     std::uint32_t lightSamples;  // lights that a surface chooses by the hierarchy; 0: it takes all, without one
-    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -181,6 +192,7 @@ enum class ModuleRole : std::uint32_t {
     HitMiss = 24,
     EffectWalk = 25,  // one entry for each effect that follows its rays
     Deform = 26,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
+    PathRays = 27,    // puts the next rays of paths on the list, in packages with several bounces
 };
 
 struct ModuleEntry {

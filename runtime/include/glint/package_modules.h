@@ -26,6 +26,7 @@ struct PackageShape {
     std::vector<std::uint32_t> retired{};  // ascending shader IDs below caseCount that have no modules
     bool deforms = false;                  // a scene has meshes that follow skins or morph targets
     Passes passes = Passes::Frame;
+    std::uint32_t maxBounces = 1;
 };
 
 // One module of a package. The fields are those of ModuleEntry.
@@ -59,6 +60,7 @@ enum class Purpose : std::uint8_t {
     Shadows,  // those among them that defer shadow rays
     Walks,    // packages with effects that follow their rays in a pass of their own
     Tracing,  // packages in which a ray tracing pipeline traces
+    Paths,    // packages whose paths have several bounces
     Motion,   // packages with meshes that follow skins or morph targets
 };
 
@@ -80,6 +82,11 @@ inline constexpr Named<Tracer> kTracerNames[] = {
 inline constexpr Named<ShadowPlacement> kShadowNames[] = {
     {ShadowPlacement::Inline, "inline", "by the shader that shades the hit"},
     {ShadowPlacement::Deferred, "deferred", "from a list, by a pass of their own"},
+};
+inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
+    {AlphaPolicy::Opaque, "opaque", "ignored"},
+    {AlphaPolicy::Tested, "tested", "each candidate hit is tested; BLEND is opaque"},
+    {AlphaPolicy::Stochastic, "stochastic", "tested, and a ray stops at BLEND with the probability alpha"},
 };
 inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
     {HitRecordFormat::Full, "full", "32 bytes"},
@@ -119,6 +126,9 @@ constexpr std::span<const Named<Tracer>> namesOf(Tracer /*type*/) {
 }
 constexpr std::span<const Named<ShadowPlacement>> namesOf(ShadowPlacement /*type*/) {
     return kShadowNames;
+}
+constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
+    return kAlphaNames;
 }
 constexpr std::span<const Named<HitRecordFormat>> namesOf(HitRecordFormat /*type*/) {
     return kHitRecordNames;
@@ -193,6 +203,7 @@ inline constexpr RoleInfo kRoles[] = {
     {ModuleRole::HitMiss, kStrategyHitShaders, "HitMiss", ShaderKind::Miss},
     {ModuleRole::EffectWalk, kAllStrategies, "EffectWalk", ShaderKind::Tracing, Purpose::Walks,
      Repeated::ByWalk},
+    {ModuleRole::PathRays, kAllStrategies, "PathRays", ShaderKind::Compute, Purpose::Paths},
     {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute, Purpose::Motion},
 };
 
@@ -219,6 +230,11 @@ constexpr std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracer
     return (others ? tracers : 0U) | (pipelines ? std::uint32_t{kTracerRayPipeline} : 0U);
 }
 
+// Whether hits send rays further.
+constexpr bool hasPaths(const PackageShape& shape) {
+    return shape.passes == Passes::Frame && shape.effects.rays != 0 && shape.maxBounces > 1;
+}
+
 // Whether a package of this shape needs modules with this purpose.
 constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
     const bool frame = shape.passes == Passes::Frame;
@@ -232,6 +248,8 @@ constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
             return hits && shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Deferred;
         case Purpose::Walks:
             return frame && shape.effects.walks != 0;
+        case Purpose::Paths:
+            return hasPaths(shape);
         case Purpose::Tracing:
             return hits || shape.effects.tracesAtSurfaces();
         case Purpose::Motion:

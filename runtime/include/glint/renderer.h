@@ -120,6 +120,7 @@ enum class Pass : std::uint32_t {
     Lighting,
     EffectWalk,
     EffectRays,
+    PathRays,
     RayDispatch,
     Uber,
     Trace,
@@ -174,7 +175,9 @@ struct FrameCounters {
     std::uint32_t orderErrors = 0;        // with RendererOptions::checkOrder
     std::uint32_t unknownShader = 0;
     std::uint32_t nonFinite = 0;  // samples since sample 0 that were not finite; they count as black
-    // Misses, then hits by shader ID, of all effects. Filled if hits are ordered.
+    // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
+    std::vector<std::uint32_t> raysOfBounces;
+    // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
     std::vector<std::uint32_t> bucketCounts;
 
     // Returns zeros for an effect that the package lacks.
@@ -202,9 +205,10 @@ struct LinearImage {
 class Renderer {
 public:
     // Makes all pipelines, images and buffers and waits for the device. Errors: "renderer-options" (not
-    // exactly one strategy, tracer or ordering), "package-strategy" and "package-tracer" (the package lacks
-    // it), "device-tracer" and "device-ordering" (the device lacks it), "pipeline-statistics", "render-size"
-    // (no pixels, or more than the device supports), and those of memory and Vulkan's calls.
+    // exactly one strategy, tracer or ordering), "package-strategy", "package-tracer" and "package-bounces"
+    // (the package lacks it), "device-tracer" and "device-ordering" (the device lacks it),
+    // "pipeline-statistics", "render-size" (no pixels, or more than the device supports), and those of memory
+    // and Vulkan's calls.
     static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
                                                     const RendererOptions& options);
     ~Renderer();

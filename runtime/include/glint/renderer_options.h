@@ -28,6 +28,9 @@ struct RendererOptions {
     // Puts the rays of all effects into one list, so that their hits are ordered and shaded together. This
     // makes fewer, larger dispatches and takes more memory.
     bool batchEffects = false;
+    // The most bounces of a path in this renderer's frames: 1 to what the package was compiled for
+    // (PackageShape::maxBounces). With 1, the hits of the effects' rays send no further rays.
+    std::uint32_t bounces = 1;
     // The number of threads that make pipelines, the calling one included. 0 means as many as the machine
     // runs at once.
     std::uint32_t pipelineThreads = 0;
@@ -101,6 +104,8 @@ struct FrameOptions {
     // exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();
     Binning binning = Binning::None;
+    // The bounces of a path: up to RendererOptions::bounces. 0 means that many.
+    std::uint32_t bounces = 0;
     // The number of steps of the march in screen space that precedes a ray. 0 means no march.
     std::uint32_t screenSteps = 0;
     // The thickness that the march assumes behind the depth of a surface, as a share of the surface's

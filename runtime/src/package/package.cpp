@@ -55,7 +55,11 @@ bool Package::supports(package::Strategy strategy) const {
 }
 
 bool Package::alphaTested() const {
-    return state_->header.alphaTested != 0;
+    return alpha() != package::AlphaPolicy::Opaque;
+}
+
+package::AlphaPolicy Package::alpha() const {
+    return state_->header.alpha;
 }
 
 package::PackageShape Package::shape() const {

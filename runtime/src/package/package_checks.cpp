@@ -93,8 +93,8 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.tracers == 0 || header.tracers > package::kAllTracers) {
         return outside("the set of tracers", header.tracers);
     }
-    if (header.alphaTested > 1) {
-        return outside("the alpha policy", header.alphaTested);
+    if (header.alpha > package::AlphaPolicy::Stochastic) {
+        return outside("the alpha policy", static_cast<std::uint32_t>(header.alpha));
     }
     if (header.shadows > package::ShadowPlacement::Deferred) {
         return outside("the placement of shadow rays", static_cast<std::uint32_t>(header.shadows));
@@ -113,6 +113,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     }
     if (header.answer > package::HitAnswer::Surface) {
         return outside("the answer to a ray", static_cast<std::uint32_t>(header.answer));
+    }
+    if (header.maxBounces == 0 || header.maxBounces > package::kMaxBounces) {
+        return outside("the number of bounces", header.maxBounces);
     }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
@@ -166,11 +169,12 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
         return altered(where, name + " lacks features that its case takes for granted");
     }
     constexpr std::uint32_t kKnownFlags =
-        gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided | gpu::kGeometryMasked;
+        gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided | gpu::kGeometryMasked | gpu::kGeometryBlended;
     if ((entry.geometryFlags & ~kKnownFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
         return altered(where, name + " has unknown flags");
     }
-    if ((entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 && state.header.alphaTested == 0) {
+    if ((entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 &&
+        state.header.alpha == package::AlphaPolicy::Opaque) {
         return altered(where, name + " is alpha tested, and the package is not");
     }
     return okStatus();
@@ -303,8 +307,9 @@ Status checkEffects(const Package::State& state, const std::string& where) {
 
 package::PackageShape shapeOf(const Package::State& state) {
     const package::PackageHeader& header = state.header;
-    package::PackageShape shape{header.strategies,       header.tracers,  header.shadows, {},
-                                header.alphaTested != 0, header.caseCount};
+    package::PackageShape shape{
+        header.strategies, header.tracers, header.shadows, {}, header.alpha != package::AlphaPolicy::Opaque,
+        header.caseCount};
     for (const package::EffectInfo& effect : state.effects) {
         shape.effects.add(effect);
     }
@@ -315,6 +320,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     }
     shape.deforms = header.deforms != 0;
     shape.passes = header.passes;
+    shape.maxBounces = header.maxBounces;
     return shape;
 }
 

@@ -71,6 +71,8 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.samples = frame.samples.address;
     constants.radiance = frame.radiance.address;
     constants.rays = frame.rays.address;
+    constants.nextRays = frame.nextRays.address;
+    constants.paths = frame.paths.address;
     constants.hits = frame.hits.address;
     constants.packedHits = frame.hits.address;
     constants.shadows = frame.shadows.address;

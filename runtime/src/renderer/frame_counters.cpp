@@ -45,12 +45,14 @@ EffectCounters countersOf(const std::vector<std::uint32_t>& values, const packag
 }
 
 // Adds the counters of a round that was read back at `bytes`.
-void addRound(const std::uint8_t* bytes, const FrameSize& size, std::uint32_t effects,
+void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::State::Round& round,
               FrameCounters& counters) {
     std::array<std::uint32_t, 2> lists{};
     static_assert(sizeof(lists) == kRoundCounterBytes);
     std::memcpy(lists.data(), bytes, sizeof(lists));
     counters.rays += lists[gpu::kCounterRays];
+    counters.raysOfBounces.resize(std::max<std::size_t>(counters.raysOfBounces.size(), round.bounce));
+    counters.raysOfBounces[round.bounce - 1] += lists[gpu::kCounterRays];
     counters.shadowRays += lists[gpu::kCounterShadowRays];
     if (!size.ordered) {
         return;
@@ -60,8 +62,9 @@ void addRound(const std::uint8_t* bytes, const FrameSize& size, std::uint32_t ef
     counters.bucketCounts.resize(counts.size());
     std::ranges::transform(counts, counters.bucketCounts, counters.bucketCounts.begin(), std::plus<>{});
     for (EffectCounters& effect : counters.effects) {
-        if (effect.effect == effects) {
-            effect.bucketCounts = counts;
+        if (effect.effect == round.effects) {
+            effect.bucketCounts.resize(counts.size());
+            std::ranges::transform(counts, effect.bucketCounts, effect.bucketCounts.begin(), std::plus<>{});
         }
     }
 }

@@ -49,7 +49,8 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const std::uint64_t samples = std::uint64_t{size.width} * size.height * std::max(size.sampleCount, 1U);
     // There is a sample for every pixel and effect, and 32 bits number the samples.
     if (samples > std::numeric_limits<std::uint32_t>::max() ||
-        samples * sizeof(gpu::EffectSample) > context.limits.maxBufferBytes) {
+        samples * std::max(sizeof(gpu::EffectSample), sizeof(gpu::PathState)) >
+            context.limits.maxBufferBytes) {
         return makeError("render-size", "",
                          "the rays of " + asked + " pixels do not fit a buffer of the device",
                          "render a smaller image");
@@ -141,6 +142,8 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
          MemoryUse::Device},
         {frame.rays, ownRays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
+        {frame.nextRays, size.paths ? ownRays * sizeof(gpu::RayRecord) : 0, kStorage, MemoryUse::Device},
+        {frame.paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {frame.orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},

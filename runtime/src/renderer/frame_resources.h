@@ -32,6 +32,8 @@ struct FrameResources {
     Buffer samples;    // this buffer and those below serve all effects with rays
     Buffer radiance;
     Buffer rays;
+    Buffer nextRays;  // this buffer and the next are present if paths have several bounces
+    Buffer paths;
     Buffer hits;         // full or packed records; present if hits are ordered
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
@@ -50,11 +52,13 @@ struct FrameResources {
     VkDescriptorSet set = VK_NULL_HANDLE;
 
     // All buffers, with names for reports.
-    std::array<std::pair<const char*, const Buffer*>, 17> buffers() const {
+    std::array<std::pair<const char*, const Buffer*>, 19> buffers() const {
         return {{{"constants", &constants},
                  {"samples", &samples},
                  {"radiance of effects", &radiance},
                  {"rays", &rays},
+                 {"next rays", &nextRays},
+                 {"paths", &paths},
                  {"hits", &hits},
                  {"ordered hits", &orderedHits},
                  {"visited hits", &visitedHits},
@@ -89,8 +93,12 @@ struct FrameSize {
     bool hostRays = false;     // the list of rays and what they bring back are the host's
     bool rayPipeline = false;  // a ray tracing pipeline dispatches lists as rays
 
+    bool paths = false;         // the package's shaders keep the state of paths
+    std::uint32_t bounces = 1;  // the most of a path
+
+    // The number of lists in a frame: one for each bounce of each round of effects.
     std::uint32_t roundCount() const {
-        return batchCount > 0 ? sampleCount / batchCount : 0;
+        return batchCount > 0 ? sampleCount / batchCount * bounces : 0;
     }
 };
 

@@ -2,6 +2,7 @@
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_state.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -31,7 +32,8 @@ public:
         passes_.bindSets(sets);
         passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
         passes_.barrier(dependencies().passToPass);
-        recordEffects(frame.effects & state_.size.effects.rays);
+        bounces_ = bouncesOf(state_.size, frame);
+        recordEffects(frame.effects & state_.size.effects.rays, constants);
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
         passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
@@ -79,37 +81,80 @@ private:
     }
 
     // Records the rays of all effects that are on, either together or effect by effect.
-    void recordEffects(std::uint32_t withRays) {
-        std::vector<std::uint32_t>& rounds = state_.rounds;
-        rounds.clear();
+    void recordEffects(std::uint32_t withRays, const gpu::FrameConstants& constants) {
+        state_.rounds.clear();
         std::uint32_t listed = 0;  // effects whose rays are in the list
         for (const EffectName& info : state_.effects) {
             if ((withRays & info.effect) == 0) {
                 continue;
             }
-            if (listed == 0 && !rounds.empty()) {
-                startRound();
+            if (listed == 0 && !state_.rounds.empty()) {
+                startRound(constants);
             }
             recordRays(info);
             listed |= info.effect;
             if (state_.choice.batchEffects && listed != withRays) {
                 continue;
             }
-            passes_.barrier(dependencies().passToPass);
-            const std::uint32_t stretch = passes_.beginStretch({"hits", Pass::Hits});
-            HitPasses hits(state_, passes_);
-            hits.dispatchOfList();
-            hits.trace();
-            hits.order();
-            hits.shade();
-            passes_.endStretch(stretch);
-            finishRound(static_cast<std::uint32_t>(rounds.size()));
-            rounds.push_back(listed);
+            if (state_.size.paths) {
+                setBounce(constants, 1);
+            } else {
+                passes_.barrier(dependencies().passToPass);
+            }
+            recordHits(listed, 1);
+            for (std::uint32_t bounce = 2; bounce <= bounces_; ++bounce) {
+                recordPathRays(constants, bounce);
+                recordHits(listed, bounce);
+            }
             listed = 0;
         }
     }
 
-    void startRound() {
+    // Traces and shades the rays of the list.
+    void recordHits(std::uint32_t effects, std::uint32_t bounce) {
+        const std::uint32_t stretch = passes_.beginStretch({"hits", Pass::Hits});
+        HitPasses hits(state_, passes_);
+        hits.dispatchOfList();
+        hits.trace();
+        hits.order();
+        hits.shade();
+        passes_.endStretch(stretch);
+        finishRound(static_cast<std::uint32_t>(state_.rounds.size()));
+        state_.rounds.push_back({effects, bounce});
+    }
+
+    // Puts the rays that the hits of the bounce before sent on the next list, and makes it the list.
+    void recordPathRays(const gpu::FrameConstants& constants, std::uint32_t bounce) {
+        clearRound();
+        passes_.dispatchList({"path rays", Pass::PathRays}, pass(ModuleRole::PathRays),
+                             state_.frame.rayDispatch, 0);
+        setBounce(constants, bounce);
+    }
+
+    // Tells the passes which bounce they shade, and which list has its rays: odd bounces have the list that
+    // the effects fill. What the passes before wrote is visible to those that follow.
+    void setBounce(const gpu::FrameConstants& constants, std::uint32_t bounce) {
+        const bool swapped = bounce > 0 && bounce % 2 == 0;
+        const Buffer& target = state_.frame.constants;
+        const auto update = [&](std::size_t offset, const auto& value) {
+            vk_.CmdUpdateBuffer(commands_, target.handle.get(), offset, sizeof(value), &value);
+        };
+        passes_.barrier(dependencies().passToClear);
+        update(offsetof(gpu::FrameConstants, rays), swapped ? constants.nextRays : constants.rays);
+        update(offsetof(gpu::FrameConstants, nextRays), swapped ? constants.rays : constants.nextRays);
+        update(offsetof(gpu::FrameConstants, bounce), bounce);
+        passes_.barrier(dependencies().clearToPasses);
+        passes_.barrier(dependencies().passToPass);
+    }
+
+    void startRound(const gpu::FrameConstants& constants) {
+        if (state_.size.paths) {
+            setBounce(constants, 0);
+        }
+        clearRound();
+    }
+
+    void clearRound() {
         // The round before read these lists. Their counts are the first counters.
         static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
         passes_.barrier(dependencies().passToClear);
@@ -147,6 +192,7 @@ private:
     const DeviceTable& vk_;
     VkCommandBuffer commands_;
     PassRecorder passes_;
+    std::uint32_t bounces_ = 1;
 };
 
 }  // namespace

@@ -214,6 +214,7 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
     shape.strategies = choice.strategy;
     shape.tracers = choice.tracer;
     shape.deforms = false;  // the scene has that pass itself
+    shape.maxBounces = choice.bounces;
     return shape;
 }
 

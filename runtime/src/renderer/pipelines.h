@@ -21,6 +21,7 @@ struct PipelineChoice {
     package::Ordering ordering = package::Ordering::GlobalAtomics;
     bool checksOrder = false;
     bool batchEffects = false;
+    std::uint32_t bounces = 1;  // the most of a path
 };
 
 // How pipelines are made.

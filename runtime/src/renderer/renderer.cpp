@@ -19,7 +19,8 @@ constexpr float kFarDistance = 1e18F;
 constexpr std::uint32_t kMaxSurfaceSamples = 4096;
 constexpr std::uint32_t kMaxInterfaces = 64;
 
-Status checkFrame(const FrameOptions& frame) {
+// `most` is the number of bounces that the renderer was made for.
+Status checkFrame(const FrameOptions& frame, std::uint32_t most) {
     if (Status status = checkCamera(frame.camera); !status) {
         return status;
     }
@@ -44,6 +45,12 @@ Status checkFrame(const FrameOptions& frame) {
     if (frame.maxInterfaces == 0 || frame.maxInterfaces > kMaxInterfaces) {
         return makeError("frame-options", "", "maxInterfaces is 0 or above the limit",
                          "use 1 to " + std::to_string(kMaxInterfaces));
+    }
+    if (frame.bounces > most) {
+        return makeError(
+            "frame-options", "",
+            "frames of " + std::to_string(frame.bounces) + " bounces need a renderer for as many",
+            "use 0 to " + std::to_string(most) + ", or set RendererOptions::bounces");
     }
     if (!(frame.maxSampleRadiance > 0.0F)) {
         return makeError("frame-options", "", "maxSampleRadiance is not above 0",
@@ -97,6 +104,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.lightNodes = state.scene.lightNodes.address;
     constants.lightTreeNodes = state.scene.lightTree.treeNodes;
     constants.unboundedLights = state.scene.lightTree.unbounded;
+    constants.lastBounce = bouncesOf(state.size, options);
     fillLists(state.frame, state.size, constants);
     return constants;
 }
@@ -123,7 +131,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return status.error();
     }
     const std::uint32_t rounds = std::max(package::effectSlots(size.effects), 1U);
-    Result<Timer> timer = Timer::create(contextState, rounds * (kMaxFixedPasses + package.caseCount()));
+    Result<Timer> timer =
+        Timer::create(contextState, rounds * size.bounces * (kMaxFixedPasses + package.caseCount()));
     if (!timer) {
         return timer.error();
     }
@@ -154,7 +163,7 @@ Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Renderer::~Renderer() = default;
 
 Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
-    if (Status status = checkFrame(frame); !status) {
+    if (Status status = checkFrame(frame, state_->choice.bounces); !status) {
         return status;
     }
     if (Status status = checkOutside(state_->size, outsideOf(frame)); !status) {

@@ -110,7 +110,16 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     if (!tracer) {
         return tracer.error();
     }
+    const std::uint32_t compiledBounces = package.shape().maxBounces;
+    if (options.bounces == 0 || options.bounces > compiledBounces) {
+        return makeError("package-bounces", "",
+                         "paths of " + std::to_string(options.bounces) +
+                             " bounces are asked for, and the package was compiled for 1 to " +
+                             std::to_string(compiledBounces),
+                         "compile the package with more --bounces, or ask for fewer");
+    }
     PipelineChoice choice;
+    choice.bounces = options.bounces;
     choice.strategy = options.strategy;
     choice.tracer = *tracer;
     choice.ordering = options.ordering.value_or(orderingFor(context.limits, package.bucketCount()));
@@ -131,6 +140,8 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.hostRays = package.passes() == package::Passes::Steps;
     size.sampleCount = size.hostRays ? 1 : package::effectSlots(size.effects);
     size.batchCount = choice.batchEffects ? size.sampleCount : std::min(size.sampleCount, 1U);
+    size.paths = package::hasPaths(package.shape());
+    size.bounces = size.paths ? choice.bounces : 1;
     size.ordered = size.sampleCount > 0 && (choice.strategy & package::kOrderedStrategies) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;
     size.bucketAlignment =

@@ -6,6 +6,7 @@
 
 #include <glint/renderer.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -29,8 +30,18 @@ struct Renderer::State : PassState {
     std::vector<EffectName> effects;
     // The environment in set 1. It stays alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;
-    std::vector<std::uint32_t> rounds;  // Effect bits of each round of rays of the last recording
+    // A list of rays of the last recording: the first of a round, or that of a further bounce.
+    struct Round {
+        std::uint32_t effects = 0;  // Effect bits
+        std::uint32_t bounce = 1;
+    };
+    std::vector<Round> rounds;
 };
+
+// Returns the number of bounces of a frame's paths.
+inline std::uint32_t bouncesOf(const FrameSize& size, const FrameOptions& frame) {
+    return frame.bounces == 0 ? size.bounces : std::min(frame.bounces, size.bounces);
+}
 
 // Records all passes of a frame.
 void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame,

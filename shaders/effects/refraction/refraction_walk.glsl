@@ -288,5 +288,11 @@ uint walk(uvec2 pixel, uint target) {
     drawn.coneWidth = walker.coneWidth;
     drawn.coneSpread = GLINT_FRAME.pixelSpread;
     GLINT_FRAME.samples.data[target] = drawn;
+#if GLINT_PATHS
+    // What the ray meets is in the innermost medium, and sends its next ray there.
+    if (walker.media.count > 0u) {
+        GLINT_FRAME.paths.data[target].medium = walker.media.material[walker.media.count - 1u] + 1u;
+    }
+#endif
     return segments;
 }

@@ -15,14 +15,20 @@ vec3 mediumIors(Hit hit, Features features) {
 
 void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {
     vec3 iors = mediumIors(hit, features);
-    bool inside = hasInput(features, GLINT_DOUBLE_SIDED) && !hit.frontFace;
+    bool inside = showsBack(features) && !hit.frontFace;
     surface.bsdf.eta = inside ? vec3(1.0) / iors : iors;
     if (inside) {
         // From within, more is reflected than the albedos of the outside say, so the diffuse lobe is removed.
         surface.bsdf.diffuse = vec3(0.0);
         surface.bsdf.diffuseTransmitted = vec3(0.0);
     }
-    if (hasLobe(features, GLINT_ATTENUATION)) {
+#if GLINT_PATHS
+    // The path goes on in the volume, which absorbs over the real distance.
+    bool followed = pathGoesOn();
+#else
+    const bool followed = false;
+#endif
+    if (hasLobe(features, GLINT_ATTENUATION) && !followed) {
         float thickness = GLINT_MATERIAL_THICKNESS_FACTOR(hit) * hit.scale;
         if (hasInput(features, GLINT_THICKNESS_TEXTURE)) {
             vec4 texel = sampleSlot(hit, kThicknessTexture, features);

@@ -20,8 +20,12 @@ uint hitGeometry() {
 Hit shadedHit(HostGeometry geometry, Features features) {
     uint target = floatBitsToUint(shaded.radiance.x);
     float coneWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
-    return fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
-                    features);
+    Hit hit = fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
+                       features);
+#if GLINT_PATHS
+    hit.arrival = arrivalOf(target, gl_WorldRayOriginEXT, coneWidth, shaded.radiance.z);
+#endif
+    return hit;
 }
 
 #if GLINT_ANSWERS_SURFACE
@@ -37,5 +41,9 @@ void returnShaded(Hit hit, ShadeResult result) {
     shaded.shadowOrigin = rayOrigin(hit, result.shadowDirection);
     shaded.shadowDirection = result.shadowDirection;
     shaded.shadowDistance = result.shadowDistance;
+#if GLINT_PATHS
+    // The next ray waits in memory, where the other strategies leave it too, and the payload stays small.
+    storePath(hit, result.path);
+#endif
 }
 #endif

@@ -7,7 +7,12 @@ void main() {
 #if GLINT_ANSWERS_SURFACE
     storeSurface(floatBitsToUint(shaded.radiance.x), shadeUnknown().surface);
 #else
+    uint target = floatBitsToUint(shaded.radiance.x);
     shaded.radiance = shadeUnknown().radiance;
+#if GLINT_PATHS
+    shaded.radiance *= GLINT_FRAME.paths.data[target].throughput;
+    endPath(target);
+#endif
 #endif
     shaded.shadowDistance = 0.0;
 }

@@ -6,6 +6,7 @@
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
 #include "hit/corners.glsl"
 #include "hit/resolve.glsl"
+#include "hit/path_ray.glsl"
 #include "generated/cases.glsl"
 
 GLINT_RAY_WORKGROUP
@@ -16,7 +17,7 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
-    HitRecord record = traceRay(ray, index, gl_RayFlagsCullBackFacingTrianglesEXT);
+    HitRecord record = traceRay(ray, index, rayFlags(ray.target));
     if (record.geometry == kMissGeometry) {
         resolveMiss(record.target, ray.direction);
     } else {

@@ -65,7 +65,7 @@ private:
     static compiler::CompileSettings settings() {
         compiler::CompileSettings settings;
         settings.effects = {false, package::kEffectShadow | package::kEffectReflection, kMirrorRoughness};
-        settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
         settings.plan.merge = compiler::MergePolicy::All;
         settings.textureLod = compiler::TextureLod::Mip0;
         return settings;

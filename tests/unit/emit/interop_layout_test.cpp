@@ -106,7 +106,7 @@ void expectInModules(const compiler::CompiledPackage& package,
 TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
     compiler::CompileSettings settings;
     settings.debugInfo = true;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     expectInModules(compileSample(settings), compiler::interopLayouts());
 }
 

@@ -47,7 +47,7 @@ TEST(SceneSource, AlphaHasWhatItReadsAlone) {
     plan.sometimes = bit("baseColorTexture") | bit("normalTexture");
     compiler::CompileSettings settings;
     EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS_INPUTS", "0x0u"));
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const std::string text = sceneSource(plan, settings);
     EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS_INPUTS", fmt::format("{:#x}u", bit("texCoord0") >> 32U)));
     EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES_INPUTS", "0x1u"));
@@ -65,7 +65,7 @@ TEST(SceneSource, HoldsTheSettings) {
     settings.energyCompensation = false;
     settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const std::string other = sceneSource({}, settings);
     EXPECT_TRUE(defines(other, "GLINT_ENERGY_COMPENSATION", "0"));
     EXPECT_TRUE(defines(other, "GLINT_TEXTURE_LOD_CONES", "0"));

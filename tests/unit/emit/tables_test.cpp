@@ -273,7 +273,7 @@ TEST(MaterialTables, AbsorptionLeavesTheColorAtTheDistance) {
 
 TEST(Tables, HoldWhatTheHeaderSays) {
     compiler::CompileSettings settings;
-    settings.plan.keys.alpha = materials::AlphaPolicy::Tested;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     settings.plan.merge = compiler::MergePolicy::None;
     const compiler::CompiledPackage compiled = compileSample(settings);
     const compiler::PackageFile* const file = findFile(compiled, package::kTablesFile);
@@ -289,7 +289,7 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     EXPECT_EQ(reader.header.contentHash,
               base::hashBytes(std::span(file->bytes).subspan(sizeof(package::PackageHeader)), seed));
     EXPECT_EQ(reader.header.strategies, settings.strategies);
-    EXPECT_EQ(reader.header.alphaTested, 1U);
+    EXPECT_EQ(reader.header.alpha, package::AlphaPolicy::Tested);
     EXPECT_EQ(reader.header.caseCount, compiled.plan.cases.size());
     EXPECT_EQ(reader.header.interopHash, static_cast<std::uint32_t>(compiler::interopSourceHash()));
 
@@ -318,8 +318,7 @@ TEST(Tables, HoldWhatTheHeaderSays) {
 }
 
 TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
-    for (const materials::AlphaPolicy alpha :
-         {materials::AlphaPolicy::Opaque, materials::AlphaPolicy::Tested}) {
+    for (const package::AlphaPolicy alpha : {package::AlphaPolicy::Opaque, package::AlphaPolicy::Tested}) {
         compiler::CompileSettings settings;
         settings.strategies = package::kStrategyUber;
         settings.plan.keys.alpha = alpha;
@@ -331,7 +330,7 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
         ASSERT_EQ(primitives.size(), 4U);
         EXPECT_EQ(primitives[0].geometryFlags, 0U);
         EXPECT_EQ(primitives[1].geometryFlags, gpu::kGeometryDoubleSided);
-        const std::uint32_t tested = alpha == materials::AlphaPolicy::Tested ? gpu::kGeometryAlphaTested : 0U;
+        const std::uint32_t tested = alpha == package::AlphaPolicy::Tested ? gpu::kGeometryAlphaTested : 0U;
         EXPECT_EQ(primitives[3].geometryFlags, gpu::kGeometryMasked | tested);
         EXPECT_EQ(primitives[3].alphaMode, 1U);
         for (std::uint32_t i = 0; i < 4; ++i) {

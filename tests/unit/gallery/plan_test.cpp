@@ -51,7 +51,7 @@ TEST(GalleryPlan, CoversEveryFeature) {
     const auto inputs = glint::gltf::planningInputs(scene());
     const glint::compiler::Plan plan = glint::compiler::makePlan(
         scene().materials, inputs,
-        {{glint::materials::AlphaPolicy::Tested}, glint::compiler::MergePolicy::None});
+        {{glint::package::AlphaPolicy::Tested}, glint::compiler::MergePolicy::None});
     for (const glint::materials::Feature& feature : glint::materials::builtinMaterialModel().features) {
         EXPECT_NE((plan.always | plan.sometimes) & feature.mask(), 0U) << feature.name;
     }

@@ -181,7 +181,7 @@ TEST_F(MaterialPacks, OpacityKeepsMasks) {
     ASSERT_TRUE(model) << toString(model.error());
     materials::Material material(**model);
     material.alphaMode = materials::AlphaMode::Mask;
-    const materials::KeyOptions tested{.alpha = materials::AlphaPolicy::Tested};
+    const materials::KeyOptions tested{.alpha = package::AlphaPolicy::Tested};
     EXPECT_EQ(compiler::makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
     material["mudAmount"] = 1.0F;
     EXPECT_NE(compiler::makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);

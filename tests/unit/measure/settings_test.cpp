@@ -116,7 +116,7 @@ TEST(BenchSettings, OfTheReferenceApproximateNothing) {
     const compiler::Configuration exact = exactValues(rich());
     EXPECT_EQ(exact.at("texture-lod"), "mip0");
     EXPECT_EQ(exact.at("hit-lobes"), "all");
-    EXPECT_EQ(exact.at("alpha"), "tested");
+    EXPECT_EQ(exact.at("alpha"), "stochastic");
     EXPECT_EQ(exact.at("max-roughness"), "1");
     EXPECT_EQ(exact.at("ssr"), "off");
     EXPECT_FALSE(exact.contains("strategy"));

@@ -212,15 +212,16 @@ TEST(Key, HasBothBasesWhereMetalAndDielectricMix) {
 TEST(Key, RaysMeetAlphaMasksThatCanFail) {
     materials::Material material;
     const materials::PrimitiveInputs primitive = fullPrimitive();
-    const auto masked = [&] { return compiler::hasAlphaMasks({&material, 1}, {&primitive, 1}); };
-    EXPECT_FALSE(masked());
+    using enum package::AlphaPolicy;
+    const auto needed = [&] { return compiler::neededAlphaPolicy({&material, 1}, {&primitive, 1}); };
+    EXPECT_EQ(needed(), Opaque);
     material.alphaMode = materials::AlphaMode::Mask;
-    EXPECT_TRUE(masked());
+    EXPECT_EQ(needed(), Tested);
     material["alphaCutoff"] = 0.0F;
-    EXPECT_FALSE(masked());
+    EXPECT_EQ(needed(), Opaque);
     material["alphaCutoff"] = 0.5F;
     material.alphaMode = materials::AlphaMode::Blend;
-    EXPECT_FALSE(masked());
+    EXPECT_EQ(needed(), Stochastic);
 }
 
 TEST(Key, AStrengthOfZeroIsNotNeutralForALightSource) {
@@ -249,7 +250,7 @@ TEST(Key, OfAnUnlitMaterialReadsTheBaseColorAlone) {
 TEST(Key, ForcedOpaqueDropsAlphaModeAndSaysSo) {
     Dropped dropped;
     const materials::FeatureMask key =
-        compiler::makeKey(fullMaterial(), fullPrimitive(), {materials::AlphaPolicy::Opaque}, &dropped);
+        compiler::makeKey(fullMaterial(), fullPrimitive(), {package::AlphaPolicy::Opaque}, &dropped);
     EXPECT_EQ(key & bit("alphaMask"), 0U);
     EXPECT_NE(reasonFor(dropped, "alphaMask").find("--alpha opaque"), std::string::npos);
 }

@@ -157,7 +157,7 @@ TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
         const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested);
         const materials::FeatureMask kept =
             compiler::makeKey(fullMaterial(), fullPrimitive(),
-                              {materials::AlphaPolicy::Tested, materials::kLobeMask & ~lobe}, &dropped);
+                              {package::AlphaPolicy::Tested, materials::kLobeMask & ~lobe}, &dropped);
         EXPECT_EQ(kept & lobe, 0U) << info.name;
         EXPECT_EQ(kept & ~whole, 0U) << info.name;
         EXPECT_NE(reasonFor(dropped, std::string(info.name)).find("hits do not keep it"), std::string::npos);
@@ -168,7 +168,7 @@ TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
 }
 
 TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
-    const materials::KeyOptions none{materials::AlphaPolicy::Tested, 0};
+    const materials::KeyOptions none{package::AlphaPolicy::Tested, 0};
     const materials::FeatureMask core = compiler::makeKey(fullMaterial(), fullPrimitive(), none);
     EXPECT_EQ(core & materials::kLobeMask, 0U);
     for (const char* const texture : {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",

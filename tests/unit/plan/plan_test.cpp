@@ -268,7 +268,7 @@ TEST(Plan, BitsOfCasesAgreeWithTheirKeys) {
     for (const compiler::MergePolicy merge :
          {compiler::MergePolicy::None, compiler::MergePolicy::Family, compiler::MergePolicy::All,
           compiler::MergePolicy::Auto, compiler::MergePolicy::Profile}) {
-        compiler::PlanOptions options{{materials::AlphaPolicy::Tested}, merge};
+        compiler::PlanOptions options{{package::AlphaPolicy::Tested}, merge};
         for (const materials::PrimitiveInputs& primitive : scene.primitives) {
             const materials::Material& material =
                 scene.materials[static_cast<std::size_t>(primitive.material)];
@@ -306,7 +306,7 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
     const RandomScene scene(random);
     for (int i = 0; i < 50; ++i) {
         const materials::KeyOptions keys{
-            materials::AlphaPolicy::Tested,
+            package::AlphaPolicy::Tested,
             static_cast<materials::FeatureMask>(random()) & materials::kLobeMask};
         const compiler::Plan plan =
             compiler::makePlan(scene.materials, scene.primitives, {keys, compiler::MergePolicy::Family});
@@ -316,7 +316,7 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
             const materials::FeatureMask primary = plan.primaryMaskOfPrimitive[p];
             EXPECT_EQ(plan.keys[plan.keyOfPrimitive[p]].mask & ~primary, 0U);
             EXPECT_EQ(primary, compiler::makeKey(scene.materials[p], scene.primitives[p],
-                                                 {materials::AlphaPolicy::Tested}));
+                                                 {package::AlphaPolicy::Tested}));
             EXPECT_EQ(primary & ~whole, 0U);
             every &= primary;
         }

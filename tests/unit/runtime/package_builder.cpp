@@ -195,9 +195,10 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.sectionCount = writer.sectionCount();
     header.strategies = spec.strategies;
     header.tracers = spec.tracers;
-    header.alphaTested = spec.alphaTested;
+    header.alpha = spec.alpha;
     header.precision = spec.precision;
     header.caseCount = spec.caseCount;
+    header.maxBounces = 1;
     header.interopHash = spec.interopHash;
     header.materialTextureOffset = offsetof(TestMaterial, textures);
     header.materialTextureCount = 2;

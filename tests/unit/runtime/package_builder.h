@@ -56,7 +56,7 @@ struct PackageSpec {
     std::uint32_t version = package::kVersion;
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
     std::uint32_t tracers = package::kTracerRayQuery;
-    std::uint32_t alphaTested = 0;
+    package::AlphaPolicy alpha = package::AlphaPolicy::Opaque;
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
     std::uint32_t caseCount = 0;
     std::uint32_t interopHash = 0;

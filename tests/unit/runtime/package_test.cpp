@@ -43,7 +43,7 @@ protected:
 
 PackageSpec makeRichSpec() {
     PackageSpec spec = test::makeSpec();
-    spec.alphaTested = 1;
+    spec.alpha = package::AlphaPolicy::Tested;
     spec.precision = package::ShadingPrecision::Half;
     spec.textures = {{0, 1}, {0, 0}};
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
@@ -332,8 +332,8 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"filter", [](PackageSpec& s) { s.samplers[0].mip = 2; }},
         {"order", [](PackageSpec& s) { std::swap(s.primitives[0], s.primitives[1]); }},
         {"twice", [](PackageSpec& s) { s.primitives[1] = s.primitives[0]; }},
-        {"alpha policy", [](PackageSpec& s) { s.alphaTested = 0; }},
-        {"alpha policy value", [](PackageSpec& s) { s.alphaTested = 2; }},
+        {"alpha policy", [](PackageSpec& s) { s.alpha = package::AlphaPolicy::Opaque; }},
+        {"alpha policy value", [](PackageSpec& s) { s.alpha = package::AlphaPolicy{3}; }},
         {"precision", [](PackageSpec& s) { s.precision = package::ShadingPrecision{2}; }},
         {"geometry flags", [](PackageSpec& s) { s.primitives[0].geometryFlags |= 1U << 31; }},
         {"alpha mode", [](PackageSpec& s) { s.primitives[0].alphaMode = 3; }},

@@ -198,7 +198,7 @@ const std::map<std::string, std::set<std::string>, std::less<>>& enumerations() 
         {"hitRecord", namesOfAll<package::HitRecordFormat>()},
         {"textureLod", namesOfAll<compiler::TextureLod>()},
         {"merge", namesOfAll<compiler::MergePolicy>()},
-        {"alpha", namesOfAll<materials::AlphaPolicy>()}};
+        {"alpha", namesOfAll<package::AlphaPolicy>()}};
     return kEnumerations;
 }
 

@@ -5,6 +5,7 @@
 #include "emit/package/json.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <numbers>
@@ -234,6 +235,7 @@ base::Json toJson(const RenderReport& report) {
             {"passes", passes},
             {"counters",
              {{"rays", counters.rays},
+              {"raysOfBounces", counters.raysOfBounces},
               {"shadowRays", counters.shadowRays},
               {"orderErrors", counters.orderErrors},
               {"unknownShader", counters.unknownShader},
@@ -284,6 +286,9 @@ std::string toText(const RenderReport& report, Detail detail) {
             continue;  // not counted
         }
         rows.push_back({effect.name, effectText(effect)});
+    }
+    if (counters.raysOfBounces.size() > 1) {
+        rows.push_back({"rays by bounce", fmt::format("{}", fmt::join(counters.raysOfBounces, ", "))});
     }
     rows.push_back(
         {"memory", fmt::format("{} in {} images and {} buffers", formatBytes(report.footprint.bytes),

@@ -57,6 +57,13 @@ constexpr MemberLayout kRayRecord[] = {
     GLINT_MEMBER(RayRecord, coneSpread),
 };
 
+constexpr MemberLayout kPathState[] = {
+    GLINT_MEMBER(PathState, origin),     GLINT_MEMBER(PathState, medium),
+    GLINT_MEMBER(PathState, direction),  GLINT_MEMBER(PathState, density),
+    GLINT_MEMBER(PathState, throughput), GLINT_MEMBER(PathState, coneWidth),
+    GLINT_MEMBER(PathState, coneSpread), GLINT_MEMBER(PathState, goesOn),
+};
+
 constexpr MemberLayout kHitRecord[] = {
     GLINT_MEMBER(HitRecord, target),
     GLINT_MEMBER(HitRecord, geometry),
@@ -157,6 +164,10 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, tlasAddress),
     GLINT_MEMBER(FrameConstants, lightTreeNodes),
     GLINT_MEMBER(FrameConstants, unboundedLights),
+    GLINT_MEMBER(FrameConstants, nextRays),
+    GLINT_MEMBER(FrameConstants, paths),
+    GLINT_MEMBER(FrameConstants, bounce),
+    GLINT_MEMBER(FrameConstants, lastBounce),
 };
 
 constexpr MemberLayout kLightNode[] = {
@@ -173,11 +184,11 @@ constexpr MemberLayout kPushConstants[] = {
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(LightNode),      GLINT_STRUCT(LightRecord),       GLINT_STRUCT(EffectSample),
-    GLINT_STRUCT(RayRecord),      GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord),
-    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),
-    GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(GeometryRecord),  GLINT_STRUCT(InstanceRecord), GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(LightNode),       GLINT_STRUCT(LightRecord),    GLINT_STRUCT(EffectSample),
+    GLINT_STRUCT(RayRecord),       GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),
+    GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments),
+    GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),
 };
 
 constexpr MemberLayout kDeformRecord[] = {

@@ -86,16 +86,18 @@ private:
 };
 
 std::uint32_t geometryFlags(const materials::Material& material, materials::FeatureMask key,
-                            materials::AlphaPolicy alpha) {
+                            package::AlphaPolicy alpha) {
     const bool tested =
-        alpha == materials::AlphaPolicy::Tested && (key & material.model().mask("alphaMask")) != 0;
+        alpha != package::AlphaPolicy::Opaque && (key & material.model().mask("alphaMask")) != 0;
+    const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
     return (tested ? gpu::kGeometryAlphaTested : 0U) |
            (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
-           (material.alphaMode == materials::AlphaMode::Mask ? gpu::kGeometryMasked : 0U);
+           (material.alphaMode == materials::AlphaMode::Mask || blended ? gpu::kGeometryMasked : 0U) |
+           (blended ? gpu::kGeometryBlended : 0U);
 }
 
 std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::SceneList::Range range,
-                                           const Plan& plan, materials::AlphaPolicy alpha) {
+                                           const Plan& plan, package::AlphaPolicy alpha) {
     std::vector<PrimitiveEntry> entries;
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
         const materials::PrimitiveInputs& inputs = scenes.primitives()[i];
@@ -226,7 +228,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
         cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
                          static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
     }
-    const materials::AlphaPolicy alpha = settings.plan.keys.alpha;
+    const package::AlphaPolicy alpha = settings.plan.keys.alpha;
     const MaterialLayout layout = materialLayoutOf(plan);
     SceneTables tables;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
@@ -273,8 +275,9 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.passes = settings.passes;
     header.answer = settings.answer;
     header.bindings = settings.bindings;
+    header.maxBounces = settings.maxBounces;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
-    header.alphaTested = alpha == materials::AlphaPolicy::Tested ? 1 : 0;
+    header.alpha = alpha;
     header.materialTextureOffset = layout.textureOffset;
     header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());

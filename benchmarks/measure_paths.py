@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Measures the strategies by the number of bounces.
+
+    benchmarks/measure_paths.py SCENE [--glint FILE] [--bounces 1,2,4,8] [--strategies LIST] [--size WxH] [--rounds N]
+                                [--tracer NAME] [--merge POLICY]
+
+All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
+package that has those bounces. Prints Markdown: the device time of all passes of a sample, as the median with its
+least and greatest value, and the ratio of each strategy to uber in the same round.
+
+SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
+benchmarks/make_synthetic_scene.py, so that no path leaves it.
+"""
+import argparse
+import json
+import pathlib
+import random
+import statistics
+import subprocess
+import tempfile
+
+from make_synthetic_scene import write_scene
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+SIDE = 8  # squares along an edge of the box
+# Quaternions that turn a square's front from +z to face the box's centre from each of its walls, with the wall's axis.
+WALLS = [(2, -1, (0, 0, 0, 1)), (2, 1, (0, 1, 0, 0)), (0, -1, (0, 0.5 ** 0.5, 0, 0.5 ** 0.5)),
+         (0, 1, (0, -(0.5 ** 0.5), 0, 0.5 ** 0.5)), (1, -1, (-(0.5 ** 0.5), 0, 0, 0.5 ** 0.5)),
+         (1, 1, (0.5 ** 0.5, 0, 0, 0.5 ** 0.5))]
+
+
+def write_box(folder, keys):
+    """Writes a closed box with a camera and a lamp in it; returns the path of scene.gltf."""
+    count = 6 * SIDE * SIDE
+    path = write_scene(folder, count, keys)
+    scene = json.loads(path.read_text())
+    for number, node in enumerate(scene["nodes"]):
+        axis, sign, rotation = WALLS[number // (SIDE * SIDE)]
+        place = [(number // SIDE) % SIDE - (SIDE - 1) / 2, number % SIDE - (SIDE - 1) / 2]
+        place.insert(axis, sign * SIDE / 2)
+        # Slightly too large, so that neighbours overlap and no ray finds a gap.
+        node.update(translation=place, rotation=rotation, scale=[1.001] * 3)
+    scene["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1.2, "aspectRatio": 16 / 9, "znear": 0.01}}]
+    scene["nodes"] += [{"camera": 0, "translation": [0, 0, SIDE / 2 - 0.5]},
+                       {"extensions": {"KHR_lights_punctual": {"light": 0}}}]
+    scene["scenes"][0]["nodes"] += [count, count + 1]
+    scene["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 20}]}}
+    scene["extensionsUsed"] = sorted({*scene.get("extensionsUsed", []), "KHR_lights_punctual"})
+    path.write_text(json.dumps(scene))
+    return path
+
+
+def compile_packages(arguments, folder):
+    """Compiles the scene once for each number of bounces, for all strategies."""
+    for bounces in arguments.bounces:
+        subprocess.run([arguments.glint, "compile", arguments.scene, "-o", folder / str(bounces), "--bounces",
+                        str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", "all", "--effects",
+                        "shadow,reflection", "--max-roughness", "1", "--merge", arguments.merge],
+                       check=True, capture_output=True)
+
+
+def device_time(arguments, folder, strategy, bounces):
+    """Returns the milliseconds of the last sample's passes."""
+    stats = folder / "stats.json"
+    subprocess.run([arguments.glint, "render", arguments.scene, "-o", folder / "picture.png", "--package",
+                    folder / str(bounces), "--bounces", str(bounces), "--strategy", strategy, "--tracer",
+                    arguments.tracer, "--size", arguments.size, "--spp", str(arguments.spp), "--max-roughness", "1",
+                    "--stats", stats], check=True, capture_output=True)
+    return sum(entry["milliseconds"] for entry in json.loads(stats.read_text())["passes"])
+
+
+def spread(values):
+    return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("scene", help="a glTF file, or box:K")
+    parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", help="default build/release/bin/glint")
+    parser.add_argument("--bounces", default="1,2,4,8", help="default 1,2,4,8")
+    parser.add_argument("--strategies", default="uber,visibility,sorted-uber,hit-shaders",
+                        help="default uber,visibility,sorted-uber,hit-shaders; the first must be uber")
+    parser.add_argument("--size", default="640x360", help="default 640x360")
+    parser.add_argument("--spp", type=int, default=4, help="samples; the last one is timed; default 4")
+    parser.add_argument("--rounds", type=int, default=5, help="default 5")
+    parser.add_argument("--tracer", default="auto", help="auto, ray-query or ray-pipeline; default auto")
+    parser.add_argument("--merge", default="none", help="merge policy; default none")
+    arguments = parser.parse_args()
+    arguments.bounces = [int(count) for count in arguments.bounces.split(",")]
+    arguments.strategies = arguments.strategies.split(",")
+    if arguments.strategies[0] != "uber":
+        parser.error("--strategies must begin with uber, which is what the others are measured against")
+    chance = random.Random(1)
+    with tempfile.TemporaryDirectory(prefix="glint-paths-") as name:
+        folder = pathlib.Path(name)
+        title = arguments.scene
+        if title.startswith("box:"):
+            arguments.scene = write_box(folder / "box", int(title[len("box:"):]))
+        compile_packages(arguments, folder)
+        cases = [(strategy, count) for strategy in arguments.strategies for count in arguments.bounces]
+        times = {case: [] for case in cases}
+        for _ in range(arguments.rounds):
+            for case in chance.sample(cases, len(cases)):
+                times[case].append(device_time(arguments, folder, *case))
+    print(f"{title}, {arguments.size}, {arguments.rounds} rounds, ms of a sample\n")
+    print("| bounces | uber, ms | " + " | ".join(f"{strategy} / uber" for strategy in arguments.strategies[1:]) + " |")
+    print("|---|---|" + "---|" * (len(arguments.strategies) - 1))
+    for count in arguments.bounces:
+        uber = times[("uber", count)]
+        ratios = [[now / then for now, then in zip(times[(strategy, count)], uber)]
+                  for strategy in arguments.strategies[1:]]
+        print(f"| {count} | {spread(uber)} | " + " | ".join(spread(ratio) for ratio in ratios) + " |")
+
+
+if __name__ == "__main__":
+    main()

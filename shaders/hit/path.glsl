@@ -1,0 +1,70 @@
+// Paths of several bounces: what a hit knows of the ray that found it, and how the path goes on. The state of each
+// sample's path lies in memory from one bounce to the next.
+#include "hit/bindings.glsl"
+
+// What a hit knows of its path.
+struct PathArrival {
+    vec3 start;         // of the ray that found the hit
+    vec3 throughput;    // at the start of that ray
+    uint medium;        // as in PathState
+    float coneWidth;    // at the hit, metres
+    float coneSpread;
+};
+
+// The next ray of a path.
+struct PathStep {
+    vec3 direction;     // unit vector; 0 if the path ends
+    vec3 throughput;
+    float density;
+    float coneSpread;
+    uint medium;
+};
+
+PathStep endOfPath() {
+    return PathStep(vec3(0.0), vec3(0.0), 0.0, 0.0, 0u);
+}
+
+// Whether hits of this bounce send further rays. Primary surfaces send those of the effects instead.
+bool pathGoesOn() {
+    return GLINT_FRAME.bounce > 0u && GLINT_FRAME.bounce < GLINT_FRAME.lastBounce;
+}
+
+// Each bounce has dimensions of its own for its random numbers; the first one has those that are named.
+const uint kDimensionsOfBounce = 0x1000000u;
+
+uint dimensionOfBounce(uint dimension) {
+    return dimension + kDimensionsOfBounce * (max(GLINT_FRAME.bounce, 1u) - 1u);
+}
+
+PathArrival arrivalOf(uint target, vec3 start, float coneWidth, float coneSpread) {
+    PathState path = GLINT_FRAME.paths.data[target];
+    return PathArrival(start, path.throughput, path.medium, coneWidth, coneSpread);
+}
+
+// The path of a sample before its first hit.
+void beginPath(uint target) {
+    GLINT_FRAME.paths.data[target] =
+        PathState(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(1.0), 0.0, 0.0, 0u);
+}
+
+void endPath(uint target) {
+    if (pathGoesOn()) {
+        GLINT_FRAME.paths.data[target].goesOn = 0u;
+    }
+}
+
+// From this bounce on paths end at random, in proportion to the light that they still carry (Russian roulette): a path
+// goes on with the probability of its throughput's largest component, but at least kLeastSurvival, and is then divided
+// by that probability.
+const uint kRouletteBounce = 3u;
+const float kLeastSurvival = 0.05;
+
+// `random` is uniform in [0, 1). Returns whether the path goes on.
+bool survives(float random, inout vec3 throughput) {
+    if (GLINT_FRAME.bounce < kRouletteBounce) {
+        return true;
+    }
+    float chance = clamp(max(throughput.x, max(throughput.y, throughput.z)), kLeastSurvival, 1.0);
+    throughput /= chance;
+    return random < chance;
+}

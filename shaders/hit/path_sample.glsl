@@ -1,0 +1,70 @@
+// Chooses the next ray of a path at a lit surface.
+#include "bsdf/sample.glsl"
+#include "hit/hit.glsl"
+#include "hit/surface.glsl"
+#include "host/material.glsl"
+#include "host/random.glsl"
+#include "materials/volume/attenuation.glsl"
+
+// The pairs of dimensions of the sequence: a direction; a lobe, and whether the path survives.
+const uint kPairPathDirection = 6u;
+const uint kPairPathLobe = 7u;
+
+// The most that a cone grows in a metre at a bounce: see kIndirectSpread of the effect indirect diffuse.
+const float kMostPathSpread = 0.125;
+
+// The share of the light at a hit that arrives at the primary surface. The walk of a refracted ray counts what its own
+// last part absorbs.
+vec3 arrivingShare(PathArrival arrival, vec3 position) {
+    vec3 share = arrival.throughput;
+#ifdef GLINT_RECORD_ABSORPTION
+    if (arrival.medium != 0u && GLINT_FRAME.bounce > 1u) {
+        vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[arrival.medium - 1u]);
+        share *= volumeTransmittance(absorption, distance(position, arrival.start));
+    }
+#endif
+    return share;
+}
+
+// Samples a direction of all lobes by one-sample multiple importance sampling: one lobe is chosen by its share of the
+// light, and the weight is the whole BSDF over the density of the mixture (Veach 1997). `arriving` is the throughput at
+// the hit.
+PathStep nextStep(Hit hit, Surface surface, Features features, vec3 arriving) {
+    vec2 u = hostRandomPair(hit.target, dimensionOfBounce(kPairPathDirection));
+    vec2 choice = hostRandomPair(hit.target, dimensionOfBounce(kPairPathLobe));
+    BsdfSample drawn = sampleBsdf(surface.bsdf, features, vec3(u, choice.x));
+    PathStep step = endOfPath();
+    step.throughput = arriving * drawn.weight;
+    float largestShare = max(step.throughput.x, max(step.throughput.y, step.throughput.z));
+    // A throughput that is not a number compares false.
+    if (drawn.pdf <= 0.0 || !(largestShare > 0.0) || !survives(choice.y, step.throughput)) {
+        return step;
+    }
+    bool passes = drawn.direction.z < 0.0;
+    step.direction = onSide(toWorld(surface, drawn.direction), passes ? -hit.geometricNormal : hit.geometricNormal);
+    step.density = drawn.pdf;
+    // A sample stands for a solid angle of 1 / density. Its cone fills it, up to the width that keeps textures sharp
+    // enough for the mean of many samples.
+    step.coneSpread = max(hit.arrival.coneSpread, min(kMostPathSpread, inversesqrt(drawn.pdf)));
+    step.medium = hit.arrival.medium;
+    if (passes && hasLobe(features, GLINT_VOLUME)) {
+        step.medium = hit.frontFace ? hit.material + 1u : 0u;
+    }
+    return step;
+}
+
+// The ray goes straight on through a surface that does not affect it.
+PathStep straightStep(Hit hit, vec3 arriving) {
+    return PathStep(-hit.view, arriving, 0.0, hit.arrival.coneSpread, hit.arrival.medium);
+}
+
+// Keeps the next ray, for the pass that puts it on the list.
+void storePath(Hit hit, PathStep step) {
+    if (step.direction == vec3(0.0)) {
+        endPath(hit.target);
+        return;
+    }
+    GLINT_FRAME.paths.data[hit.target] =
+        PathState(rayOrigin(hit, step.direction), step.medium, step.direction, step.density, step.throughput,
+                  hit.arrival.coneWidth, step.coneSpread, 1u);
+}

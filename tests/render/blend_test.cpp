@@ -1,0 +1,193 @@
+// Tests alphaMode BLEND: the mean of many random choices is what the operator "over" gives for surfaces in
+// the order of depth, for what the camera sees, for what rays hit, and for what shadow rays pass.
+#include "render/pixel_test.h"
+
+#include <glint/strategies.h>
+
+#include "interop/scene.h"
+
+#include <cmath>
+#include <optional>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+struct Layer {
+    gltf::Float3 color;
+    float alpha;
+};
+
+// From front to back. The last one is opaque.
+constexpr std::array<Layer, 3> kLayers{Layer{kRed, 0.25F}, Layer{kGreen, 0.6F}, Layer{kBlue, 1.0F}};
+
+int addLayer(gltf::Scene& scene, const Layer& layer) {
+    materials::Material material = unlitMaterial(layer.color);
+    material.doubleSided = true;
+    material.alphaMode = materials::AlphaMode::Blend;
+    material["baseColorFactor"][3] = layer.alpha;
+    return addMaterial(scene, material);
+}
+
+// Returns the layers in front of the camera; or behind it, where a mirror in front of it shows them.
+gltf::Scene stackedLayers(bool inMirror) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    if (inMirror) {
+        const int mirror = addMaterial(scene, mirrorMaterial());
+        addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    }
+    float distance = 1.0F;
+    for (const Layer& layer : kLayers) {
+        const float z = inMirror ? distance : -distance;
+        addInstance(scene,
+                    addMesh(scene, makeQuad(addLayer(scene, layer), {-9, -9, z}, {18, 0, 0}, {0, 18, 0})));
+        distance += 1.0F;
+    }
+    return scene;
+}
+
+// The mean and the variance of one channel of a sample.
+struct Moments {
+    double mean = 0.0;
+    double variance = 0.0;
+};
+
+Moments momentsOf(std::size_t channel) {
+    double mean = 0.0;
+    double square = 0.0;
+    double seen = 1.0;
+    for (const Layer& layer : kLayers) {
+        const double color = layer.color[channel];
+        mean += seen * layer.alpha * color;
+        square += seen * layer.alpha * color * color;
+        seen *= 1.0 - layer.alpha;
+    }
+    return {mean, square - mean * mean};
+}
+
+Moments measured(const LinearImage& image, std::size_t channel) {
+    Moments result;
+    for (const Pixel& pixel : image.pixels) {
+        result.mean += pixel[channel];
+        result.variance += pixel[channel] * pixel[channel];
+    }
+    const auto count = static_cast<double>(image.pixels.size());
+    result.mean /= count;
+    result.variance = result.variance / count - result.mean * result.mean;
+    return result;
+}
+
+void expectOver(const LinearImage& image, double samples) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        const Moments expected = momentsOf(channel);
+        const double error =
+            std::sqrt(expected.variance / (samples * static_cast<double>(image.pixels.size())));
+        EXPECT_NEAR(measured(image, channel).mean, expected.mean, 4.0 * error) << "channel " << channel;
+    }
+}
+
+compiler::CompileSettings blendSettings() {
+    compiler::CompileSettings settings;
+    settings.plan.keys.alpha = package::AlphaPolicy::Stochastic;
+    settings.strategies = package::kAllStrategies;
+    settings.tracers = package::kAllTracers;
+    return settings;
+}
+
+TEST(Blend, TheCameraSeesLayersOverEachOther) {
+    const gltf::Scene scene = stackedLayers(false);
+    const LoadedScene loaded(scene, blendSettings());
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = squareSetup(scene);
+    const LinearImage once = loaded.render(package::kStrategyUber, setup);
+    ASSERT_FALSE(once.pixels.empty());
+    expectOver(once, 1.0);
+    for (const Pixel& pixel : once.pixels) {
+        const bool whole = std::ranges::any_of(
+            kLayers, [&](const Layer& layer) { return std::abs(pixel[0] - layer.color[0]) < 1e-5F; });
+        ASSERT_TRUE(whole) << "a sample shows " << pixel[0];
+    }
+    // Samples of a pixel are spread over the interval, so that noise falls faster than by chance.
+    setup.samples = 16;
+    const LinearImage often = loaded.render(package::kStrategyUber, setup);
+    ASSERT_FALSE(often.pixels.empty());
+    expectOver(often, 16.0);
+    EXPECT_LT(measured(often, 0).variance, 0.7 * momentsOf(0).variance / 16.0);
+}
+
+// The picture of a mirror is that of the camera, whoever traces and shades, and all of them choose alike.
+TEST(Blend, RaysSeeLayersOverEachOther) {
+    const gltf::Scene scene = stackedLayers(true);
+    const LoadedScene loaded(scene, blendSettings());
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = squareSetup(scene);
+    setup.samples = 2;
+    std::optional<LinearImage> reference;
+    for (const package::StrategyInfo& strategy : package::kStrategyTable) {
+        for (const package::Tracer tracer : {package::kTracerRayQuery, package::kTracerRayPipeline}) {
+            const bool pairs = !strategy.ownPipeline || tracer == package::kTracerRayPipeline;
+            if (!pairs || (sharedContext().handles().tracers & tracer) == 0) {
+                continue;
+            }
+            RendererOptions options;
+            options.strategy = strategy.strategy;
+            options.tracer = tracer;
+            const LinearImage image = loaded.render(options, setup);
+            ASSERT_FALSE(image.pixels.empty());
+            if (!reference) {
+                expectOver(image, 2.0);
+                reference = image;
+            }
+            expectSameImage(image, *reference, std::string(strategy.name));
+        }
+    }
+}
+
+TEST(Blend, ShadowsAreAsDarkAsTheAlpha) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material white;
+    white["metallicFactor"] = 0.0F;
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, white), {-4, -4, -2}, {8, 0, 0}, {0, 8, 0})));
+    addDirectionalLight(scene, {0.0F, -0.9284767F, -0.3713907F}, 3.0F);
+    RenderSetup setup = squareSetup(scene);
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const LoadedScene bare(scene, blendSettings());
+    ASSERT_TRUE(bare.ok());
+    const LinearImage lit = bare.render(package::kStrategyUber, setup);
+    // The plate is above the frustum, and between the sun and all of the wall that the camera sees.
+    const int plate = addLayer(scene, kLayers[0]);
+    addInstance(scene, addMesh(scene, makeQuad(plate, {-8, 3, 0.5F}, {16, 0, 0}, {0, 0, -2.4F})));
+    setup.samples = 4;
+    const LoadedScene covered(scene, blendSettings());
+    ASSERT_TRUE(covered.ok());
+    const LinearImage shaded = covered.render(package::kStrategyUber, setup);
+    ASSERT_EQ(shaded.pixels.size(), lit.pixels.size());
+    double share = 0.0;
+    for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
+        share += shaded.pixels[i][1] / lit.pixels[i][1];
+    }
+    const auto count = static_cast<double>(lit.pixels.size());
+    const double error = std::sqrt(0.25 * 0.75 / (4.0 * count));
+    EXPECT_NEAR(share / count, 0.75, 4.0 * error);
+}
+
+// Without BLEND in a scene its package has no code of it.
+TEST(Blend, OpaqueLayersArePlannedOpaque) {
+    gltf::Scene scene = stackedLayers(false);
+    for (materials::Material& material : scene.materials) {
+        material["baseColorFactor"][3] = 1.0F;
+    }
+    const LoadedScene loaded(scene, blendSettings());
+    ASSERT_TRUE(loaded.ok());
+    for (const package::PrimitiveEntry& entry : loaded.package().scene(0).primitives) {
+        EXPECT_EQ(
+            entry.geometryFlags & (gpu::kGeometryBlended | gpu::kGeometryAlphaTested | gpu::kGeometryMasked),
+            0U);
+    }
+}
+
+}  // namespace

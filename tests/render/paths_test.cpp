@@ -1,0 +1,411 @@
+// Paths of several bounces: every way to trace and shade them gives the same picture, and closed scenes have
+// the radiance that their series say.
+#include "render/hall.h"
+#include "render/harness.h"
+#include "render/rooms.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+using package::ShadowPlacement;
+
+constexpr const char* kEffects[] = {"shadow", "reflection", "refraction", "indirect-diffuse"};
+
+compiler::CompileSettings pathSettings(std::uint32_t bounces,
+                                       package::Strategy strategy = package::kStrategyVisibility) {
+    compiler::CompileSettings settings;
+    settings.strategies = strategy;
+    settings.maxBounces = bounces;
+    settings.effects = {false, 0};
+    for (const char* const effect : kEffects) {
+        settings.effects.named |= compiler::builtinEffects({effect});
+    }
+    settings.effects.maxReflectionRoughness = 1.0F;
+    settings.plan.merge = compiler::MergePolicy::None;
+    return settings;
+}
+
+RenderSetup pathSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height,
+                      std::uint32_t samples) {
+    RenderSetup setup = defaultSetup(scene, width, height);
+    setup.samples = samples;
+    setup.frame.maxReflectionRoughness = 1.0F;
+    return setup;
+}
+
+RendererOptions pathOptions(std::uint32_t bounces,
+                            package::Strategy strategy = package::kStrategyVisibility) {
+    RendererOptions options;
+    options.strategy = strategy;
+    options.bounces = bounces;
+    return options;
+}
+
+SkyView uniformSky(float radiance) {
+    const std::array<float, 3> sky{radiance, radiance, radiance};
+    return {sky, sky, sky};
+}
+
+void noLights(scene_view::SceneViewData& data) {
+    data.lights.clear();
+}
+
+double meanOf(const LinearImage& image) {
+    double sum = 0.0;
+    for (const auto& pixel : image.pixels) {
+        sum += pixel[0] + pixel[1] + pixel[2];
+    }
+    return sum / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+// Renders every strategy with every tracer that the device has, and with every ordering and binning that the
+// first strategy could disagree about.
+void expectAllWaysAgree(const gltf::Scene& scene, ShadowPlacement shadows, compiler::MergePolicy merge) {
+    constexpr std::uint32_t kBounces = 3;
+    compiler::CompileSettings settings = pathSettings(kBounces, package::kStrategyUber);
+    settings.strategies = package::kAllStrategies;
+    settings.tracers = package::kAllTracers;
+    settings.shadows = shadows;
+    settings.plan.merge = merge;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    const RenderSetup setup = pathSetup(scene, 32, 24, 2);
+    std::optional<LinearImage> reference;
+    FrameCounters expected;
+    for (const package::Strategy strategy : package::kStrategies) {
+        for (const package::Tracer tracer : package::kTracers) {
+            const bool has = (sharedContext().handles().tracers & tracer) != 0;
+            if (!has || (package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {
+                continue;
+            }
+            RendererOptions options = pathOptions(kBounces, strategy);
+            options.tracer = tracer;
+            options.checkOrder = true;
+            FrameCounters counters;
+            const LinearImage image = loaded.render(options, setup, &counters);
+            ASSERT_FALSE(image.pixels.empty());
+            if (!reference) {
+                reference = image;
+                expected = counters;
+                ASSERT_EQ(expected.raysOfBounces.size(), kBounces);
+                EXPECT_GT(expected.raysOfBounces[1], 200U);
+                EXPECT_GT(expected.raysOfBounces[2], 40U);
+            }
+            const std::string name =
+                std::string(package::nameOf(strategy)) + " with " + std::string(package::nameOf(tracer));
+            expectSameImage(image, *reference, name);
+            EXPECT_EQ(counters.raysOfBounces, expected.raysOfBounces) << name;
+            EXPECT_EQ(counters.shadowRays, expected.shadowRays) << name;
+            EXPECT_EQ(counters.orderErrors, 0U) << name;
+        }
+    }
+}
+
+TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
+    expectAllWaysAgree(hallScene(), ShadowPlacement::Inline, compiler::MergePolicy::None);
+}
+
+TEST(Paths, DeferredShadowsAndSharedCasesToo) {
+    expectAllWaysAgree(hallScene(), ShadowPlacement::Deferred, compiler::MergePolicy::All);
+}
+
+TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
+    const gltf::Scene scene = roomOfMaterials();
+    const LoadedScene loaded(scene, pathSettings(3));
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 24, 16, 2);
+    const LinearImage reference = loaded.render(pathOptions(3), setup);
+    ASSERT_FALSE(reference.pixels.empty());
+    for (const package::Ordering ordering :
+         {package::Ordering::WaveBallot, package::Ordering::LocalHistogram, package::Ordering::TileSort}) {
+        RendererOptions options = pathOptions(3);
+        options.ordering = ordering;
+        options.batchEffects = ordering == package::Ordering::LocalHistogram;
+        setup.frame.binning = ordering == package::Ordering::TileSort ? Binning::Octahedral : Binning::Sign;
+        expectSameImage(loaded.render(options, setup), reference, std::string(package::nameOf(ordering)));
+    }
+}
+
+// A package for one bounce has nothing of paths, and one for more makes the same picture if it is asked for
+// one.
+TEST(Paths, OneBounceIsThePictureWithoutPaths) {
+    const gltf::Scene scene = roomOfMaterials();
+    const LoadedScene plain(scene, pathSettings(1));
+    const LoadedScene paths(scene, pathSettings(4));
+    ASSERT_TRUE(plain.ok() && paths.ok());
+    const auto hasPathRays = [](const LoadedScene& loaded) {
+        return std::ranges::any_of(package::requiredModules(loaded.package().shape()),
+                                   [](const auto& key) { return key.role == package::ModuleRole::PathRays; });
+    };
+    EXPECT_FALSE(hasPathRays(plain));
+    EXPECT_TRUE(hasPathRays(paths));
+    const RenderSetup setup = pathSetup(scene, 24, 16, 4);
+    const LinearImage expected = plain.render(pathOptions(1), setup);
+    const LinearImage image = paths.render(pathOptions(1), setup);
+    ASSERT_FALSE(expected.pixels.empty());
+    expectSameImage(image, expected, "one of four bounces");
+    // Frames may ask for fewer bounces than their renderer was made for.
+    RenderSetup fewer = setup;
+    fewer.frame.bounces = 1;
+    expectSameImage(paths.render(pathOptions(4), fewer), expected, "a frame of one bounce");
+    const LinearImage more = paths.render(pathOptions(4), setup);
+    EXPECT_GT(std::abs(meanOf(more) - meanOf(expected)), 1e-3) << "further bounces change nothing";
+}
+
+TEST(Paths, MoreBouncesThanThePackageHasAreAnError) {
+    const gltf::Scene scene = roomOfMaterials();
+    const LoadedScene plain(scene, pathSettings(1));
+    ASSERT_TRUE(plain.ok());
+    RendererOptions options = pathOptions(2);
+    options.width = 8;
+    options.height = 8;
+    const auto renderer = Renderer::create(sharedContext(), plain.package(), plain.gpuScene(), options);
+    ASSERT_FALSE(renderer.ok());
+    EXPECT_EQ(renderer.error().id, "package-bounces");
+}
+
+materials::Material diffuse(float albedo, float emission) {
+    materials::Material material;
+    material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 1.0F;
+    material["specularFactor"] = 0.0F;
+    material["emissiveFactor"] = {emission, emission, emission};
+    return material;
+}
+
+// Adds the six walls of a box that faces inwards, from `low` to `high`.
+void addBox(gltf::Scene& scene, int material, gltf::Float3 low, gltf::Float3 high,
+            const gltf::Matrix4& world) {
+    const gltf::Float3 x{high[0] - low[0], 0, 0};
+    const gltf::Float3 y{0, high[1] - low[1], 0};
+    const gltf::Float3 z{0, 0, high[2] - low[2]};
+    const gltf::Float3 minusX{-x[0], 0, 0};
+    const auto add = [&](gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)), world);
+    };
+    add(low, z, x);                              // floor: z × x = y
+    add({low[0], high[1], low[2]}, x, z);        // ceiling: x × z = -y
+    add(low, x, y);                              // back: faces +z
+    add({high[0], low[1], high[2]}, minusX, y);  // front: faces -z
+    add(low, y, z);                              // left: y × z = x
+    add({high[0], low[1], low[2]}, z, y);        // right: z × y = -x
+}
+
+gltf::Scene closedBox(float albedo, float emission, const gltf::Matrix4& world = scaling(1, 1, 1)) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addBox(scene, addMaterial(scene, diffuse(albedo, emission)), {-1.13F, -0.77F, -2.31F},
+           {1.29F, 1.07F, 0.93F}, world);
+    return scene;
+}
+
+// In a closed box every wall of which emits e and reflects the share ρ, N bounces bring e Σ ρ^k with k from 0
+// to N, and all bounces e / (1 - ρ).
+TEST(Paths, AClosedBoxFollowsItsSeries) {
+    constexpr float kAlbedo = 0.6F;
+    constexpr float kEmission = 0.25F;
+    const gltf::Scene scene = closedBox(kAlbedo, kEmission);
+    const LoadedScene loaded(scene, pathSettings(package::kMaxBounces), noLights);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 16, 16, 4);
+    setup.frame.sky = uniformSky(0.0F);
+    double sum = kEmission;
+    double term = kEmission;
+    for (std::uint32_t bounces = 1; bounces <= 4; ++bounces) {
+        term *= kAlbedo;
+        sum += term;
+        setup.frame.bounces = bounces;
+        const LinearImage image = loaded.render(pathOptions(4), setup);
+        ASSERT_FALSE(image.pixels.empty());
+        // Up to the third bounce no path ends at random, so each pixel has the sum itself.
+        if (bounces <= 3) {
+            for (const auto& pixel : image.pixels) {
+                ASSERT_NEAR(pixel[0], sum, 2e-5 * sum) << bounces << " bounces";
+            }
+        }
+        EXPECT_NEAR(meanOf(image), sum, 0.01 * sum) << bounces << " bounces";
+    }
+    setup.frame.bounces = 0;
+    setup.samples = 16;
+    const double whole = meanOf(loaded.render(pathOptions(package::kMaxBounces), setup));
+    std::printf("unlimited: %.5f of %.5f\n", whole, kEmission / (1.0 - kAlbedo));
+    EXPECT_NEAR(whole, kEmission / (1.0 - kAlbedo), 0.01 * kEmission / (1.0 - kAlbedo));
+}
+
+// Returns a rotation about (1, 2, 3), which leaves no coordinate of a box as it was, and a translation.
+gltf::Matrix4 placement(double angle, const double (&place)[3]) {
+    const double length = std::sqrt(14.0);
+    const double axis[3] = {1.0 / length, 2.0 / length, 3.0 / length};
+    gltf::Matrix4 matrix{};
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            const int third = 3 - row - column;
+            const double sign = (column - row + 3) % 3 == 1 ? -1.0 : 1.0;
+            matrix[4 * column + row] =
+                axis[row] * axis[column] * (1.0 - std::cos(angle)) +
+                (row == column ? std::cos(angle) : sign * axis[third] * std::sin(angle));
+        }
+    }
+    std::copy(std::begin(place), std::end(place), &matrix[12]);
+    matrix[15] = 1.0;
+    return matrix;
+}
+
+// Every ray in a closed box finds a wall, also from its edges and corners, where rounding may put a point of
+// one wall behind another.
+TEST(Paths, AClosedBoxLosesNoRay) {
+    // Far from the origin floats are coarse.
+    constexpr double kPlace[3] = {1000.0, 300.0, 700.0};
+    const gltf::Scene scene = closedBox(1.0F, 0.0F, placement(0.7, kPlace));
+    const LoadedScene loaded(scene, pathSettings(16), noLights);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 256, 256, 1);
+    setup.frame.camera.position = {1000.0F, 300.0F, 700.0F};
+    setup.frame.sky = uniformSky(1.0F);
+    std::uint64_t rays = 0;
+    std::uint64_t lost = 0;
+    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+        setup.frame.seed = seed;
+        FrameCounters counters;
+        ASSERT_FALSE(loaded.render(pathOptions(16), setup, &counters).pixels.empty());
+        rays += counters.rays;
+        lost += counters.bucketCounts[0];
+    }
+    std::printf("%llu rays, %llu lost\n", static_cast<unsigned long long>(rays),
+                static_cast<unsigned long long>(lost));
+    EXPECT_GE(rays, 4000000U);
+    EXPECT_EQ(lost, 0U);
+}
+
+// White surfaces under a uniform sky are as bright as the sky, whatever their lobes are.
+TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material rough = diffuse(1.0F, 0.0F);
+    rough["specularFactor"] = 1.0F;
+    rough["roughnessFactor"] = 0.5F;
+    materials::Material metal = mirrorMaterial();
+    metal["roughnessFactor"] = 0.4F;
+    materials::Material wall = diffuse(1.0F, 0.0F);
+    wall["transmissionFactor"] = 1.0F;
+    wall["specularFactor"] = 1.0F;
+    wall["roughnessFactor"] = 0.0F;
+    wall.doubleSided = true;
+    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+                         gltf::Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    };
+    add(rough, {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
+    add(mirrorMaterial(), {-3, -1, -1}, {2, 0, -3}, {0, 3, 0});
+    add(metal, {1, -1, -4}, {2, 0, 3}, {0, 3, 0});
+    add(diffuse(1.0F, 0.0F), {-1, -1, -4}, {2, 0, 0}, {0, 3, 0});
+    add(wall, {-0.8F, -0.9F, -2}, {1.6F, 0, 0}, {0, 1.2F, 0});
+    const LoadedScene loaded(scene, pathSettings(package::kMaxBounces), noLights);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 24, 24, 16);
+    setup.frame.sky = uniformSky(1.0F);
+    for (const std::uint32_t bounces : {1U, 2U, 4U, package::kMaxBounces}) {
+        const LinearImage image = loaded.render(pathOptions(bounces), setup);
+        ASSERT_FALSE(image.pixels.empty());
+        double worst = 0.0;
+        for (const auto& pixel : image.pixels) {
+            worst = std::max(worst, std::abs(pixel[1] - 1.0));
+        }
+        std::printf("%u bounces: mean %.5f, worst pixel off by %.4f\n", bounces, meanOf(image), worst);
+        EXPECT_NEAR(meanOf(image), 1.0, 0.01) << bounces << " bounces";
+    }
+}
+
+// A mirror shows a block of glass, whose single-sided surface the paths enter and leave. `color` is what one
+// metre of the glass lets through.
+double brightnessOfMirroredGlass(gltf::Float3 color) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    const int mirror = addMaterial(scene, mirrorMaterial());
+    addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    materials::Material glass = diffuse(1.0F, 0.0F);
+    glass["specularFactor"] = 1.0F;
+    glass["roughnessFactor"] = 0.0F;
+    glass["transmissionFactor"] = 1.0F;
+    glass["thicknessFactor"] = 1.0F;
+    glass["attenuationDistance"] = 1.0F;
+    glass["attenuationColor"] = color;
+    // With its corners exchanged the box faces outwards. It is behind the camera.
+    addBox(scene, addMaterial(scene, glass), {5, 5, 2}, {-5, -5, 1}, scaling(1, 1, 1));
+    const LoadedScene loaded(scene, pathSettings(8), noLights);
+    EXPECT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 16, 16, 64);
+    setup.frame.sky = uniformSky(1.0F);
+    FrameCounters counters;
+    const double mean = meanOf(loaded.render(pathOptions(8), setup, &counters));
+    EXPECT_GT(counters.raysOfBounces.at(2), 100U) << "the glass sends no rays";
+    return mean;
+}
+
+TEST(Paths, ClearGlassIsWhiteInAUniformSky) {
+    const double mean = brightnessOfMirroredGlass({1, 1, 1});
+    std::printf("mean %.5f\n", mean);
+    EXPECT_NEAR(mean, 1.0, 0.01);
+}
+
+// A metre of the glass lets half of the light through. Rays that enter at once take a little more than a
+// metre, and Fresnel's reflection in front, about a twenty-fifth, does not pass.
+TEST(Paths, GlassAbsorbsOverTheRealDistance) {
+    const double mean = brightnessOfMirroredGlass({0.5F, 0.5F, 0.5F});
+    std::printf("mean %.5f\n", mean);
+    EXPECT_GT(mean, 0.45);
+    EXPECT_LT(mean, 0.55);
+}
+
+// The error of pictures with paths falls with the root of the number of samples.
+TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
+    gltf::Scene scene = roomOfMaterials();
+    for (materials::Material& material : scene.materials) {
+        material["roughnessFactor"] = std::max<float>(material["roughnessFactor"], 0.5F);
+        material["clearcoatRoughnessFactor"] = 0.5F;
+    }
+    compiler::CompileSettings settings = pathSettings(4, package::kStrategyUber);
+    settings.plan.merge = compiler::MergePolicy::All;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    const auto render = [&](std::uint32_t samples, std::uint32_t seed) {
+        RenderSetup setup = pathSetup(scene, 12, 8, samples);
+        setup.frame.seed = seed;
+        return loaded.render(pathOptions(4, package::kStrategyUber), setup);
+    };
+    const LinearImage reference = render(4096, 1);
+    ASSERT_FALSE(reference.pixels.empty());
+    std::vector<double> errors;
+    for (const std::uint32_t samples : {4U, 256U}) {
+        double squares = 0.0;
+        for (std::uint32_t seed = 2; seed < 6; ++seed) {
+            const LinearImage image = render(samples, seed);
+            for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+                for (int channel = 0; channel < 3; ++channel) {
+                    const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
+                    squares += difference * difference;
+                }
+            }
+        }
+        errors.push_back(std::sqrt(squares));
+        std::printf("%u samples: error %.5f\n", samples, errors.back());
+    }
+    const double slope = std::log2(errors[1] / errors[0]) / 6.0;
+    std::printf("slope %.3f\n", slope);
+    EXPECT_NEAR(slope, -0.5, 0.12);
+}
+
+}  // namespace
