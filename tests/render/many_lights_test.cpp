@@ -139,7 +139,7 @@ TEST(ManyLights, AutoTakesAllOfFew) {
     const LoadedScene few = load(hallOfLights(8), std::nullopt);
     ASSERT_TRUE(few.ok());
     EXPECT_EQ(few.package().lightSamples(), 0U);
-    const LoadedScene many = load(hallOfLights(150), std::nullopt);
+    const LoadedScene many = load(hallOfLights(300), std::nullopt);
     ASSERT_TRUE(many.ok());
     EXPECT_EQ(many.package().lightSamples(), 1U);
 }

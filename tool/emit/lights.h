@@ -12,7 +12,7 @@
 namespace glint::compiler {
 
 // `--lights auto` takes all lights of scenes with up to as many. docs/lights.md says how it was measured.
-inline constexpr std::size_t kFewLights = 32;
+inline constexpr std::size_t kFewLights = 256;
 
 // Returns CompileSettings::lightSamples for a package of `scenes`, which decides by the scene with the most
 // lights. A host that has its own lights, or that sends its own rays, has no hierarchy. Error "lights" if the
