@@ -245,6 +245,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
+    GLINT_ADDRESS(LightNode) lightNodes;  // in packages with --lights K: the tree, then the lights without bounds
     GLINT_ADDRESS(Sample) samples;    // samples of every pixel, effect by effect
     GLINT_ADDRESS(Radiance) radiance;  // the radiance that the rays bring, in the same order; kPath* as a float
     GLINT_ADDRESS(Ray) rays;
@@ -271,6 +272,8 @@ struct FrameConstants {
     uint recordsBy;
     uint rayMask;  // instances that share no bit with it are not hit
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
+    uint lightTreeNodes;   // nodes of the tree
+    uint unboundedLights;  // leaves after them
     // In packages with paths of several bounces:
     GLINT_ADDRESS(Ray) nextRays;  // the list of the next bounce
     GLINT_ADDRESS(Path) paths;    // of every sample, in the order of the samples

@@ -23,5 +23,21 @@ struct LightRecord {
     float size;  // radius, metres; directional: sine of half its angular diameter; 0 for hard shadows
 };
 
+// LightNode::next of a leaf: the number of its light is in the other bits.
+GLINT_CONSTANT(kLightLeaf, 0x80000000u);
+
+// A node of the hierarchy of lights, and bounds of what is below it. 56 bytes.
+struct LightNode {
+    vec3 lower;         // box of the positions
+    float intensity;    // sum of the luminance, candela
+    vec3 upper;
+    float reach;        // the largest range, metres; infinite if a light has none
+    vec3 axis;          // unit vector; the axes of all lights are within an angle of it
+    float cosAxes;      // cosine of that angle
+    float cosEmission;  // cosine of the most angle between the axis of a light and a direction in which it shines
+    uint next;          // index of the second child, after which all its descendants come; the first child is the next
+                        // node. Or kLightLeaf and a light
+};
+
 GLINT_INTEROP_END
 #endif

@@ -93,6 +93,10 @@ std::string bindingsOf(const Package& package) {
     return compiler::values::kBindings.text(settings);
 }
 
+std::string lightsOf(const Package& package) {
+    return package.lightSamples() == 0 ? "all" : fmt::format("{}", package.lightSamples());
+}
+
 std::string skyOf(const Package& package) {
     return package.environmentMap() ? "map" : "gradient";
 }
@@ -180,38 +184,40 @@ std::string hitLobesText(const inspect::Manifest& manifest) {
 base::Json toJson(const inspect::InspectedPackage& inspected) {
     const Package& package = inspected.package;
     const inspect::Manifest& manifest = inspected.manifest;
-    return {{"package", inspected.folder},
-            {"version", package::kVersion},
-            {"tool", manifest.toolVersion},
-            {"strategies", compiler::strategyNames(package.shape().strategies)},
-            {"tracers", compiler::tracerNames(package.shape().tracers)},
-            {"merge", manifest.merge},
-            {"alpha", nameOf(package.alpha())},
-            {"host", manifest.host},
-            {"packs", manifest.packs},
-            {"scenes", scenesToJson(inspected)},
-            {"settings",
-             {{"hitLobes", manifest.hitLobes},
-              {"energyCompensation", manifest.energyCompensation},
-              {"textureLod", manifest.textureLod},
-              {"precision", package::bitsOf(package.precision())},
-              {"shadows", std::string(package::nameOf(package.shape().shadows))},
-              {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
-              {"bounces", package.shape().maxBounces},
-              {"passes", std::string(package::nameOf(package.passes()))},
-              {"answer", std::string(package::nameOf(package.answer()))},
-              {"bindings", bindingsOf(package)},
-              {"positionFetch", package.positionFetch()},
-              {"sky", skyOf(package)}}},
-            {"counts",
-             {{"cases", inspected.caseCount()},
-              {"buckets", package.bucketCount()},
-              {"bytesPerMaterial", package.scene(0).materials.recordBytes},
-              {"modules", package.modules().size()},
-              {"uniqueSpirv", inspected.uniqueFiles()}}},
-            {"spirvBytes", inspected.spirvBytes()},
-            {"shaders", shadersToJson(inspected)},
-            {"modules", modulesToJson(inspected)}};
+    return {
+        {"package", inspected.folder},
+        {"version", package::kVersion},
+        {"tool", manifest.toolVersion},
+        {"strategies", compiler::strategyNames(package.shape().strategies)},
+        {"tracers", compiler::tracerNames(package.shape().tracers)},
+        {"merge", manifest.merge},
+        {"alpha", nameOf(package.alpha())},
+        {"host", manifest.host},
+        {"packs", manifest.packs},
+        {"scenes", scenesToJson(inspected)},
+        {"settings",
+         {{"hitLobes", manifest.hitLobes},
+          {"lights", package.lightSamples() == 0 ? base::Json("all") : base::Json(package.lightSamples())},
+          {"energyCompensation", manifest.energyCompensation},
+          {"textureLod", manifest.textureLod},
+          {"precision", package::bitsOf(package.precision())},
+          {"shadows", std::string(package::nameOf(package.shape().shadows))},
+          {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
+          {"bounces", package.shape().maxBounces},
+          {"passes", std::string(package::nameOf(package.passes()))},
+          {"answer", std::string(package::nameOf(package.answer()))},
+          {"bindings", bindingsOf(package)},
+          {"positionFetch", package.positionFetch()},
+          {"sky", skyOf(package)}}},
+        {"counts",
+         {{"cases", inspected.caseCount()},
+          {"buckets", package.bucketCount()},
+          {"bytesPerMaterial", package.scene(0).materials.recordBytes},
+          {"modules", package.modules().size()},
+          {"uniqueSpirv", inspected.uniqueFiles()}}},
+        {"spirvBytes", inspected.spirvBytes()},
+        {"shaders", shadersToJson(inspected)},
+        {"modules", modulesToJson(inspected)}};
 }
 
 std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
@@ -235,6 +241,7 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"host", manifest.host.empty() ? "Glint's own" : base::join(manifest.host)},
          {"packs", manifest.packs.empty() ? "none" : base::join(manifest.packs)},
          {"hit lobes", hitLobesText(manifest)},
+         {"lights of a surface", lightsOf(package)},
          {"energy compensation", manifest.energyCompensation ? "on" : "off"},
          {"texture LOD", manifest.textureLod},
          {"precision", fmt::format("{}", package::bitsOf(package.precision()))},

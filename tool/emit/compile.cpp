@@ -5,6 +5,8 @@
 #include "emit/effects.h"
 #include "emit/glsl/readable.h"
 #include "emit/library.h"
+#include "emit/lights.h"
+#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"
@@ -180,11 +182,17 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, const CompileSett
     return package;
 }
 
-// Some strategies have a tracer of their own. If nothing else traces, it is the only tracer.
-CompileSettings withOwnTracers(CompileSettings settings) {
+// Fills in what depends on the scenes and on other settings.
+Result<CompileSettings> completed(std::span<const gltf::Scene> scenes, CompileSettings settings) {
+    // Some strategies have a tracer of their own. If nothing else traces, it is the only tracer.
     if ((settings.strategies & ~package::kPipelineStrategies) == 0) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
+    Result<std::uint32_t> lights = lightSamplesOf(scenes, settings);
+    if (!lights) {
+        return lights.error();
+    }
+    settings.lightSamples = *lights;
     return settings;
 }
 
@@ -236,8 +244,11 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
 Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                 std::optional<Plan> made) {
     return guarded<PackagePlan>(scenes, [&]() -> Result<PackagePlan> {
-        Result<Prepared> prepared =
-            prepare(gltf::SceneList(scenes), withOwnTracers(settings), std::move(made));
+        Result<CompileSettings> complete = completed(scenes, settings);
+        if (!complete) {
+            return complete.error();
+        }
+        Result<Prepared> prepared = prepare(gltf::SceneList(scenes), *complete, std::move(made));
         if (!prepared) {
             return prepared.error();
         }
@@ -248,8 +259,12 @@ Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const Compi
 
 Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                        ModuleCache* cache, std::optional<Plan> made) {
-    return guarded<CompiledPackage>(scenes, [&] {
-        return compile(gltf::SceneList(scenes), withOwnTracers(settings), cache, std::move(made));
+    return guarded<CompiledPackage>(scenes, [&]() -> Result<CompiledPackage> {
+        Result<CompileSettings> complete = completed(scenes, settings);
+        if (!complete) {
+            return complete.error();
+        }
+        return compile(gltf::SceneList(scenes), *complete, cache, std::move(made));
     });
 }
 

@@ -111,6 +111,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
     text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
     text += fmt::format("#define GLINT_POSITION_FETCH {}\n", flag(settings.positionFetch));
+    text += fmt::format("#define GLINT_LIGHT_SAMPLES {}\n", settings.lightSamples.value_or(0));
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));

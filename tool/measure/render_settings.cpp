@@ -1,4 +1,5 @@
 #include "emit/effects.h"
+#include "emit/lights.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 
@@ -40,6 +41,7 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     }
     facts.sendsRays = effects.effects.rays != 0;
     const scene_view::SceneViewData data = sceneView(settings, scene);
+    facts.manyLights = scene.lights.size() > compiler::kFewLights;
     facts.sizedLights =
         std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });
     return facts;

@@ -46,6 +46,9 @@ struct CompileSettings {
     EffectRequest effects{false, builtinEffects({"shadow", "reflection"})};
     // The renderer adds a light to those of the scenes, which --effects auto takes into account.
     bool addsLight = false;
+    // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
+    // lights (emit/lights.h).
+    std::optional<std::uint32_t> lightSamples{};
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     package::ShadingPrecision precision = package::ShadingPrecision::Single;

@@ -20,6 +20,7 @@ struct BenchFacts {
     bool masks = false;         // some materials have the alpha mode MASK or BLEND
     bool furtherLobes = false;  // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
+    bool manyLights = false;   // more than --lights auto takes whole
     bool sizedLights = false;  // some light casts soft shadows
     bool rayPipeline = false;  // this and the next two are features of the device
     bool positionFetch = false;

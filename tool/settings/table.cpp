@@ -229,6 +229,19 @@ constexpr Descriptor kRows[] = {
                                                       ? "no material has a lobe that hits could lose"
                                                       : "");
                            })},
+    {.name = "lights",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "how many lights a surface chooses by a hierarchy, besides directional ones",
+     .values = kLights,
+     .bench = approximates("", "all 1 4 16", "all 1",
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(
+                                   !value.empty() || facts.manyLights ? "" : "the scene has few lights");
+                           }),
+     .document = "lights.md",
+     .recorded = true},
     {.name = "energy-compensation",
      .commands = kMakers,
      .stage = SettingStage::Package,

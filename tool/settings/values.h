@@ -440,6 +440,29 @@ inline constexpr SettingValues kScreenSteps{
     .max = 1024,
     .type = "off|N"};
 
+inline constexpr SettingValues kLights{
+    .form = ValueForm::Whole,
+    .text =
+        [](const Settings& settings) {
+            const std::optional<std::uint32_t> samples = settings.compile.lightSamples;
+            return !samples ? std::string("auto") : *samples == 0 ? "all" : fmt::format("{}", *samples);
+        },
+    .set =
+        [](Settings& settings, std::string_view text) {
+            settings.compile.lightSamples.reset();
+            if (text != "auto") {
+                settings.compile.lightSamples = text == "all" ? 0 : numberOf<std::uint32_t>(text);
+            }
+        },
+    .words =
+        [] {
+            return std::vector<SettingWord>{{"auto", "all up to 256 lights, and 1 of more"},
+                                            {"all", "every light"}};
+        },
+    .min = 1,
+    .max = package::kMaxLightSamples,
+    .type = "auto|all|K"};
+
 inline constexpr std::string_view kUnlimited = "unlimited";
 
 inline constexpr SettingValues kBounces{

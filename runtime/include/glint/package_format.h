@@ -107,6 +107,9 @@ enum class Ordering : std::uint32_t {
     Count = 6,
 };
 
+// The most lights that a surface chooses by a hierarchy.
+inline constexpr std::uint32_t kMaxLightSamples = 64;
+
 struct PackageHeader {
     char magic[8];
     std::uint32_t version;
@@ -133,7 +136,7 @@ struct PackageHeader {
     HitAnswer answer;
     Bindings bindings;
     std::uint32_t maxBounces;  // of paths: 1 to kMaxBounces
-    std::uint32_t pad;
+    std::uint32_t lightSamples;  // lights that a surface chooses by the hierarchy; 0: it takes all, without one
 };
 
 enum class SectionKind : std::uint32_t {

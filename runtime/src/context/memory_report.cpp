@@ -105,6 +105,9 @@ std::vector<MemoryItem> GpuScene::memory() const {
     addTo(items, "instance records", state_->instances);
     addTo(items, "material records", state_->materials);
     addTo(items, "light records", state_->lights);
+    if (state_->lightNodes.address != 0) {
+        addTo(items, "light nodes", state_->lightNodes);
+    }
     if (state_->motion != nullptr) {
         addMotion(items, *state_->motion);
     }

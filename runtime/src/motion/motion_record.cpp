@@ -43,7 +43,8 @@ void recordCopies(const GpuScene::State& state, VkCommandBuffer commands) {
         }
     };
     copy(0, motion.lightOffset, state.instances);
-    copy(motion.lightOffset, motion.placedOffset, state.lights);
+    copy(motion.lightOffset, motion.lightNodeOffset, state.lights);
+    copy(motion.lightNodeOffset, motion.placedOffset, state.lightNodes);
     copy(motion.placedOffset, motion.materialOffset, motion.placedBuffer);
     std::vector<VkBufferCopy> regions;
     for (std::size_t i = 0; i < state.changing.size(); ++i) {
@@ -193,7 +194,7 @@ bool place(GpuScene::State& state, std::span<const InstanceView> instances) {
     return changed;
 }
 
-void stage(const GpuScene::State& state, std::span<const InstanceView> instances,
+void stage(GpuScene::State& state, std::span<const InstanceView> instances,
            std::span<const LightView> lights) {
     const SceneMotion& motion = *state.motion;
     std::uint8_t* const bytes = motion.staging.mapped;
@@ -201,9 +202,16 @@ void stage(const GpuScene::State& state, std::span<const InstanceView> instances
         const gpu::InstanceRecord record = makeInstanceRecord(instances[i].objectToWorld);
         std::memcpy(bytes + i * sizeof(record), &record, sizeof(record));
     }
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        const gpu::LightRecord record = makeLightRecord(lights[i]);
-        std::memcpy(bytes + motion.lightOffset + i * sizeof(record), &record, sizeof(record));
+    std::vector<gpu::LightRecord> records;
+    records.reserve(lights.size());
+    std::ranges::transform(lights, std::back_inserter(records), makeLightRecord);
+    if (!records.empty()) {
+        std::memcpy(bytes + motion.lightOffset, records.data(), records.size() * sizeof(gpu::LightRecord));
+    }
+    if (!state.lightTree.nodes.empty()) {
+        refitLightTree(state.lightTree, records);
+        std::memcpy(bytes + motion.lightNodeOffset, state.lightTree.nodes.data(),
+                    state.lightTree.nodes.size() * sizeof(gpu::LightNode));
     }
     if (!motion.placed.empty()) {
         std::memcpy(bytes + motion.placedOffset, motion.placed.data(),

@@ -30,7 +30,7 @@ bool place(GpuScene::State& state, std::span<const InstanceView> instances);
 
 // Writes the records of instances, lights and materials and the instances of the top level to the staging
 // buffer, from which they are copied.
-void stage(const GpuScene::State& state, std::span<const InstanceView> instances,
+void stage(GpuScene::State& state, std::span<const InstanceView> instances,
            std::span<const LightView> lights);
 
 // Records all the work of the device, with the dependencies before and after it.

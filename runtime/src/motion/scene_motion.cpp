@@ -46,7 +46,8 @@ Status createBuffers(GpuScene::State& state, std::size_t lights) {
     }
     motion.placedBuffer = std::move(*placedBuffer);
     motion.lightOffset = motion.meshes.size() * sizeof(gpu::InstanceRecord);
-    motion.placedOffset = motion.lightOffset + lights * sizeof(gpu::LightRecord);
+    motion.lightNodeOffset = motion.lightOffset + lights * sizeof(gpu::LightRecord);
+    motion.placedOffset = motion.lightNodeOffset + state.lightTree.nodes.size() * sizeof(gpu::LightNode);
     motion.materialOffset =
         motion.placedOffset + motion.placed.size() * sizeof(VkAccelerationStructureInstanceKHR);
     const VkDeviceSize bytes =

@@ -94,6 +94,10 @@ package::ShadingPrecision Package::precision() const {
     return state_->header.precision;
 }
 
+std::uint32_t Package::lightSamples() const {
+    return state_->header.lightSamples;
+}
+
 std::uint32_t Package::caseCount() const {
     return state_->header.caseCount;
 }

@@ -120,6 +120,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }
+    if (header.lightSamples > package::kMaxLightSamples) {
+        return outside("the number of light samples", header.lightSamples);
+    }
     if (header.environmentMap > 1) {
         return outside("the kind of sky", header.environmentMap);
     }

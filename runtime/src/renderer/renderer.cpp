@@ -101,6 +101,9 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.instances = state.scene.instances.address;
     constants.materials = state.scene.materials.address;
     constants.lights = state.scene.lights.address;
+    constants.lightNodes = state.scene.lightNodes.address;
+    constants.lightTreeNodes = state.scene.lightTree.treeNodes;
+    constants.unboundedLights = state.scene.lightTree.unbounded;
     constants.lastBounce = bouncesOf(state.size, options);
     fillLists(state.frame, state.size, constants);
     return constants;

@@ -112,6 +112,13 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Lights(lights), state.lights); !s) {
         return s;
     }
+    if (package.lightSamples() > 0) {
+        state.lightTree = buildLightTree(lights);
+        const std::span<const gpu::LightNode> nodes(state.lightTree.nodes);
+        if (Status s = uploadRecords(state, **uploader, nodes, state.lightNodes); !s) {
+            return s;
+        }
+    }
     Result<std::vector<DeviceImage>> textures =
         uploadTextures(state.context, state.pool, **uploader, known.textures, scene.images);
     if (!textures) {

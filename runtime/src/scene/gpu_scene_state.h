@@ -6,6 +6,7 @@
 #include "renderer/draw_batches.h"
 #include "scene/acceleration.h"
 #include "scene/geometry.h"
+#include "scene/light_tree.h"
 #include "scene/scene_materials.h"
 #include "scene/traversal_order.h"
 
@@ -40,6 +41,9 @@ struct GpuScene::State {
     Buffer materials;
     Buffer lights;
     std::uint32_t lightCount = 0;
+    // In packages that choose lights by a hierarchy:
+    LightTree lightTree;
+    Buffer lightNodes;
     std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
     UniqueSetLayout setLayout;

@@ -108,6 +108,9 @@ Result<std::vector<std::uint32_t>> runSceneKernel(SceneKernel::State& kernel, gp
     constants.instances = scene.instances.address;
     constants.materials = scene.materials.address;
     constants.lights = scene.lights.address;
+    constants.lightNodes = scene.lightNodes.address;
+    constants.lightTreeNodes = scene.lightTree.treeNodes;
+    constants.unboundedLights = scene.lightTree.unbounded;
     constants.lightCount = scene.lightCount;
     constants.rays = buffers.input.address;
     constants.orderedHits = buffers.input.address;

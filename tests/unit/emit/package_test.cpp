@@ -185,6 +185,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     const nlohmann::json usual = manifestOf(compileSample(settings));
     EXPECT_EQ(usual["settings"]["hitLobes"].size(),
               materials::builtinMaterialModel().names(materials::kLobeMask).size());
+    EXPECT_EQ(usual["settings"]["lights"], "all");
     EXPECT_EQ(usual["settings"]["energyCompensation"], true);
     EXPECT_EQ(usual["settings"]["textureLod"], "cones");
     EXPECT_EQ(usual["settings"]["precision"], 32);
@@ -194,6 +195,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     scene.variant = "Night";
     scene.materials[0]["sheenColorFactor"] = {1.0F, 1.0F, 1.0F};
     settings.plan.keys.keptLobes = bit("unlit") | bit("ior");
+    settings.lightSamples = 4;
     settings.energyCompensation = false;
     settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;
@@ -201,6 +203,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     ASSERT_TRUE(package) << toString(package.error());
     const nlohmann::json other = manifestOf(*package);
     EXPECT_EQ(other["settings"]["hitLobes"], (nlohmann::json{"unlit", "ior"}));
+    EXPECT_EQ(other["settings"]["lights"], 4);
     EXPECT_EQ(other["settings"]["energyCompensation"], false);
     EXPECT_EQ(other["settings"]["textureLod"], "mip0");
     EXPECT_EQ(other["settings"]["precision"], 16);

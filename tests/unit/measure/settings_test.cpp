@@ -20,6 +20,7 @@ compiler::Configuration usual() {
             {"ssr", "off"},
             {"max-interfaces", "8"},
             {"hit-lobes", "all"},
+            {"lights", "auto"},
             {"energy-compensation", "on"},
             {"texture-lod", "cones"},
             {"alpha", "opaque"},
@@ -36,7 +37,7 @@ compiler::Configuration usual() {
 
 compiler::BenchFacts rich() {
     compiler::BenchFacts facts;
-    facts.masks = facts.furtherLobes = facts.textures = facts.sizedLights = true;
+    facts.masks = facts.furtherLobes = facts.textures = facts.manyLights = facts.sizedLights = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.sendsRays = true;
@@ -84,9 +85,9 @@ TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
     compiler::BenchFacts facts;
     facts.effects = {"shadow"};
     const std::vector<measure::Setting> settings = settingsFor(facts, usual(), false);
-    for (const char* const name :
-         {"shadow-spp", "ao-spp", "max-roughness", "ssr", "max-interfaces", "hit-lobes", "texture-lod",
-          "alpha", "precision", "strategy", "ordering", "binning", "position-fetch", "clamp"}) {
+    for (const char* const name : {"shadow-spp", "lights", "ao-spp", "max-roughness", "ssr", "max-interfaces",
+                                   "hit-lobes", "texture-lod", "alpha", "precision", "strategy", "ordering",
+                                   "binning", "position-fetch", "clamp"}) {
         const measure::Setting& setting = named(settings, name);
         EXPECT_EQ(setting.values, std::vector<std::string>{setting.base}) << name;
         EXPECT_TRUE(std::ranges::none_of(setting.skipped, [](const measure::SkippedValue& value) {

@@ -154,6 +154,7 @@ constexpr DiagnosticInfo kTable[] = {
      "texture."},
     {"light-range", kWarning, "A value of a light is outside of its range."},
     {"light-type", kError, "A light's type is unknown."},
+    {"lights", kError, "`--lights` asks for a hierarchy over lights that are a host's own."},
     {"lint-path", kError, "`glint lint`: there is nothing to read at a path."},
     {"lock-conflict", kWarning,
      "Keys claim one shader ID in the lock file and are different cases now: one of them gets a new ID."},

@@ -139,6 +139,7 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, instances),
     GLINT_MEMBER(FrameConstants, materials),
     GLINT_MEMBER(FrameConstants, lights),
+    GLINT_MEMBER(FrameConstants, lightNodes),
     GLINT_MEMBER(FrameConstants, samples),
     GLINT_MEMBER(FrameConstants, radiance),
     GLINT_MEMBER(FrameConstants, rays),
@@ -161,10 +162,19 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, recordsBy),
     GLINT_MEMBER(FrameConstants, rayMask),
     GLINT_MEMBER(FrameConstants, tlasAddress),
+    GLINT_MEMBER(FrameConstants, lightTreeNodes),
+    GLINT_MEMBER(FrameConstants, unboundedLights),
     GLINT_MEMBER(FrameConstants, nextRays),
     GLINT_MEMBER(FrameConstants, paths),
     GLINT_MEMBER(FrameConstants, bounce),
     GLINT_MEMBER(FrameConstants, lastBounce),
+};
+
+constexpr MemberLayout kLightNode[] = {
+    GLINT_MEMBER(LightNode, lower),       GLINT_MEMBER(LightNode, intensity),
+    GLINT_MEMBER(LightNode, upper),       GLINT_MEMBER(LightNode, reach),
+    GLINT_MEMBER(LightNode, axis),        GLINT_MEMBER(LightNode, cosAxes),
+    GLINT_MEMBER(LightNode, cosEmission), GLINT_MEMBER(LightNode, next),
 };
 
 constexpr MemberLayout kPushConstants[] = {
@@ -174,10 +184,11 @@ constexpr MemberLayout kPushConstants[] = {
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord),    GLINT_STRUCT(InstanceRecord),  GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(LightRecord),       GLINT_STRUCT(EffectSample),    GLINT_STRUCT(RayRecord),
-    GLINT_STRUCT(PathState), GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),
-    GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(GeometryRecord),  GLINT_STRUCT(InstanceRecord), GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(LightNode),       GLINT_STRUCT(LightRecord),    GLINT_STRUCT(EffectSample),
+    GLINT_STRUCT(RayRecord),       GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),
+    GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments),
+    GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),
 };
 
 constexpr MemberLayout kDeformRecord[] = {

@@ -270,6 +270,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.hitRecord = settings.hitRecord;
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
+    header.lightSamples = settings.lightSamples.value_or(0);
     header.precision = settings.precision;
     header.passes = settings.passes;
     header.answer = settings.answer;

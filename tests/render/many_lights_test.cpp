@@ -1,0 +1,229 @@
+// Lights that a hierarchy chooses: the means of their pictures are those of all lights.
+#include "render/hit_kernel.h"
+#include "render/pixel_test.h"
+
+#include <bit>
+#include <cmath>
+#include <map>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+// A floor and a wall that throws shadows, below 150 lights of every kind: points with and without a range,
+// spots, a sun.
+gltf::Scene hallOfLights(std::size_t count = 150) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material material;
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 0.7F;
+    material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
+    const int matte = addMaterial(scene, material);
+    addInstance(scene, addMesh(scene, makeQuad(matte, {-4, -1, 0}, {8, 0, 0}, {0, 0, -8})));
+    addInstance(scene, addMesh(scene, makeQuad(matte, {-0.5, -1, -3}, {1, 0, 0}, {0, 1, 0})));
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    for (std::size_t i = 0; i < count; ++i) {
+        gltf::Light light;
+        light.type = i % 3 == 0 ? gltf::LightType::Spot : gltf::LightType::Point;
+        light.position = {8.0F * unit(random) - 4.0F, 0.5F + 2.0F * unit(random), -8.0F * unit(random)};
+        light.intensity = 0.05F + unit(random) * unit(random);
+        light.color = {unit(random), 0.5F, unit(random)};
+        light.range = i % 4 == 0 ? 3.0F : 0.0F;
+        light.direction = {0.0F, -1.0F, 0.0F};
+        light.innerConeAngle = 0.3F;
+        light.outerConeAngle = 0.8F;
+        scene.lights.push_back(light);
+    }
+    addDirectionalLight(scene, {0.3F, -0.9F, -0.3F}, 0.2F);
+    return scene;
+}
+
+LoadedScene load(const gltf::Scene& scene, std::optional<std::uint32_t> lights,
+                 std::uint32_t strategies = package::kStrategyUber) {
+    compiler::CompileSettings settings;
+    settings.strategies = strategies;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.lightSamples = lights;
+    return LoadedScene(scene, settings);
+}
+
+RenderSetup setupOf(const gltf::Scene& scene, std::uint32_t samples, std::uint32_t seed) {
+    RenderSetup setup = defaultSetup(scene, 24, 16);
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    setup.samples = samples;
+    setup.frame.seed = seed;
+    return setup;
+}
+
+double meanOf(const LinearImage& image) {
+    double sum = 0.0;
+    for (const Pixel& pixel : image.pixels) {
+        sum += pixel[0] + pixel[1] + pixel[2];
+    }
+    return sum / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+double differenceOf(const LinearImage& image, const LinearImage& reference) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
+            sum += difference * difference;
+        }
+    }
+    return std::sqrt(sum / (3.0 * static_cast<double>(image.pixels.size())));
+}
+
+// With jitter each sample sees other points, so the reference has many samples too.
+TEST(ManyLights, ChosenLightsConvergeToAll) {
+    const gltf::Scene scene = hallOfLights();
+    const LoadedScene all = load(scene, 0);
+    ASSERT_TRUE(all.ok());
+    EXPECT_EQ(all.package().lightSamples(), 0U);
+    const LinearImage reference = all.render(package::kStrategyUber, setupOf(scene, 256, 1));
+    ASSERT_FALSE(reference.pixels.empty());
+    for (const std::uint32_t lights : {1U, 4U}) {
+        const LoadedScene chosen = load(scene, lights);
+        ASSERT_TRUE(chosen.ok());
+        EXPECT_EQ(chosen.package().lightSamples(), lights);
+        constexpr int kSeeds = 8;
+        double sum = 0.0;
+        double squares = 0.0;
+        std::map<std::uint32_t, double> errors;
+        for (int seed = 0; seed < kSeeds; ++seed) {
+            const LinearImage image = chosen.render(package::kStrategyUber, setupOf(scene, 64, 10 + seed));
+            const double mean = meanOf(image);
+            sum += mean;
+            squares += mean * mean;
+            for (const std::uint32_t samples : {4U, 64U}) {
+                errors[samples] += differenceOf(
+                    samples == 64 ? image
+                                  : chosen.render(package::kStrategyUber, setupOf(scene, samples, 10 + seed)),
+                    reference);
+            }
+        }
+        const double mean = sum / kSeeds;
+        const double deviation = std::sqrt(std::max(squares / kSeeds - mean * mean, 0.0) / (kSeeds - 1));
+        EXPECT_NEAR(mean, meanOf(reference), 4.0 * deviation + 1e-3 * mean) << lights << " lights";
+        // 16 times the samples: a quarter of the error, or less where the sequence helps.
+        const double ratio = errors[4] / errors[64];
+        EXPECT_GT(ratio, 3.0) << lights << " lights";
+        EXPECT_LT(ratio, 8.0) << lights << " lights";
+    }
+}
+
+TEST(ManyLights, StrategiesChooseTheSameLights) {
+    gltf::Scene scene = hallOfLights();
+    materials::Material mirror = mirrorMaterial();
+    addInstance(
+        scene, addMesh(scene, makeQuad(addMaterial(scene, mirror), {1, -1, -4}, {1.5, 0, 0.5}, {0, 1.5, 0})));
+    const LoadedScene loaded = load(scene, 2, package::kAllStrategies);
+    ASSERT_TRUE(loaded.ok());
+    const RenderSetup setup = setupOf(scene, 4, 3);
+    const LinearImage reference = loaded.render(package::kStrategyUber, setup);
+    ASSERT_FALSE(reference.pixels.empty());
+    for (const package::Strategy strategy : package::kStrategies) {
+        if ((package::tracersOf(strategy, package::kTracerRayQuery) & package::kTracerRayQuery) != 0) {
+            expectSameImage(loaded.render(strategy, setup), reference,
+                            std::string(package::nameOf(strategy)));
+        }
+    }
+}
+
+TEST(ManyLights, AutoTakesAllOfFew) {
+    const LoadedScene few = load(hallOfLights(8), std::nullopt);
+    ASSERT_TRUE(few.ok());
+    EXPECT_EQ(few.package().lightSamples(), 0U);
+    const LoadedScene many = load(hallOfLights(300), std::nullopt);
+    ASSERT_TRUE(many.ok());
+    EXPECT_EQ(many.package().lightSamples(), 1U);
+}
+
+// Lights with a range, which start where none of their light arrives. Without new bounds the hierarchy would
+// choose none of them.
+TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
+    gltf::Scene scene = hallOfLights(60);
+    scene.lights.pop_back();  // the sun
+    for (gltf::Light& light : scene.lights) {
+        light.range = 3.0F;
+    }
+    const LoadedScene still = load(scene, 0);
+    ASSERT_TRUE(still.ok());
+    const LinearImage reference = still.render(package::kStrategyUber, setupOf(scene, 64, 1));
+    ASSERT_FALSE(reference.pixels.empty());
+
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.lightSamples = 4;
+    std::vector<InstanceView> instances;
+    std::vector<LightView> lights;
+    const LoadedScene moving(scene, settings, [&](scene_view::SceneViewData& data) {
+        data.moves = true;
+        instances = data.instances;
+        lights = data.lights;
+        for (LightView& light : data.lights) {
+            light.position[0] += 100.0F;
+        }
+    });
+    ASSERT_TRUE(moving.ok());
+    const double away = meanOf(moving.render(package::kStrategyUber, setupOf(scene, 1, 1)));
+    EXPECT_EQ(away, 0.0) << "out of range";
+    const Status moved = moving.gpuScene().updateAndWait({instances, lights});
+    ASSERT_TRUE(moved) << toString(moved.error());
+    const LinearImage image = moving.render(package::kStrategyUber, setupOf(scene, 64, 1));
+    ASSERT_FALSE(image.pixels.empty());
+    EXPECT_NEAR(meanOf(image), meanOf(reference), 0.02 * meanOf(reference));
+}
+
+// At points in and around the hall: the chosen light's probability is the one that is evaluated, every light
+// that arrives can be chosen, and lights are chosen as often as that. What the sum of probabilities lacks of
+// 1 is how often a way through the tree ends at nodes that bring nothing.
+TEST(ManyLights, ProbabilitiesAreThoseOfTheChoice) {
+    const gltf::Scene scene = hallOfLights();
+    const LoadedScene loaded = load(scene, 1);
+    ASSERT_TRUE(loaded.ok());
+    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "light_tree.comp");
+    ASSERT_TRUE(kernel) << toString(kernel.error());
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    std::vector<gpu::RayRecord> rays(4096);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const bool frequent = i >= 2048;  // all at one point, with strata
+        rays[i].origin = frequent ? gpu::vec3{0.5F, -1.0F, -3.0F}
+                                  : gpu::vec3{12.0F * unit(random) - 6.0F, 4.0F * unit(random) - 1.0F,
+                                              4.0F - 16.0F * unit(random)};
+        rays[i].direction = {frequent ? (static_cast<float>(i - 2048) + 0.5F) / 2048.0F : unit(random),
+                             unit(random), unit(random)};
+    }
+    const auto count = static_cast<std::uint32_t>(rays.size());
+    const Result<std::vector<std::uint32_t>> words = (*kernel)->run({}, rays, count, std::size_t{5} * count);
+    ASSERT_TRUE(words) << toString(words.error());
+    std::map<std::uint32_t, std::pair<double, int>> chosen;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::uint32_t* const word = words->data() + 5 * i;
+        const auto probability = std::bit_cast<float>(word[1]);
+        EXPECT_EQ(word[4], 0U) << "lights that arrive at point " << i << " can't be chosen";
+        const auto sum = std::bit_cast<float>(word[3]);
+        EXPECT_LE(sum, 1.0F + 2e-5F) << "point " << i;
+        EXPECT_GT(sum, 0.5F) << "point " << i;
+        if (probability > 0.0F) {
+            EXPECT_NEAR(std::bit_cast<float>(word[2]) / probability, 1.0F, 1e-5F) << "point " << i;
+        }
+        if (i >= 2048) {
+            std::pair<double, int>& seen = chosen[probability > 0.0F ? word[0] : gpu::kLightLeaf];
+            seen.first = probability > 0.0F ? probability : 1.0 - sum;
+            ++seen.second;
+        }
+    }
+    for (const auto& [light, seen] : chosen) {
+        EXPECT_NEAR(seen.second, 2048.0 * seen.first, 2.0) << "light " << light;
+    }
+}
+
+}  // namespace

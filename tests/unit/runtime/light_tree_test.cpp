@@ -1,0 +1,190 @@
+// Tests the hierarchy over lights: its shape and its bounds, without a device.
+#include "scene/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace glint {
+namespace {
+
+gpu::LightRecord point(float x, float y, float z, float intensity = 1.0F, float range = 0.0F) {
+    gpu::LightRecord light{};
+    light.type = gpu::kLightPoint;
+    light.position = {x, y, z};
+    light.intensity = {intensity, intensity, intensity};
+    light.range = range;
+    return light;
+}
+
+gpu::LightRecord spot(float x, float y, float z, gpu::vec3 direction, float cosOuter) {
+    gpu::LightRecord light = point(x, y, z);
+    light.type = gpu::kLightSpot;
+    light.direction = direction;
+    light.spotScale = 10.0F;
+    light.spotOffset = -cosOuter * light.spotScale;
+    return light;
+}
+
+// Points and spots in a box, and every 50th a directional light.
+std::vector<gpu::LightRecord> mixedLights(std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+    std::vector<gpu::LightRecord> lights;
+    for (std::size_t i = 0; i < count; ++i) {
+        const gpu::vec3 d{unit(random), unit(random), unit(random)};
+        const float length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+        lights.push_back(i % 2 == 0
+                             ? point(unit(random), unit(random), unit(random), 1.0F + unit(random), 3.0F)
+                             : spot(unit(random), unit(random), unit(random),
+                                    {d.x / length, d.y / length, d.z / length}, 0.5F));
+        if (i % 50 == 0) {
+            lights.back().type = gpu::kLightDirectional;
+        }
+    }
+    return lights;
+}
+
+struct Leaf {
+    std::uint32_t node;
+    std::uint32_t light;
+    std::vector<std::uint32_t> ancestors;
+};
+
+// Walks the tree as shaders do.
+void collect(const LightTree& tree, std::uint32_t node, std::vector<std::uint32_t>& way,
+             std::vector<Leaf>& leaves) {
+    const std::uint32_t next = tree.nodes[node].next;
+    if ((next & gpu::kLightLeaf) != 0) {
+        leaves.push_back({node, next & ~gpu::kLightLeaf, way});
+        return;
+    }
+    ASSERT_GT(next, node + 1);
+    ASSERT_LT(next, tree.treeNodes);
+    way.push_back(node);
+    collect(tree, node + 1, way, leaves);
+    collect(tree, next, way, leaves);
+    way.pop_back();
+}
+
+std::vector<Leaf> leavesOf(const LightTree& tree) {
+    std::vector<Leaf> leaves;
+    std::vector<std::uint32_t> way;
+    if (tree.treeNodes > 0) {
+        collect(tree, 0, way, leaves);
+    }
+    return leaves;
+}
+
+void expectBounds(const LightTree& tree, const std::vector<gpu::LightRecord>& lights) {
+    for (const Leaf& leaf : leavesOf(tree)) {
+        const gpu::LightRecord& light = lights[leaf.light];
+        for (const std::uint32_t above : leaf.ancestors) {
+            const gpu::LightNode& node = tree.nodes[above];
+            EXPECT_TRUE(light.position.x >= node.lower.x && light.position.x <= node.upper.x);
+            EXPECT_TRUE(light.position.y >= node.lower.y && light.position.y <= node.upper.y);
+            EXPECT_TRUE(light.position.z >= node.lower.z && light.position.z <= node.upper.z);
+            EXPECT_GE(node.reach, light.range > 0.0F ? light.range : INFINITY);
+            EXPECT_GE(node.intensity, tree.nodes[leaf.node].intensity * 0.999F);
+            EXPECT_LE(node.cosEmission, tree.nodes[leaf.node].cosEmission);
+            if (light.type == gpu::kLightSpot) {
+                const float cosine = node.axis.x * light.direction.x + node.axis.y * light.direction.y +
+                                     node.axis.z * light.direction.z;
+                EXPECT_GE(cosine, node.cosAxes - 1e-5F);
+            } else {
+                EXPECT_EQ(node.cosAxes, -1.0F) << "a point shines everywhere";
+            }
+        }
+    }
+}
+
+TEST(LightTree, ReachesEveryLightOnce) {
+    for (const std::size_t count : {0U, 1U, 2U, 3U, 64U, 1000U, 20000U}) {
+        const std::vector<gpu::LightRecord> lights = mixedLights(count, 1);
+        const LightTree tree = buildLightTree(lights);
+        std::vector<int> reached(count);
+        const std::vector<Leaf> leaves = leavesOf(tree);
+        for (const Leaf& leaf : leaves) {
+            EXPECT_NE(lights[leaf.light].type, gpu::kLightDirectional);
+            ++reached[leaf.light];
+        }
+        ASSERT_EQ(tree.nodes.size(), tree.treeNodes + tree.unbounded);
+        for (std::uint32_t i = tree.treeNodes; i < tree.nodes.size(); ++i) {
+            const std::uint32_t light = tree.nodes[i].next & ~gpu::kLightLeaf;
+            EXPECT_EQ(lights[light].type, gpu::kLightDirectional);
+            ++reached[light];
+        }
+        EXPECT_TRUE(std::ranges::all_of(reached, [](int times) { return times == 1; })) << count << " lights";
+    }
+}
+
+TEST(LightTree, NodesBoundWhatIsBelow) {
+    const std::vector<gpu::LightRecord> lights = mixedLights(2000, 2);
+    expectBounds(buildLightTree(lights), lights);
+}
+
+TEST(LightTree, IsShallow) {
+    const std::vector<gpu::LightRecord> lights = mixedLights(20000, 3);
+    std::size_t deepest = 0;
+    for (const Leaf& leaf : leavesOf(buildLightTree(lights))) {
+        deepest = std::max(deepest, leaf.ancestors.size());
+    }
+    EXPECT_LE(deepest, 36U);  // the shader has random bits for as many
+}
+
+TEST(LightTree, LightsAtOnePlaceAreHalved) {
+    const std::vector<gpu::LightRecord> lights(1024, point(1.0F, 2.0F, 3.0F));
+    const LightTree tree = buildLightTree(lights);
+    for (const Leaf& leaf : leavesOf(tree)) {
+        EXPECT_EQ(leaf.ancestors.size(), 10U);
+    }
+    EXPECT_FLOAT_EQ(tree.nodes[0].intensity, 1024.0F);
+}
+
+// The bounds of a tree at other positions are those of a tree with the same splits. With the lights of the
+// build they are the same to the bit.
+TEST(LightTree, RefittingGivesTheBoundsOfTheLights) {
+    std::vector<gpu::LightRecord> lights = mixedLights(500, 4);
+    LightTree tree = buildLightTree(lights);
+    const LightTree built = tree;
+    refitLightTree(tree, lights);
+    ASSERT_EQ(tree.nodes.size(), built.nodes.size());
+    EXPECT_EQ(std::memcmp(tree.nodes.data(), built.nodes.data(), tree.nodes.size() * sizeof(gpu::LightNode)),
+              0);
+
+    const std::vector<gpu::LightRecord> others = mixedLights(500, 5);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const std::uint32_t type = lights[i].type;
+        lights[i] = others[i];
+        lights[i].type = type;
+        lights[i].position.x += 100.0F;
+    }
+    refitLightTree(tree, lights);
+    expectBounds(tree, lights);
+    EXPECT_GT(tree.nodes[0].lower.x, 90.0F) << "the bounds are those of the new positions alone";
+    EXPECT_LT(tree.nodes[0].upper.x, 110.0F);
+}
+
+TEST(LightTree, DarkLightsHaveNoIntensity) {
+    const LightTree tree = buildLightTree(std::vector{point(0, 0, 0, 0.0F), point(1, 0, 0, 2.0F)});
+    ASSERT_EQ(tree.treeNodes, 3U);
+    EXPECT_FLOAT_EQ(tree.nodes[0].intensity, 2.0F);
+    EXPECT_EQ(std::min(tree.nodes[1].intensity, tree.nodes[2].intensity), 0.0F);
+}
+
+// Threads build large trees; the result is the same.
+TEST(LightTree, BuildsOfManyLightsAreDeterministic) {
+    const std::vector<gpu::LightRecord> lights = mixedLights(30000, 6);
+    const LightTree first = buildLightTree(lights);
+    const LightTree second = buildLightTree(lights);
+    EXPECT_EQ(
+        std::memcmp(first.nodes.data(), second.nodes.data(), first.nodes.size() * sizeof(gpu::LightNode)), 0);
+}
+
+}  // namespace
+}  // namespace glint
