@@ -95,7 +95,7 @@ def main():
         cells = [[now / then for now, then in zip(times[(mode, count)], bare)] for mode in ("MASK", "BLEND")]
         each = [[(now - then) * 1e6 / (rays * count) for now, then in zip(times[(mode, count)], bare)]
                 for mode in ("MASK", "BLEND")]
-        print(f"| {count} | " + " | ".join([spread(cell, 2) for cell in cells] + [spread(cell, 0) for cell in each]) +
+        print(f"| {count} | " + " | ".join([spread(cell, 2) for cell in cells] + [spread(cell, 3) for cell in each]) +
               " |")
 
 

@@ -141,7 +141,7 @@ TEST(ManyLights, AutoTakesAllOfFew) {
     EXPECT_EQ(few.package().lightSamples(), 0U);
     const LoadedScene many = load(hallOfLights(300), std::nullopt);
     ASSERT_TRUE(many.ok());
-    EXPECT_EQ(many.package().lightSamples(), 1U);
+    EXPECT_EQ(many.package().lightSamples(), 8U);
 }
 
 // Lights with a range, which start where none of their light arrives. Without new bounds the hierarchy would

@@ -31,7 +31,7 @@ Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const 
     const auto tooMany = [&](const gltf::Scene& scene) {
         return scene.lights.size() + (settings.addsLight ? 1 : 0) > kFewLights;
     };
-    return !ofHost && std::ranges::any_of(scenes, tooMany) ? 1U : 0U;
+    return !ofHost && std::ranges::any_of(scenes, tooMany) ? kSamplesOfManyLights : 0U;
 }
 
 }  // namespace glint::compiler

@@ -11,8 +11,10 @@
 
 namespace glint::compiler {
 
-// `--lights auto` takes all lights of scenes with up to as many. docs/lights.md says how it was measured.
+// `--lights auto` takes all lights of scenes with up to as many, and so many samples of more. docs/lights.md says how
+// both were measured.
 inline constexpr std::size_t kFewLights = 256;
+inline constexpr std::uint32_t kSamplesOfManyLights = 8;
 
 // Returns CompileSettings::lightSamples for a package of `scenes`, which decides by the scene with the most
 // lights. A host that has its own lights, or that sends its own rays, has no hierarchy. Error "lights" if the

@@ -456,7 +456,7 @@ inline constexpr SettingValues kLights{
         },
     .words =
         [] {
-            return std::vector<SettingWord>{{"auto", "all up to 256 lights, and 1 of more"},
+            return std::vector<SettingWord>{{"auto", "all up to 256 lights, and 8 of more"},
                                             {"all", "every light"}};
         },
     .min = 1,
