@@ -1,10 +1,9 @@
 // Tests alphaMode BLEND: the mean of many random choices is what the operator "over" gives for surfaces in
 // the order of depth, for what the camera sees, for what rays hit, and for what shadow rays pass.
+#include "interop/scene.h"
 #include "render/pixel_test.h"
 
 #include <glint/strategies.h>
-
-#include "interop/scene.h"
 
 #include <cmath>
 #include <optional>

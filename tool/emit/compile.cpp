@@ -6,7 +6,6 @@
 #include "emit/glsl/readable.h"
 #include "emit/library.h"
 #include "emit/lights.h"
-#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"

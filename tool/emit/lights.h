@@ -11,8 +11,8 @@
 
 namespace glint::compiler {
 
-// `--lights auto` takes all lights of scenes with up to as many, and so many samples of more. docs/lights.md says how
-// both were measured.
+// `--lights auto` takes all lights of scenes with up to as many, and so many samples of more. docs/lights.md
+// says how both were measured.
 inline constexpr std::size_t kFewLights = 256;
 inline constexpr std::uint32_t kSamplesOfManyLights = 8;
 

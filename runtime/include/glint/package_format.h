@@ -136,7 +136,8 @@ struct PackageHeader {
     HitAnswer answer;
     Bindings bindings;
     std::uint32_t maxBounces;  // of paths: 1 to kMaxBounces
-    std::uint32_t lightSamples;  // lights that a surface chooses by the hierarchy; 0: it takes all, without one
+    std::uint32_t
+        lightSamples;  // lights that a surface chooses by the hierarchy; 0: it takes all, without one
 };
 
 enum class SectionKind : std::uint32_t {
