@@ -56,7 +56,7 @@ std::string commentText(std::string_view text) {
 
 void addCase(mustache::data& context, const gltf::SceneList& scenes, const materials::MaterialModel& model,
              const Case& shaderCase) {
-    context.set("id", fmt::format("{}", shaderCase.shaderId));
+    context.set("id", shaderCase.shaderId < 0 ? "of any material" : fmt::format("{}", shaderCase.shaderId));
     context.set("name", shaderCase.name);
     context.set("alwaysLobes", literal(shaderCase.always & materials::kLobeMask));
     context.set("alwaysInputs", literal(shaderCase.always >> 32U));
@@ -82,6 +82,9 @@ mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan, cons
         }
     }
     context.set("cases", cases);
+    mustache::data fallback;
+    addCase(fallback, scenes, *plan.model, fallbackCase(plan));
+    context.set("fallback", options.fallback ? fallback : mustache::data(false));
     return context;
 }
 

@@ -61,6 +61,10 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::HitMiss, "strategies/hit_shaders/hit_miss.rmiss"},
     {ModuleRole::PathRays, "passes/path_rays.comp"},
     {ModuleRole::Deform, "passes/deform.comp"},
+    {ModuleRole::UberFallback, "strategies/uber/uber.comp"},
+    {ModuleRole::ShadeFallback, "strategies/visibility/shade_case.comp.mustache"},
+    {ModuleRole::SortedFallback, "strategies/sorted_uber/sorted_shade.comp"},
+    {ModuleRole::HitFallback, "strategies/hit_shaders/hit_case.rchit.mustache"},
 };
 
 std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKey& key,
@@ -126,6 +130,11 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
         name.replace(0, name.find('_'), model.effects[key.index].file());
     } else if (info.repeated == package::Repeated::ByWalk) {
         name = model.effects[key.index].file() + "_walk";
+    } else if (info.purpose == package::Purpose::Fallback) {
+        // "shade_case" gives shade_fallback, "uber" uber_fallback.
+        constexpr std::string_view kCase = "_case";
+        name.resize(name.size() - (name.ends_with(kCase) ? kCase.size() : 0));
+        name += "_fallback";
     }
     if (extension == kComputeExtension && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
         extension = ".rgen";
@@ -194,6 +203,18 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
     return module;
 }
 
+// Whether the role's shader chooses among cases.
+bool hasSwitch(ModuleRole role) {
+    return role == ModuleRole::UberShade || role == ModuleRole::SortedShade ||
+           role == ModuleRole::UberFallback || role == ModuleRole::SortedFallback;
+}
+
+// Returns the switch of shaders that have the fallback alone.
+Result<std::string> fallbackCases(const SourceSet& sources, kainjow::mustache::data context) {
+    context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
+    return renderTemplate(sources, "cases.glsl.mustache", context);
+}
+
 std::vector<std::uint32_t> retiredIds(const Plan& plan) {
     std::vector<std::uint32_t> ids;
     for (const Case& shaderCase : plan.cases) {
@@ -217,7 +238,8 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             retiredIds(plan),
             std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
             settings.passes,
-            settings.maxBounces};
+            settings.maxBounces,
+            settings.plan.fallback};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
@@ -226,14 +248,26 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     MaterialCodeOfCases codeOfCases(sources, *plan.model);
     const SourceSet none;
+    const Case fallback = fallbackCase(plan);
+    SourceSet fallbackSwitch;  // the switch of shaders that have the fallback alone
+    if (settings.plan.fallback) {
+        Result<std::string> text = fallbackCases(sources, context);
+        if (!text) {
+            return text.error();
+        }
+        fallbackSwitch.add("generated/cases.glsl", std::move(*text));
+    }
     std::vector<ModuleSource> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool ofCase = info.repeated == package::Repeated::ByCase;
-        const SourceSet* own = &none;
-        if (ofCase) {
-            const Case& shaderCase = plan.cases[key.index];
+        const bool ofSwitch = hasSwitch(key.role);
+        const bool ofFallback = info.purpose == package::Purpose::Fallback;
+        const SourceSet* own = ofFallback && ofSwitch ? &fallbackSwitch : &none;
+        if (ofCase || (ofFallback && !ofSwitch)) {
+            const Case& shaderCase = ofCase ? plan.cases[key.index] : fallback;
             addCase(context, scenes, *plan.model, shaderCase);
+            context.set("skipsMisses", ofFallback);
             Result<const SourceSet*> code = codeOfCases.find(shaderCase.always | shaderCase.sometimes);
             if (!code) {
                 return code.error();
@@ -248,11 +282,14 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         if (!module) {
             return module.error();
         }
-        if (key.role == ModuleRole::UberShade || key.role == ModuleRole::SortedShade) {
+        if (ofSwitch) {
             for (const Case& shaderCase : plan.cases) {
-                if (!shaderCase.isRetired()) {
+                if (!ofFallback && !shaderCase.isRetired()) {
                     module->functionsApart.push_back("shade" + shaderCase.name);
                 }
+            }
+            if (settings.plan.fallback) {
+                module->functionsApart.push_back("shade" + fallback.name);
             }
         }
         modules.push_back(std::move(*module));

@@ -206,8 +206,13 @@ Plan makePlan(std::span<const materials::Material> materials,
     for (const Key& key : plan.keys) {
         hitMasks.push_back(key.mask);
     }
-    const FeatureSpread hits = spreadOf(hitMasks);
-    const FeatureSpread primary = spreadOf(plan.primaryMaskOfPrimitive);
+    FeatureSpread hits = spreadOf(hitMasks);
+    FeatureSpread primary = spreadOf(plan.primaryMaskOfPrimitive);
+    if (options.fallback) {
+        // Materials that were not there when the package was made may lack what these all have.
+        hits = {0, hits.always | hits.sometimes};
+        primary = {0, primary.always | primary.sometimes};
+    }
     plan.always = hits.always;
     plan.sometimes = hits.sometimes;
     plan.primaryAlways = primary.always;
@@ -217,6 +222,14 @@ Plan makePlan(std::span<const materials::Material> materials,
         plan.dropped.push_back({what.first, what.second, {materialSet.begin(), materialSet.end()}});
     }
     return plan;
+}
+
+Case fallbackCase(const Plan& plan) {
+    Case shaderCase;
+    shaderCase.shaderId = -1;
+    shaderCase.name = "Fallback";
+    shaderCase.sometimes = plan.always | plan.sometimes;
+    return shaderCase;
 }
 
 std::size_t caseCount(const Plan& plan) {

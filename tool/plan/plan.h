@@ -21,6 +21,9 @@ struct PlanOptions {
     // Auto and Profile make no more cases than this. The other policies may exceed it, and describeExcess()
     // then says so. 0 means no limit, but kDefaultMaxCases for Auto and Profile.
     int maxShaders = 0;
+    // The package also gets a shader for every material, whose features are those of all keys. Then no
+    // feature is certain for the package as a whole.
+    bool fallback = false;
     // Counted hits by key. Profile needs them, and Auto uses them if there are any. A key that is not in the
     // map was never hit.
     std::map<materials::FeatureMask, std::uint64_t> hits{};
@@ -101,6 +104,10 @@ bool countsHits(const PlanOptions& options);
 // `materials`, and one model for all of these.
 Plan makePlan(std::span<const materials::Material> materials,
               std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options);
+
+// Returns the case of materials that no case of the plan is for. It has every feature of the plan as one that
+// a material may have, and no shader ID, keys or materials.
+Case fallbackCase(const Plan& plan);
 
 // Returns the largest number of cases that a plan may have; 0 means no limit.
 int budgetOf(const PlanOptions& options);

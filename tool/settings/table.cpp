@@ -405,6 +405,16 @@ constexpr Descriptor kRows[] = {
      .what = "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no "
              "limit, or 32 for auto and profile",
      .values = number<&Settings::compile, &CompileSettings::plan, &PlanOptions::maxShaders>(0, 1000000)},
+    {.name = "fallback",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "add a shader for every material, which stands in for those that are not made yet and for "
+             "materials that the package does not know",
+     .values = flag<&Settings::compile, &CompileSettings::plan, &PlanOptions::fallback>(),
+     .bench = kNoPicture,
+     .document = "live.md",
+     .recorded = true},
     {.name = "ordering",
      .commands = kOfRender,
      .stage = SettingStage::Renderer,

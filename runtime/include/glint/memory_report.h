@@ -10,6 +10,7 @@ namespace glint {
 enum class MemoryUse : std::uint32_t {
     Device,    // read and written by the device
     Upload,    // written by the host, coherent
+    Shared,    // written by the host, coherent, and near the device if it has such memory
     Readback,  // read by the host, coherent, cached if the device has such memory
 };
 

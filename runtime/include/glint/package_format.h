@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 10;
+inline constexpr std::uint32_t kVersion = 11;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -137,7 +137,9 @@ struct PackageHeader {
     Bindings bindings;
     std::uint32_t maxBounces;  // of paths: 1 to kMaxBounces
     std::uint32_t
-        lightSamples;  // lights that a surface chooses by the hierarchy; 0: it takes all, without one
+        lightSamples;        // lights that a surface chooses by the hierarchy; 0: it takes all, without one
+    std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -194,6 +196,12 @@ enum class ModuleRole : std::uint32_t {
     EffectWalk = 25,  // one entry for each effect that follows its rays
     Deform = 26,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
     PathRays = 27,    // puts the next rays of paths on the list, in packages with several bounces
+    // Shaders for every material, in packages with a fallback: they stand in for UberShade, for cases of the
+    // visibility strategy, for SortedShade, and for closest-hit shaders of cases.
+    UberFallback = 28,
+    ShadeFallback = 29,
+    SortedFallback = 30,
+    HitFallback = 31,
 };
 
 struct ModuleEntry {
@@ -278,7 +286,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 128);
+static_assert(sizeof(PackageHeader) == 136);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

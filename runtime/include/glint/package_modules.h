@@ -27,6 +27,7 @@ struct PackageShape {
     bool deforms = false;                  // a scene has meshes that follow skins or morph targets
     Passes passes = Passes::Frame;
     std::uint32_t maxBounces = 1;
+    bool fallback = false;  // it has shaders for every material beside those of its cases
 };
 
 // One module of a package. The fields are those of ModuleEntry.
@@ -55,13 +56,14 @@ enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk 
 
 // Which packages have a role.
 enum class Purpose : std::uint8_t {
-    Picture,  // packages that draw a frame
-    Hits,     // packages that shade hits: for a host, or with an effect that sends rays
-    Shadows,  // those among them that defer shadow rays
-    Walks,    // packages with effects that follow their rays in a pass of their own
-    Tracing,  // packages in which a ray tracing pipeline traces
-    Paths,    // packages whose paths have several bounces
-    Motion,   // packages with meshes that follow skins or morph targets
+    Picture,   // packages that draw a frame
+    Hits,      // packages that shade hits: for a host, or with an effect that sends rays
+    Shadows,   // those among them that defer shadow rays
+    Walks,     // packages with effects that follow their rays in a pass of their own
+    Tracing,   // packages in which a ray tracing pipeline traces
+    Paths,     // packages whose paths have several bounces
+    Motion,    // packages with meshes that follow skins or morph targets
+    Fallback,  // packages that shade hits, with shaders for every material
 };
 
 struct RoleInfo {
@@ -205,6 +207,12 @@ inline constexpr RoleInfo kRoles[] = {
      Repeated::ByWalk},
     {ModuleRole::PathRays, kAllStrategies, "PathRays", ShaderKind::Compute, Purpose::Paths},
     {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute, Purpose::Motion},
+    {ModuleRole::UberFallback, kStrategyUber, "UberFallback", ShaderKind::Tracing, Purpose::Fallback},
+    {ModuleRole::ShadeFallback, kStrategyVisibility, "ShadeFallback", ShaderKind::Tracing, Purpose::Fallback,
+     Repeated::Once, true},
+    {ModuleRole::SortedFallback, kStrategySortedUber, "SortedFallback", ShaderKind::Tracing,
+     Purpose::Fallback, Repeated::Once, true},
+    {ModuleRole::HitFallback, kStrategyHitShaders, "HitFallback", ShaderKind::ClosestHit, Purpose::Fallback},
 };
 
 // Returns null for a number that is no role.
@@ -254,6 +262,8 @@ constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
             return hits || shape.effects.tracesAtSurfaces();
         case Purpose::Motion:
             return frame && shape.deforms;
+        case Purpose::Fallback:
+            return hits && shape.fallback;
     }
     return false;
 }

@@ -60,7 +60,8 @@ struct RayStepsOptions {
     std::optional<package::Ordering> ordering{};
     bool checkOrder = false;
     std::uint32_t pipelineThreads = 0;
-    std::uint32_t maxRays = 0;  // in a batch, at least 1
+    bool backgroundPipelines = false;  // as in RendererOptions; begin() uses what was made by then
+    std::uint32_t maxRays = 0;         // in a batch, at least 1
     // The layout of the host's pipelines. Its sets have what Package::bindings() names, visible to compute
     // shaders, or to the stages of ray tracing pipelines if they trace. Its range of push constants has
     // RaySteps::kPushBytes bytes at Bindings::pushOffset for `pushStages`. It must outlive the RaySteps.
@@ -97,7 +98,7 @@ struct RayBatch {
 struct RayStepsCounters {
     std::uint32_t rays = 0;
     std::uint32_t shadowRays = 0;             // deferred ones
-    std::uint32_t unknownShader = 0;          // hits whose shader ID no case has
+    std::uint32_t unknownShader = 0;          // hits whose shader ID no case has, without a fallback
     std::uint32_t orderErrors = 0;            // with RayStepsOptions::checkOrder
     std::vector<std::uint32_t> bucketCounts;  // misses, then hits by shader ID; filled if hits are ordered
 };

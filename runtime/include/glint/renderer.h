@@ -130,6 +130,7 @@ enum class Pass : std::uint32_t {
     CheckOrder,
     ShadeMiss,
     ShadeCase,
+    ShadeFallback,
     SortedUber,
     HitShaders,
     ShadowDispatch,
@@ -173,8 +174,8 @@ struct FrameCounters {
     std::uint32_t rays = 0;               // rays of all effects
     std::uint32_t shadowRays = 0;         // deferred shadow rays of hits
     std::uint32_t orderErrors = 0;        // with RendererOptions::checkOrder
-    std::uint32_t unknownShader = 0;
-    std::uint32_t nonFinite = 0;  // samples since sample 0 that were not finite; they count as black
+    std::uint32_t unknownShader = 0;      // hits whose shader ID no case has, without a fallback
+    std::uint32_t nonFinite = 0;          // samples since sample 0 that were not finite; they count as black
     // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
     std::vector<std::uint32_t> raysOfBounces;
     // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
@@ -193,6 +194,15 @@ enum class PixelPath : std::uint8_t {
     Miss,    // the ray left the scene
 };
 
+// How far the threads are that make pipelines while frames are drawn.
+struct PipelineProgress {
+    std::uint32_t wanted = 0;   // pipelines that are made in the background
+    std::uint32_t made = 0;     // those that were made, or have failed
+    std::uint32_t adopted = 0;  // those that recordings use
+    // The first error. Its passes keep the fallback.
+    std::optional<Diagnostic> error{};
+};
+
 // An image of RGBA in linear 32-bit float. The first row is on top.
 struct LinearImage {
     std::uint32_t width = 0;
@@ -206,9 +216,9 @@ class Renderer {
 public:
     // Makes all pipelines, images and buffers and waits for the device. Errors: "renderer-options" (not
     // exactly one strategy, tracer or ordering), "package-strategy", "package-tracer" and "package-bounces"
-    // (the package lacks it), "device-tracer" and "device-ordering" (the device lacks it),
-    // "pipeline-statistics", "render-size" (no pixels, or more than the device supports), and those of memory
-    // and Vulkan's calls.
+    // (the package lacks it), "package-fallback" (see RendererOptions::backgroundPipelines), "device-tracer"
+    // and "device-ordering" (the device lacks it), "pipeline-statistics", "render-size" (no pixels, or more
+    // than the device supports), and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
                                                     const RendererOptions& options);
     ~Renderer();
@@ -273,6 +283,10 @@ public:
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;
+    // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then. These
+    // say how far they are, and wait until the last is made. Without it nothing is wanted.
+    PipelineProgress pipelineProgress() const;
+    void waitForPipelines();
     // Returns what the driver reports about each pipeline. Errors: "pipeline-statistics" without
     // RendererOptions::pipelineStatistics, "vulkan-call".
     Result<std::vector<PipelineStatistics>> pipelineStatistics() const;

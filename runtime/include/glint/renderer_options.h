@@ -34,6 +34,10 @@ struct RendererOptions {
     // The number of threads that make pipelines, the calling one included. 0 means as many as the machine
     // runs at once.
     std::uint32_t pipelineThreads = 0;
+    // Makes the pipelines with shaders of single cases while frames are already drawn. Until a pipeline is
+    // made, the package's fallback shades its hits; the pictures are the same. Requires a package with
+    // PackageShape::fallback, which must outlive the Renderer. Error "package-fallback" without.
+    bool backgroundPipelines = false;
     // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
     // without DeviceHandles::pipelineStatistics.
     bool pipelineStatistics = false;

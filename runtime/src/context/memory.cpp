@@ -23,6 +23,7 @@ VkMemoryPropertyFlags requiredFlags(MemoryUse use) {
 VkMemoryPropertyFlags preferredFlags(MemoryUse use) {
     switch (use) {
         case MemoryUse::Device:
+        case MemoryUse::Shared:
             return VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
         case MemoryUse::Readback:
             return VK_MEMORY_PROPERTY_HOST_CACHED_BIT;

@@ -117,6 +117,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.maxBounces == 0 || header.maxBounces > package::kMaxBounces) {
         return outside("the number of bounces", header.maxBounces);
     }
+    if (header.fallback > 1) {
+        return outside("the kind of fallback", header.fallback);
+    }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }
@@ -321,6 +324,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     shape.deforms = header.deforms != 0;
     shape.passes = header.passes;
     shape.maxBounces = header.maxBounces;
+    shape.fallback = header.fallback != 0;
     return shape;
 }
 

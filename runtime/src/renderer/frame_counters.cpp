@@ -44,6 +44,18 @@ EffectCounters countersOf(const std::vector<std::uint32_t>& values, const packag
     return counters;
 }
 
+// Returns the counts of the buckets of a round that was read back at `bytes`.
+std::vector<std::uint32_t> bucketsOf(const std::uint8_t* bytes, const FrameSize& size) {
+    std::vector<std::uint32_t> counts(size.bucketCount);
+    std::memcpy(counts.data(), bytes + kRoundCounterBytes, counts.size() * sizeof(counts[0]));
+    return counts;
+}
+
+void addTo(std::vector<std::uint32_t>& sums, const std::vector<std::uint32_t>& counts) {
+    sums.resize(counts.size());
+    std::ranges::transform(counts, sums, sums.begin(), std::plus<>{});
+}
+
 // Adds the counters of a round that was read back at `bytes`.
 void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::State::Round& round,
               FrameCounters& counters) {
@@ -57,14 +69,11 @@ void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::
     if (!size.ordered) {
         return;
     }
-    std::vector<std::uint32_t> counts(size.bucketCount);
-    std::memcpy(counts.data(), bytes + kRoundCounterBytes, counts.size() * sizeof(counts[0]));
-    counters.bucketCounts.resize(counts.size());
-    std::ranges::transform(counts, counters.bucketCounts, counters.bucketCounts.begin(), std::plus<>{});
+    const std::vector<std::uint32_t> counts = bucketsOf(bytes, size);
+    addTo(counters.bucketCounts, counts);
     for (EffectCounters& effect : counters.effects) {
         if (effect.effect == round.effects) {
-            effect.bucketCounts.resize(counts.size());
-            std::ranges::transform(counts, effect.bucketCounts, effect.bucketCounts.begin(), std::plus<>{});
+            addTo(effect.bucketCounts, counts);
         }
     }
 }
@@ -81,6 +90,14 @@ EffectCounters FrameCounters::of(package::Effect effect) const {
     EffectCounters none;
     none.effect = effect;
     return found == effects.end() ? none : *found;
+}
+
+std::vector<std::uint32_t> bucketCountsOf(const Renderer::State& state) {
+    std::vector<std::uint32_t> sums(state.size.bucketCount);
+    for (std::uint32_t round = 0; round < state.rounds.size(); ++round) {
+        addTo(sums, bucketsOf(state.frame.readback.mapped + readbackRound(state.size, round), state.size));
+    }
+    return sums;
 }
 
 Result<FrameCounters> Renderer::counters() {

@@ -52,6 +52,10 @@ void HitPasses::shadeBuckets() {
     const Buffer& arguments = state_.frame.bucketDispatch;
     passes_.setBucket(0);
     passes_.dispatchList({"shade miss", Pass::ShadeMiss}, pass(ModuleRole::ShadeMiss), arguments, 0);
+    if (state_.pipelines.shadesUnknown) {
+        passes_.dispatchList({"shade fallback", Pass::ShadeFallback}, pass(ModuleRole::ShadeFallback),
+                             arguments, 0);
+    }
     for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
         if (state_.pipelines.cases[shaderId].pipeline == VK_NULL_HANDLE) {
             continue;  // the bucket of a retired shader ID stays empty

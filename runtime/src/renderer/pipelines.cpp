@@ -2,13 +2,18 @@
 
 #include "context/vulkan_error.h"
 #include "package/shader_modules.h"
+#include "renderer/background_pipelines.h"
 #include "renderer/frame_resources.h"
 #include "renderer/ray_passes.h"
 #include "renderer/tile_sort.h"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <iterator>
+#include <map>
+#include <memory>
 #include <utility>
 
 namespace glint {
@@ -134,27 +139,15 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     if (key.role == ModuleRole::BucketOffset) {
         return choice.ordering != package::Ordering::TileSort;
     }
+    if (!runsFallback(choice, key.role)) {
+        return false;
+    }
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
-}
-
-// The pipelines to make and the passes that use them.
-struct PipelinePlan {
-    std::vector<PipelineJob> jobs;
-    std::vector<std::pair<package::ModuleKey, std::size_t>> computePasses;  // each with its job
-    std::vector<RayPass> rayPasses;                                         // made by the last jobs
-};
-
-PipelineJob gbufferJob(Context::State& context, const Package& package, VkPipelineLayout layout) {
-    const std::size_t words = package.spirv({ModuleRole::GBufferVertex}).size() +
-                              package.spirv({ModuleRole::GBufferFragment}).size();
-    return {"GBuffer", words, [&context, &package, layout](PipelineCreation& creation) {
-                return createGBuffer(context, package, layout, creation);
-            }};
 }
 
 // Plans every compute pass and case of the choice.
 void planComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
-                       VkPipelineLayout layout, PipelinePlan& plan) {
+                       VkPipelineLayout layout, std::vector<PlannedPipeline>& plan) {
     // The loader gives the same words to entries that name the same file.
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
@@ -164,41 +157,105 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
         const std::uint32_t threads = chosenThreads(context.limits, key, package.bucketCount());
-        const auto [known, fresh] = byWords.emplace(words.data(), plan.jobs.size());
+        const auto [known, fresh] = byWords.emplace(words.data(), plan.size());
         if (fresh) {
-            plan.jobs.push_back({pipelineName(package, key), words.size(),
-                                 [&context, words, layout, threads](PipelineCreation& creation) {
-                                     creation.threads = threads;
-                                     return createComputePipeline(context, words, layout, creation);
-                                 }});
+            plan.push_back({{pipelineName(package, key), words.size(),
+                             [&context, words, layout, threads](PipelineCreation& creation) {
+                                 creation.threads = threads;
+                                 return createComputePipeline(context, words, layout, creation);
+                             }},
+                            {},
+                            {},
+                            true});
         }
-        plan.computePasses.emplace_back(key, known->second);
+        PlannedPipeline& planned = plan[known->second];
+        planned.keys.push_back(key);
+        planned.later = planned.later && isMadeLater(choice, key.role);
     }
 }
 
-void planRayJobs(Context::State& context, VkPipelineLayout layout, PipelinePlan& plan) {
-    for (const RayPass& pass : plan.rayPasses) {
-        plan.jobs.push_back(
-            {pass.name, wordCount(pass.source), [&context, &pass, layout](PipelineCreation& creation) {
-                 return createRayPipeline(context, layout, pass.source, creation);
-             }});
+std::vector<PlannedPipeline> planPipelines(Context::State& context, const Package& package,
+                                           const PipelineChoice& choice,
+                                           std::span<const std::uint32_t> shaderIds,
+                                           VkPipelineLayout layout) {
+    std::vector<PlannedPipeline> plan;
+    if (package.passes() == package::Passes::Frame) {
+        const std::size_t words = package.spirv({ModuleRole::GBufferVertex}).size() +
+                                  package.spirv({ModuleRole::GBufferFragment}).size();
+        plan.push_back({{"GBuffer", words,
+                         [&context, &package, layout](PipelineCreation& creation) {
+                             return createGBuffer(context, package, layout, creation);
+                         }},
+                        {{ModuleRole::GBufferVertex}}});
     }
+    planComputePasses(context, package, choice, layout, plan);
+    for (RayPass& planned : planRayPasses(package, choice, shaderIds)) {
+        const auto pass = std::make_shared<const RayPass>(std::move(planned));
+        plan.push_back({{pass->name, wordCount(pass->source),
+                         [&context, pass, layout](PipelineCreation& creation) {
+                             return createRayPipeline(context, layout, pass->source, creation);
+                         }},
+                        {},
+                        pass,
+                        pass->later});
+    }
+    return plan;
 }
 
-void addComputePasses(const Package& package, const PipelinePlan& plan, Pipelines& pipelines) {
-    for (const auto& [key, job] : plan.computePasses) {
-        PassPipeline pass;
-        pass.pipeline = pipelines.owned[job].handle.get();
-        if (key.role == ModuleRole::ShadeCase) {
-            pipelines.cases.resize(package.caseCount());
-            pipelines.cases[key.index] = pass;
+// Takes a pipeline, and lets the passes that it is for use it.
+Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
+                   Pipelines& pipelines) {
+    const VkPipeline pipeline = made.handle.get();
+    pipelines.owned.push_back(std::move(made));
+    if (planned.rays) {
+        return addRayPass(context, *planned.rays, pipeline, pipelines);
+    }
+    for (const package::ModuleKey& key : planned.keys) {
+        if (key.role == ModuleRole::GBufferVertex) {
+            pipelines.gbuffer = pipeline;
+        } else if (key.role == ModuleRole::ShadeCase) {
+            pipelines.cases[key.index].pipeline = pipeline;
+            pipelines.cases[key.index].traces = false;
         } else {
-            pipelines.add(key, pass);
+            pipelines.add(key, {.pipeline = pipeline});
         }
     }
+    return okStatus();
+}
+
+// Lets the fallback stand in for what is made later.
+void addFallback(const Package& package, const PipelineChoice& choice, Pipelines& pipelines) {
+    const auto standIn = [&](ModuleRole fallback, ModuleRole role) {
+        const auto made = pipelines.passes.find(fallback);
+        if (made != pipelines.passes.end()) {
+            pipelines.passes[role] = made->second;
+        }
+    };
+    if (choice.background) {
+        standIn(ModuleRole::UberFallback, ModuleRole::UberShade);
+        standIn(ModuleRole::SortedFallback, ModuleRole::SortedShade);
+        const auto made = pipelines.passes.find(ModuleRole::ShadeFallback);
+        for (std::size_t id = 0; made != pipelines.passes.end() && id < pipelines.cases.size(); ++id) {
+            // A retired shader ID has no hits and no pipeline.
+            if (package.cases()[id].keyCount > 0) {
+                pipelines.cases[id] = made->second;
+            }
+        }
+    }
+}
+
+bool hasUnknown(const Package& package, std::span<const std::uint32_t> shaderIds) {
+    return package.shape().fallback && std::ranges::any_of(shaderIds, [&](std::uint32_t id) {
+               return id >= package.caseCount() || package.cases()[id].keyCount == 0;
+           });
 }
 
 }  // namespace
+
+Pipelines::Pipelines(Context::State& context) : pool(context) {}
+Pipelines::Pipelines(Pipelines&&) noexcept = default;
+Pipelines& Pipelines::operator=(Pipelines&&) noexcept = default;
+Pipelines::~Pipelines() = default;
 
 void Pipelines::add(const package::ModuleKey& key, const PassPipeline& pass) {
     const package::Repeated repeated = package::findRole(key.role)->repeated;
@@ -216,6 +273,18 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
     shape.deforms = false;  // the scene has that pass itself
     shape.maxBounces = choice.bounces;
     return shape;
+}
+
+bool isMadeLater(const PipelineChoice& choice, package::ModuleRole role) {
+    return choice.background && (role == ModuleRole::UberShade || role == ModuleRole::ShadeCase ||
+                                 role == ModuleRole::SortedShade || role == ModuleRole::HitTrace);
+}
+
+bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
+    // The visibility strategy dispatches the fallback for hits whose shader ID no case has. Shaders with a
+    // switch have it in them.
+    return choice.background || role == ModuleRole::ShadeFallback ||
+           package::findRole(role)->purpose != package::Purpose::Fallback;
 }
 
 VkShaderStageFlags pushStages(const Context::State& context) {
@@ -252,38 +321,55 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     if (Status status = createLayout(context, source, pipelines); !status) {
         return status.error();
     }
-    const VkPipelineLayout layout = pipelines.layout;
-    PipelinePlan plan;
-    const bool draws = package.passes() == package::Passes::Frame;
-    if (draws) {
-        plan.jobs.push_back(gbufferJob(context, package, layout));
+    std::vector<PlannedPipeline> plan = planPipelines(context, package, choice, shaderIds, pipelines.layout);
+    const auto later = std::stable_partition(plan.begin(), plan.end(),
+                                             [](const PlannedPipeline& planned) { return !planned.later; });
+    std::vector<PlannedPipeline> laterPlan(std::make_move_iterator(later),
+                                           std::make_move_iterator(plan.end()));
+    plan.erase(later, plan.end());
+    std::vector<PipelineJob> jobs;
+    for (const PlannedPipeline& planned : plan) {
+        jobs.push_back(planned.job);
     }
-    planComputePasses(context, package, choice, layout, plan);
-    plan.rayPasses = planRayPasses(package, choice, shaderIds);
-    planRayJobs(context, layout, plan);
-    pipelines.threads = pipelineThreads(making.threads, plan.jobs.size());
+    pipelines.threads = pipelineThreads(making.threads, jobs.size());
     pipelines.captureStatistics = making.captureStatistics;
     const VkPipelineCreateFlags flags =
         making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
-    Result<std::vector<MadePipeline>> made = makePipelines(plan.jobs, flags, pipelines.threads);
+    Result<std::vector<MadePipeline>> made = makePipelines(jobs, flags, pipelines.threads);
     if (!made) {
         return made.error();
     }
-    pipelines.owned = std::move(*made);
-    if (draws) {
-        pipelines.gbuffer = pipelines.owned.front().handle.get();
+    if (choice.strategy == package::kStrategyVisibility) {
+        pipelines.cases.resize(package.caseCount());
     }
-    addComputePasses(package, plan, pipelines);
-    const std::size_t firstRayJob = plan.jobs.size() - plan.rayPasses.size();
-    for (std::size_t i = 0; i < plan.rayPasses.size(); ++i) {
-        const VkPipeline pipeline = pipelines.owned[firstRayJob + i].handle.get();
-        if (Status status = addRayPass(context, package, plan.rayPasses[i], pipeline, pipelines); !status) {
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        if (Status status = addPipeline(context, plan[i], std::move((*made)[i]), pipelines); !status) {
             return status.error();
         }
+    }
+    addFallback(package, choice, pipelines);
+    pipelines.shadesUnknown = hasUnknown(package, shaderIds);
+    if (!laterPlan.empty()) {
+        // One thread is the caller's.
+        const std::uint32_t threads = pipelineThreads(making.threads, laterPlan.size() + 1);
+        pipelines.background =
+            std::make_unique<BackgroundPipelines>(std::move(laterPlan), flags, std::max(threads, 2U) - 1);
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     pipelines.creationMs = elapsed.count();
     return pipelines;
+}
+
+Status adoptPipelines(Context::State& context, Pipelines& pipelines) {
+    if (!pipelines.background) {
+        return okStatus();
+    }
+    for (BackgroundPipelines::Done& done : pipelines.background->take(pipelines.adoptedAtOnce)) {
+        if (Status status = addPipeline(context, done.planned, std::move(done.made), pipelines); !status) {
+            return status;
+        }
+    }
+    return okStatus();
 }
 
 }  // namespace glint

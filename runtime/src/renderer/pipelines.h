@@ -6,8 +6,11 @@
 
 #include <glint/package.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +25,8 @@ struct PipelineChoice {
     bool checksOrder = false;
     bool batchEffects = false;
     std::uint32_t bounces = 1;  // the most of a path
+    // Pipelines with shaders of cases are made later, by threads; until then a fallback is in their place.
+    bool background = false;
 };
 
 // How pipelines are made.
@@ -39,9 +44,16 @@ struct PassPipeline {
     VkStridedDeviceAddressRegionKHR hit{};
 };
 
-// Members are destroyed in reverse order: the pool's memory last.
+class BackgroundPipelines;
+
+// Members are destroyed in reverse order: first the threads end, and the pool's memory is freed last.
 struct Pipelines {
-    explicit Pipelines(Context::State& context) : pool(context) {}
+    explicit Pipelines(Context::State& context);
+    Pipelines(Pipelines&&) noexcept;
+    Pipelines& operator=(Pipelines&&) noexcept;
+    ~Pipelines();
+    Pipelines(const Pipelines&) = delete;
+    Pipelines& operator=(const Pipelines&) = delete;
 
     MemoryPool pool;
     std::vector<Buffer> tables;      // shader binding tables
@@ -57,6 +69,10 @@ struct Pipelines {
     std::uint32_t threads = 0;  // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;
+    // Hits may have shader IDs that no case has, and the package's fallback shades them.
+    bool shadesUnknown = false;
+    std::unique_ptr<BackgroundPipelines> background;  // null if all pipelines were made at once
+    std::size_t adoptedAtOnce = std::numeric_limits<std::size_t>::max();  // the most in a recording
 
     // Sets the pipeline of a role, and of the effect if each has one of its own.
     void add(const package::ModuleKey& key, const PassPipeline& pass);
@@ -72,16 +88,27 @@ struct LayoutSource {
 // Returns the part of the package's shape that decides which of its modules the choice needs.
 package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice);
 
+// Whether the choice has pipelines of that role made later.
+bool isMadeLater(const PipelineChoice& choice, package::ModuleRole role);
+
+// Whether the choice needs a pipeline of a fallback's role. It is true for other roles.
+bool runsFallback(const PipelineChoice& choice, package::ModuleRole role);
+
 // Returns the stages that push constants are for.
 VkShaderStageFlags pushStages(const Context::State& context);
 
 // Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
 std::string pipelineName(const Package& package, const package::ModuleKey& key);
 
-// Makes all pipelines of the choice. `shaderIds` are those of the hit records of the strategy hit-shaders, in
-// their order. Errors: those of buffers and submissions, "vulkan-call".
+// Makes all pipelines of the choice, or starts threads that make some of them later, which read `package`.
+// `shaderIds` are those of the hit records of the strategy hit-shaders, in their order. Errors: those of
+// buffers, "vulkan-call".
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& layout);
+
+// Puts pipelines that threads have made since the last call in the place of the fallback. The passes that are
+// recorded afterwards use them. Errors: those of buffers, "vulkan-call".
+Status adoptPipelines(Context::State& context, Pipelines& pipelines);
 
 }  // namespace glint

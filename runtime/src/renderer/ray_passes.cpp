@@ -1,5 +1,7 @@
 #include "renderer/ray_passes.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace glint {
@@ -21,14 +23,20 @@ RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> 
     return source;
 }
 
-// Returns the source of the strategy hit-shaders. Each geometry has a record, with the hit group of its
-// shader ID.
-RayPipelineSource hitShaderSource(const Package& package, std::span<const std::uint32_t> shaderIds) {
+// Returns the source of the strategy hit-shaders, without closest-hit shaders.
+RayPipelineSource hitShaderStart(const Package& package) {
     RayPipelineSource source;
     source.rayGeneration = {rayWords(package, ModuleRole::HitTrace)};
     // The miss indices are those of rays in the list and of shadow rays, in this order.
     source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
     source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    return source;
+}
+
+// Returns the source of the strategy hit-shaders. Each geometry has a record, with the hit group of its
+// shader ID.
+RayPipelineSource hitShaderSource(const Package& package, std::span<const std::uint32_t> shaderIds) {
+    RayPipelineSource source = hitShaderStart(package);
     std::map<std::uint32_t, std::uint32_t> groups;  // by shader ID; retired ones have none
     std::map<const std::uint32_t*, std::uint32_t> byWords;
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
@@ -44,7 +52,8 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
         groups[shaderId] = known->second;
     }
     const auto unknown = static_cast<std::uint32_t>(source.closestHit.size());
-    source.closestHit.push_back(rayWords(package, ModuleRole::HitUnknown));
+    const SpirvWords fallback = rayWords(package, ModuleRole::HitFallback);
+    source.closestHit.push_back(fallback.empty() ? rayWords(package, ModuleRole::HitUnknown) : fallback);
     for (const std::uint32_t shaderId : shaderIds) {
         const auto group = groups.find(shaderId);
         source.hitRecords.push_back(group != groups.end() ? group->second : unknown);
@@ -52,27 +61,41 @@ RayPipelineSource hitShaderSource(const Package& package, std::span<const std::u
     return source;
 }
 
-// Plans the cases that trace their own shadow rays. They share one pipeline, which has a ray generation
-// shader for each distinct module.
-RayPass planCases(const Package& package) {
-    RayPass pass;
-    pass.name = std::string(package::roleName(ModuleRole::ShadeCase));
-    pass.key = {ModuleRole::ShadeCase, 0, package::kTracerRayPipeline};
-    std::vector<SpirvWords> shaders;
-    std::map<const std::uint32_t*, std::size_t> byWords;
+// Plans the strategy hit-shaders with the fallback for every hit.
+RayPipelineSource hitFallbackSource(const Package& package) {
+    RayPipelineSource source = hitShaderStart(package);
+    source.closestHit = {rayWords(package, ModuleRole::HitFallback)};
+    return source;
+}
+
+// Plans the cases that trace their own shadow rays. There is a ray generation shader for each distinct
+// module. They share one pipeline, or have one each to be made later.
+std::vector<RayPass> planCases(const Package& package, bool background) {
+    std::vector<RayPass> passes;
+    std::map<const std::uint32_t*, std::pair<std::size_t, std::size_t>> byWords;  // pass and shader
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
         const SpirvWords words = rayWords(package, ModuleRole::ShadeCase, shaderId);
         if (words.empty()) {
             continue;
         }
-        const auto [known, fresh] = byWords.emplace(words.data(), shaders.size());
-        if (fresh) {
-            shaders.push_back(words);
+        if (const auto known = byWords.find(words.data()); known != byWords.end()) {
+            passes[known->second.first].shaderOfCase[shaderId] = known->second.second;
+            continue;
         }
-        pass.shaderOfCase[shaderId] = known->second;
+        if (passes.empty() || background) {
+            RayPass& pass = passes.emplace_back();
+            pass.key = {ModuleRole::ShadeCase, shaderId, package::kTracerRayPipeline};
+            pass.name = background ? pipelineName(package, pass.key)
+                                   : std::string(package::roleName(ModuleRole::ShadeCase));
+            pass.source = tracingSource(package, {});
+            pass.later = background;
+        }
+        std::vector<SpirvWords>& shaders = passes.back().source.rayGeneration;
+        byWords[words.data()] = {passes.size() - 1, shaders.size()};
+        passes.back().shaderOfCase[shaderId] = shaders.size();
+        shaders.push_back(words);
     }
-    pass.source = tracingSource(package, std::move(shaders));
-    return pass;
+    return passes;
 }
 
 }  // namespace
@@ -85,7 +108,7 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         const package::ShaderKind kind = package::findRole(key.role)->kind;
         const bool generatesRays =
             kind == package::ShaderKind::Tracing || kind == package::ShaderKind::RayGeneration;
-        if (key.tracer != package::kTracerRayPipeline || !generatesRays) {
+        if (key.tracer != package::kTracerRayPipeline || !generatesRays || !runsFallback(choice, key.role)) {
             continue;
         }
         if (key.role == ModuleRole::ShadeCase) {
@@ -95,15 +118,21 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         RayPass pass;
         pass.name = pipelineName(package, key);
         pass.key = key;
-        pass.source = key.role == ModuleRole::HitTrace ? hitShaderSource(package, shaderIds)
-                                                       : tracingSource(package, {package.spirv(key)});
+        pass.later = isMadeLater(choice, key.role);
+        if (key.role != ModuleRole::HitTrace) {
+            pass.source = tracingSource(package, {package.spirv(key)});
+        } else {
+            if (choice.background) {
+                RayPass& fallback = passes.emplace_back(pass);
+                fallback.later = false;
+                fallback.source = hitFallbackSource(package);
+            }
+            pass.source = hitShaderSource(package, shaderIds);
+        }
         passes.push_back(std::move(pass));
     }
     if (tracesInCases) {
-        RayPass cases = planCases(package);
-        if (!cases.source.rayGeneration.empty()) {
-            passes.push_back(std::move(cases));
-        }
+        std::ranges::move(planCases(package, choice.background), std::back_inserter(passes));
     }
     return passes;
 }
@@ -118,8 +147,7 @@ std::size_t wordCount(const RayPipelineSource& source) {
     return count;
 }
 
-Status addRayPass(Context::State& context, const Package& package, const RayPass& pass, VkPipeline pipeline,
-                  Pipelines& pipelines) {
+Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines) {
     Result<ShaderBindingTable> table = createTable(context, pipelines.pool, pipeline, pass.source);
     if (!table) {
         return table.error();
@@ -128,7 +156,6 @@ Status addRayPass(Context::State& context, const Package& package, const RayPass
         return PassPipeline{pipeline, true, table->rayGeneration[shader], table->miss, table->hit};
     };
     if (pass.key.role == ModuleRole::ShadeCase) {
-        pipelines.cases.resize(package.caseCount());
         for (const auto& [shaderId, shader] : pass.shaderOfCase) {
             pipelines.cases[shaderId] = passOf(shader);
         }

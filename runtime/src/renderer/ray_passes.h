@@ -21,6 +21,7 @@ struct RayPass {
     // For cases, which share a pipeline: the source's ray generation shader by shader ID. Retired shader IDs
     // have none.
     std::map<std::uint32_t, std::size_t> shaderOfCase;
+    bool later = false;  // frames can begin without it
 };
 
 // Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.
@@ -32,8 +33,7 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
 std::size_t wordCount(const RayPipelineSource& source);
 
 // Makes the shader binding table of the pass and adds the pass to `pipelines`, which must own `pipeline`.
-// Errors: those of buffers and submissions, "vulkan-call".
-Status addRayPass(Context::State& context, const Package& package, const RayPass& pass, VkPipeline pipeline,
-                  Pipelines& pipelines);
+// Errors: those of buffers, "vulkan-call".
+Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines);
 
 }  // namespace glint

@@ -1,7 +1,6 @@
 #include "renderer/ray_pipelines.h"
 
 #include "context/memory.h"
-#include "context/upload.h"
 #include "context/vulkan_error.h"
 
 #include <algorithm>
@@ -193,27 +192,16 @@ Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool
     const TableLayout layout = layOutTable(context, source);
     const VkDeviceSize alignment = context.limits.rayPipeline.shaderGroupBaseAlignment;
     // Vulkan does not guarantee this alignment for the buffer itself.
-    Result<Buffer> buffer =
-        createBuffer(context, pool, layout.bytes + alignment,
-                     VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    Result<Buffer> buffer = createBuffer(context, pool, layout.bytes + alignment,
+                                         VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, MemoryUse::Shared);
     if (!buffer) {
         return buffer.error();
     }
     ShaderBindingTable table;
     table.buffer = std::move(*buffer);
     const VkDeviceAddress start = alignUp(table.buffer.address, alignment);
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(context);
-    if (!uploader) {
-        return uploader.error();
-    }
     const std::vector<std::uint8_t> bytes = fillTable(source, layout, *handles);
-    if (Status status = (*uploader)->copyToBuffer(bytes, table.buffer, start - table.buffer.address);
-        !status) {
-        return status.error();
-    }
-    if (Status status = (*uploader)->finish(); !status) {
-        return status.error();
-    }
+    std::memcpy(table.buffer.mapped + (start - table.buffer.address), bytes.data(), bytes.size());
     for (std::size_t i = 0; i < source.rayGeneration.size(); ++i) {
         table.rayGeneration.push_back(
             {start + i * layout.rayGenerationStride, layout.rayGenerationStride, layout.rayGenerationStride});

@@ -33,8 +33,8 @@ struct ShaderBindingTable {
 Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
                                          const RayPipelineSource& source, PipelineCreation& creation);
 
-// Makes the table of a pipeline that was made from the same source, and waits until the table is on the
-// device. `pool` must outlive the result. Errors: those of buffers and submissions, "vulkan-call".
+// Makes the table of a pipeline that was made from the same source. Commands that are submitted afterwards
+// see it. `pool` must outlive the result. Errors: those of buffers, "vulkan-call".
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
                                        const RayPipelineSource& source);
 

@@ -1,6 +1,7 @@
 // Renderer: creation, frame constants, results.
 #include "context/readback.h"
 #include "context/vulkan_error.h"
+#include "renderer/background_pipelines.h"
 #include "renderer/camera.h"
 #include "renderer/frame_constants.h"
 #include "renderer/renderer_choice.h"
@@ -109,6 +110,14 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     return constants;
 }
 
+// Lets the case that had most hits be made next. The device may be writing the counts of a frame that is in
+// flight: they only decide about an order.
+void orderByHits(Renderer::State& state) {
+    if (state.recorded && state.size.ordered) {
+        state.pipelines.background->setHits(bucketCountsOf(state));
+    }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
@@ -172,6 +181,12 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     if (frame.environment != nullptr && frame.environment->state() != state_->environment) {
         bindEnvironment(state_->context, *frame.environment->state(), state_->frame);
         state_->environment = frame.environment->state();
+    }
+    if (state_->pipelines.background) {
+        orderByHits(*state_);
+        if (Status status = adoptPipelines(state_->context, state_->pipelines); !status) {
+            return status;
+        }
     }
     recordFrame(*state_, commands, frame, makeConstants(*state_, frame));
     state_->recorded = true;
@@ -243,6 +258,17 @@ Status Renderer::renderSamples(const FrameOptions& frame, std::uint32_t sampleCo
 
 Result<std::vector<PassTiming>> Renderer::timings() {
     return passTimings(*state_);
+}
+
+PipelineProgress Renderer::pipelineProgress() const {
+    const auto& background = state_->pipelines.background;
+    return background ? background->progress() : PipelineProgress{};
+}
+
+void Renderer::waitForPipelines() {
+    if (state_->pipelines.background) {
+        state_->pipelines.background->wait();
+    }
 }
 
 package::Tracer Renderer::tracer() const {

@@ -118,7 +118,15 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
                              std::to_string(compiledBounces),
                          "compile the package with more --bounces, or ask for fewer");
     }
+    if (options.backgroundPipelines && !package.shape().fallback) {
+        return makeError(
+            "package-fallback", "",
+            "pipelines are to be made in the background, and the package has no fallback to draw "
+            "with meanwhile",
+            "compile the package with --fallback, or make all pipelines at once");
+    }
     PipelineChoice choice;
+    choice.background = options.backgroundPipelines;
     choice.bounces = options.bounces;
     choice.strategy = options.strategy;
     choice.tracer = *tracer;

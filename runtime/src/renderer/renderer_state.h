@@ -43,6 +43,10 @@ inline std::uint32_t bouncesOf(const FrameSize& size, const FrameOptions& frame)
     return frame.bounces == 0 ? size.bounces : std::min(frame.bounces, size.bounces);
 }
 
+// Returns the misses and hits by shader ID that the last recording counted, of all rounds. Hits must be
+// ordered.
+std::vector<std::uint32_t> bucketCountsOf(const Renderer::State& state);
+
 // Records all passes of a frame.
 void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame,
                  const gpu::FrameConstants& constants);

@@ -80,6 +80,7 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     wanted.tracer = options.tracer;
     wanted.ordering = options.ordering;
     wanted.checkOrder = options.checkOrder;
+    wanted.backgroundPipelines = options.backgroundPipelines;
     wanted.width = options.maxRays;
     wanted.height = 1;
     Result<PipelineChoice> choice = choosePipelines(contextState, package, wanted);
@@ -182,6 +183,9 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
 
 Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
     if (Status status = checkBatch(*state_, batch); !status) {
+        return status;
+    }
+    if (Status status = adoptPipelines(state_->context, state_->pipelines); !status) {
         return status;
     }
     state_->timed.clear();

@@ -16,7 +16,9 @@ void main() {
     if (hit.geometry == kMissGeometry) {
         resolveMiss(hit.target, missDirection(hit));
     } else {
+#if !GLINT_FALLBACK
         atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
         resolveUnknown(hit.target);
+#endif
     }
 }

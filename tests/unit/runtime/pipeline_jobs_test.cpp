@@ -1,11 +1,15 @@
 // Tests jobs on several threads: results and errors must not depend on which job was first.
 #include "renderer/pipeline_jobs.h"
 
+#include "renderer/background_pipelines.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <future>
+#include <string>
 #include <thread>
 
 namespace glint {
@@ -46,6 +50,64 @@ TEST(PipelineJobs, FirstErrorInOrderIsToldWhicheverCameFirst) {
         ASSERT_FALSE(made);
         EXPECT_EQ(made.error().message, "1");
     }
+}
+
+PlannedPipeline caseOf(std::uint32_t shaderId, std::function<Result<UniquePipeline>()> make) {
+    PlannedPipeline planned;
+    planned.job = {"case " + std::to_string(shaderId), 1,
+                   [make = std::move(make)](PipelineCreation&) { return make(); }};
+    planned.keys = {{package::ModuleRole::ShadeCase, shaderId, 0}};
+    planned.later = true;
+    return planned;
+}
+
+TEST(BackgroundPipelines, CasesWithMostHitsComeFirst) {
+    std::promise<void> begun;
+    std::promise<void> counted;
+    std::vector<PlannedPipeline> planned;
+    for (std::uint32_t id = 0; id < 4; ++id) {
+        planned.push_back(caseOf(id, [&begun, &counted, id]() -> Result<UniquePipeline> {
+            if (id == 0) {
+                begun.set_value();
+                counted.get_future().wait();  // the other cases wait until their hits are known
+            }
+            return UniquePipeline();
+        }));
+    }
+    BackgroundPipelines background(std::move(planned), 0, 1);
+    begun.get_future().wait();
+    const std::vector<std::uint32_t> missesAndHits{1000, 0, 5, 0, 9};
+    background.setHits(missesAndHits);
+    counted.set_value();
+    background.wait();
+    std::vector<std::string> names;
+    for (const BackgroundPipelines::Done& done : background.take(3)) {
+        names.push_back(done.made.name);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"case 0", "case 3", "case 1"}));
+    EXPECT_EQ(background.take(9).size(), 1U);
+    const PipelineProgress progress = background.progress();
+    EXPECT_EQ(progress.wanted, 4U);
+    EXPECT_EQ(progress.made, 4U);
+    EXPECT_EQ(progress.adopted, 4U);
+    EXPECT_FALSE(progress.error);
+}
+
+TEST(BackgroundPipelines, ErrorsAreToldAndTheRestIsMade) {
+    std::vector<PlannedPipeline> planned;
+    for (std::uint32_t id = 0; id < 3; ++id) {
+        planned.push_back(caseOf(id, [id]() -> Result<UniquePipeline> {
+            return id == 1 ? Result<UniquePipeline>(makeError("job", "", "failed")) : UniquePipeline();
+        }));
+    }
+    BackgroundPipelines background(std::move(planned), 0, 2);
+    background.wait();
+    EXPECT_EQ(background.take(9).size(), 2U);
+    const PipelineProgress progress = background.progress();
+    EXPECT_EQ(progress.made, 3U);
+    EXPECT_EQ(progress.adopted, 2U);
+    ASSERT_TRUE(progress.error);
+    EXPECT_EQ(progress.error->message, "failed");
 }
 
 TEST(PipelineJobs, LargestBeginsFirst) {

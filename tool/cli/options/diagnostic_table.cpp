@@ -208,6 +208,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"output-write", kError, "The package could not be written."},
     {"package-altered", kError, "A package differs from what was written, or contradicts itself."},
     {"package-bounces", kError, "Paths of more bounces are asked for than a package has."},
+    {"package-fallback", kError,
+     "Pipelines are to be made in the background, and a package has no fallback (`--fallback`)."},
     {"package-file-name", kError, "A package names a file outside of its folder."},
     {"package-foreign", kError, "A file is not a package."},
     {"package-mismatch", kError,

@@ -74,6 +74,8 @@ const char* nameOf(MemoryUse use) {
     switch (use) {
         case MemoryUse::Upload:
             return "upload";
+        case MemoryUse::Shared:
+            return "shared";
         case MemoryUse::Readback:
             return "readback";
         default:

@@ -276,6 +276,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.answer = settings.answer;
     header.bindings = settings.bindings;
     header.maxBounces = settings.maxBounces;
+    header.fallback = settings.plan.fallback ? 1 : 0;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alpha = alpha;
     header.materialTextureOffset = layout.textureOffset;

@@ -1,0 +1,109 @@
+#include "renderer/background_pipelines.h"
+
+#include <algorithm>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+namespace glint {
+namespace {
+
+// Returns the hits that wait for a pipeline. `hits` are by shader ID.
+std::uint64_t waitingHits(const PlannedPipeline& planned, std::span<const std::uint32_t> hits) {
+    std::uint64_t sum = 0;
+    const auto add = [&](std::uint32_t shaderId) { sum += shaderId < hits.size() ? hits[shaderId] : 0; };
+    for (const package::ModuleKey& key : planned.keys) {
+        if (key.role == package::ModuleRole::ShadeCase) {
+            add(key.index);
+        }
+    }
+    if (planned.rays) {
+        for (const auto& [shaderId, shader] : planned.rays->shaderOfCase) {
+            add(shaderId);
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+BackgroundPipelines::BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
+                                         std::uint32_t threads)
+    : flags_(flags), waiting_(std::move(planned)), wanted_(static_cast<std::uint32_t>(waiting_.size())) {
+    for (std::uint32_t i = 0; i < std::max(threads, 1U); ++i) {
+        try {
+            threads_.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {
+            if (threads_.empty()) {
+                throw;
+            }
+            break;  // the existing threads do all the work
+        }
+    }
+}
+
+BackgroundPipelines::~BackgroundPipelines() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    for (std::thread& thread : threads_) {
+        thread.join();
+    }
+}
+
+void BackgroundPipelines::work() {
+    while (std::optional<PlannedPipeline> planned = next()) {
+        PipelineCreation creation{flags_, {}};
+        Result<UniquePipeline> made = planned->job.make(creation);
+        const std::lock_guard lock(mutex_);
+        --running_;
+        if (made) {
+            MadePipeline pipeline{planned->job.name, std::move(*made), creation.feedback};
+            done_.push_back({std::move(*planned), std::move(pipeline)});
+        } else if (!error_) {
+            error_ = made.error();
+        }
+        changed_.notify_all();
+    }
+}
+
+std::optional<PlannedPipeline> BackgroundPipelines::next() {
+    const std::lock_guard lock(mutex_);
+    if (ends_ || waiting_.empty()) {
+        return std::nullopt;
+    }
+    const auto most = std::ranges::max_element(
+        waiting_, {}, [&](const PlannedPipeline& planned) { return waitingHits(planned, hits_); });
+    PlannedPipeline planned = std::move(*most);
+    waiting_.erase(most);
+    ++running_;
+    return planned;
+}
+
+void BackgroundPipelines::setHits(std::span<const std::uint32_t> bucketCounts) {
+    const std::lock_guard lock(mutex_);
+    hits_.assign(bucketCounts.begin() + std::min<std::ptrdiff_t>(1, std::ssize(bucketCounts)),
+                 bucketCounts.end());
+}
+
+std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::size_t most) {
+    const std::lock_guard lock(mutex_);
+    const auto end = done_.begin() + static_cast<std::ptrdiff_t>(std::min(most, done_.size()));
+    std::vector<Done> taken(std::make_move_iterator(done_.begin()), std::make_move_iterator(end));
+    done_.erase(done_.begin(), end);
+    adopted_ += static_cast<std::uint32_t>(taken.size());
+    return taken;
+}
+
+void BackgroundPipelines::wait() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return waiting_.empty() && running_ == 0; });
+}
+
+PipelineProgress BackgroundPipelines::progress() const {
+    const std::lock_guard lock(mutex_);
+    return {wanted_, wanted_ - static_cast<std::uint32_t>(waiting_.size()) - running_, adopted_, error_};
+}
+
+}  // namespace glint

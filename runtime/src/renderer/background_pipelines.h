@@ -1,0 +1,73 @@
+// Pipelines that threads make while frames are drawn with a fallback.
+#pragma once
+
+#include "renderer/pipeline_jobs.h"
+#include "renderer/ray_passes.h"
+
+#include <glint/renderer.h>
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <vector>
+
+namespace glint {
+
+// A pipeline to make, and the passes that it serves.
+struct PlannedPipeline {
+    PipelineJob job;
+    std::vector<package::ModuleKey> keys;      // of compute and graphics passes
+    std::shared_ptr<const RayPass> rays = {};  // of a ray tracing pipeline
+    bool later = false;                        // frames can begin without it
+};
+
+class BackgroundPipelines {
+public:
+    struct Done {
+        PlannedPipeline planned;
+        MadePipeline made;
+    };
+
+    // Starts at most `threads` threads, at least one. Modules and layouts that the jobs use must outlive
+    // this. Throws std::system_error if the system gives no thread.
+    BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
+                        std::uint32_t threads);
+    // Waits for the pipelines that are being made, and makes no more.
+    ~BackgroundPipelines();
+    BackgroundPipelines(const BackgroundPipelines&) = delete;
+    BackgroundPipelines& operator=(const BackgroundPipelines&) = delete;
+
+    // Sets the order of what remains: the case with the most hits is made next. `bucketCounts` has the misses
+    // first, then the hits by shader ID.
+    void setHits(std::span<const std::uint32_t> bucketCounts);
+    // Returns pipelines that were made since the last call, at most `most`.
+    std::vector<Done> take(std::size_t most);
+    // Returns when every pipeline was made or has failed.
+    void wait();
+
+    PipelineProgress progress() const;
+
+private:
+    void work();
+    std::optional<PlannedPipeline> next();
+
+    VkPipelineCreateFlags flags_;
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    std::vector<PlannedPipeline> waiting_;
+    std::vector<Done> done_;
+    std::vector<std::uint32_t> hits_;  // by shader ID
+    std::uint32_t wanted_ = 0;
+    std::uint32_t running_ = 0;
+    std::uint32_t adopted_ = 0;
+    std::optional<Diagnostic> error_;
+    bool ends_ = false;
+    std::vector<std::thread> threads_;
+};
+
+}  // namespace glint
