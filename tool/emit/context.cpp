@@ -20,6 +20,9 @@ std::string featureList(const materials::MaterialModel& model, materials::Featur
 }
 
 std::string materialNames(const gltf::SceneList& scenes, const std::vector<int>& materials) {
+    if (materials.empty()) {
+        return "any";
+    }
     std::vector<std::string> names;
     for (std::size_t i = 0; i < materials.size() && i < kMaxNamesListed; ++i) {
         const std::string& name = scenes.materials()[materials[i]].name;

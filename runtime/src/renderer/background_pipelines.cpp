@@ -18,9 +18,7 @@ std::uint64_t waitingHits(const PlannedPipeline& planned, std::span<const std::u
         }
     }
     if (planned.rays) {
-        for (const auto& [shaderId, shader] : planned.rays->shaderOfCase) {
-            add(shaderId);
-        }
+        std::ranges::for_each(planned.rays->shaderIds, add);
     }
     return sum;
 }

@@ -14,9 +14,9 @@ SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index
 }
 
 // Returns the source of passes that only trace. Other passes shade what their rays find.
-RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> rayGeneration) {
+RayPipelineSource tracingSource(const Package& package, SpirvWords rayGeneration) {
     RayPipelineSource source;
-    source.rayGeneration = std::move(rayGeneration);
+    source.rayGeneration = rayGeneration;
     source.miss = {rayWords(package, ModuleRole::TraceMiss)};
     source.closestHit = {rayWords(package, ModuleRole::TraceClosestHit)};
     source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
@@ -26,7 +26,7 @@ RayPipelineSource tracingSource(const Package& package, std::vector<SpirvWords> 
 // Returns the source of the strategy hit-shaders, without closest-hit shaders.
 RayPipelineSource hitShaderStart(const Package& package) {
     RayPipelineSource source;
-    source.rayGeneration = {rayWords(package, ModuleRole::HitTrace)};
+    source.rayGeneration = rayWords(package, ModuleRole::HitTrace);
     // The miss indices are those of rays in the list and of shadow rays, in this order.
     source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
     source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
@@ -68,32 +68,25 @@ RayPipelineSource hitFallbackSource(const Package& package) {
     return source;
 }
 
-// Plans the cases that trace their own shadow rays. There is a ray generation shader for each distinct
-// module. They share one pipeline, or have one each to be made later.
-std::vector<RayPass> planCases(const Package& package, bool background) {
+// Plans the cases that trace their own shadow rays. Each distinct module has a pipeline, so that threads can
+// make several at once: one pipeline for all took a driver six times as long for 256 cases (docs/live.md).
+std::vector<RayPass> planCases(const Package& package, const PipelineChoice& choice) {
     std::vector<RayPass> passes;
-    std::map<const std::uint32_t*, std::pair<std::size_t, std::size_t>> byWords;  // pass and shader
+    std::map<const std::uint32_t*, std::size_t> byWords;
     for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
         const SpirvWords words = rayWords(package, ModuleRole::ShadeCase, shaderId);
         if (words.empty()) {
             continue;
         }
-        if (const auto known = byWords.find(words.data()); known != byWords.end()) {
-            passes[known->second.first].shaderOfCase[shaderId] = known->second.second;
-            continue;
-        }
-        if (passes.empty() || background) {
+        const auto [known, fresh] = byWords.emplace(words.data(), passes.size());
+        if (fresh) {
             RayPass& pass = passes.emplace_back();
             pass.key = {ModuleRole::ShadeCase, shaderId, package::kTracerRayPipeline};
-            pass.name = background ? pipelineName(package, pass.key)
-                                   : std::string(package::roleName(ModuleRole::ShadeCase));
-            pass.source = tracingSource(package, {});
-            pass.later = background;
+            pass.name = pipelineName(package, pass.key);
+            pass.source = tracingSource(package, words);
+            pass.later = isMadeLater(choice, pass.key.role);
         }
-        std::vector<SpirvWords>& shaders = passes.back().source.rayGeneration;
-        byWords[words.data()] = {passes.size() - 1, shaders.size()};
-        passes.back().shaderOfCase[shaderId] = shaders.size();
-        shaders.push_back(words);
+        passes[known->second].shaderIds.push_back(shaderId);
     }
     return passes;
 }
@@ -120,7 +113,7 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         pass.key = key;
         pass.later = isMadeLater(choice, key.role);
         if (key.role != ModuleRole::HitTrace) {
-            pass.source = tracingSource(package, {package.spirv(key)});
+            pass.source = tracingSource(package, package.spirv(key));
         } else {
             if (choice.background) {
                 RayPass& fallback = passes.emplace_back(pass);
@@ -132,14 +125,14 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         passes.push_back(std::move(pass));
     }
     if (tracesInCases) {
-        std::ranges::move(planCases(package, choice.background), std::back_inserter(passes));
+        std::ranges::move(planCases(package, choice), std::back_inserter(passes));
     }
     return passes;
 }
 
 std::size_t wordCount(const RayPipelineSource& source) {
-    std::size_t count = source.anyHit.size();
-    for (const auto* const stages : {&source.rayGeneration, &source.miss, &source.closestHit}) {
+    std::size_t count = source.rayGeneration.size() + source.anyHit.size();
+    for (const auto* const stages : {&source.miss, &source.closestHit}) {
         for (const SpirvWords words : *stages) {
             count += words.size();
         }
@@ -152,15 +145,13 @@ Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipel
     if (!table) {
         return table.error();
     }
-    const auto passOf = [&](std::size_t shader) {
-        return PassPipeline{pipeline, true, table->rayGeneration[shader], table->miss, table->hit};
-    };
+    const PassPipeline made{pipeline, true, table->rayGeneration, table->miss, table->hit};
     if (pass.key.role == ModuleRole::ShadeCase) {
-        for (const auto& [shaderId, shader] : pass.shaderOfCase) {
-            pipelines.cases[shaderId] = passOf(shader);
+        for (const std::uint32_t shaderId : pass.shaderIds) {
+            pipelines.cases[shaderId] = made;
         }
     } else {
-        pipelines.add(pass.key, passOf(0));
+        pipelines.add(pass.key, made);
     }
     pipelines.tables.push_back(std::move(table->buffer));
     return okStatus();

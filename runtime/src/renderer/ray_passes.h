@@ -18,10 +18,8 @@ struct RayPass {
     std::string name;  // for reports
     package::ModuleKey key;
     RayPipelineSource source;
-    // For cases, which share a pipeline: the source's ray generation shader by shader ID. Retired shader IDs
-    // have none.
-    std::map<std::uint32_t, std::size_t> shaderOfCase;
-    bool later = false;  // frames can begin without it
+    std::vector<std::uint32_t> shaderIds{};  // of the cases that a pass of cases shades
+    bool later = false;                      // frames can begin without it
 };
 
 // Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.

@@ -41,8 +41,8 @@ VkRayTracingShaderGroupCreateInfoKHR emptyGroup(VkRayTracingShaderGroupTypeKHR t
     return group;
 }
 
-Status addGeneral(Context::State& context, VkShaderStageFlagBits stage,
-                  const std::vector<SpirvWords>& shaders, Parts& parts) {
+Status addGeneral(Context::State& context, VkShaderStageFlagBits stage, std::span<const SpirvWords> shaders,
+                  Parts& parts) {
     for (const SpirvWords words : shaders) {
         Result<std::uint32_t> index = addStage(context, stage, words, parts);
         if (!index) {
@@ -81,7 +81,8 @@ Status addHitGroups(Context::State& context, const RayPipelineSource& source, Pa
 
 Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source) {
     Parts parts;
-    if (Status status = addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, source.rayGeneration, parts);
+    if (Status status =
+            addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, std::span(&source.rayGeneration, 1), parts);
         !status) {
         return status.error();
     }
@@ -99,8 +100,7 @@ struct TableLayout {
     // By the limits of the specification, handles have 32 bytes, alignments are at most 32 and 64, and the
     // largest stride is at least 4096. No stride is therefore above the device's limit.
     VkDeviceSize handleBytes = 0;
-    VkDeviceSize stride = 0;               // stride of miss and hit records
-    VkDeviceSize rayGenerationStride = 0;  // each record begins a region
+    VkDeviceSize stride = 0;
     VkDeviceSize missOffset = 0;
     VkDeviceSize hitOffset = 0;
     VkDeviceSize bytes = 0;
@@ -111,8 +111,7 @@ TableLayout layOutTable(const Context::State& context, const RayPipelineSource& 
     TableLayout layout;
     layout.handleBytes = limits.shaderGroupHandleSize;
     layout.stride = alignUp(layout.handleBytes, limits.shaderGroupHandleAlignment);
-    layout.rayGenerationStride = alignUp(layout.stride, limits.shaderGroupBaseAlignment);
-    layout.missOffset = layout.rayGenerationStride * source.rayGeneration.size();
+    layout.missOffset = alignUp(layout.stride, limits.shaderGroupBaseAlignment);
     layout.hitOffset =
         alignUp(layout.missOffset + layout.stride * source.miss.size(), limits.shaderGroupBaseAlignment);
     layout.bytes = layout.hitOffset + layout.stride * std::max<std::size_t>(source.hitRecords.size(), 1);
@@ -126,13 +125,10 @@ std::vector<std::uint8_t> fillTable(const RayPipelineSource& source, const Table
     const auto put = [&](VkDeviceSize offset, std::size_t group) {
         std::memcpy(bytes.data() + offset, handles.data() + group * layout.handleBytes, layout.handleBytes);
     };
-    const std::size_t firstMiss = source.rayGeneration.size();
-    const std::size_t firstHit = firstMiss + source.miss.size();
-    for (std::size_t i = 0; i < source.rayGeneration.size(); ++i) {
-        put(i * layout.rayGenerationStride, i);
-    }
+    const std::size_t firstHit = 1 + source.miss.size();
+    put(0, 0);
     for (std::size_t i = 0; i < source.miss.size(); ++i) {
-        put(layout.missOffset + i * layout.stride, firstMiss + i);
+        put(layout.missOffset + i * layout.stride, 1 + i);
     }
     put(layout.hitOffset, firstHit);
     for (std::size_t i = 0; i < source.hitRecords.size(); ++i) {
@@ -183,8 +179,7 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
 
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
                                        const RayPipelineSource& source) {
-    const std::size_t groupCount =
-        source.rayGeneration.size() + source.miss.size() + source.closestHit.size();
+    const std::size_t groupCount = 1 + source.miss.size() + source.closestHit.size();
     Result<std::vector<std::uint8_t>> handles = groupHandles(context, pipeline, groupCount);
     if (!handles) {
         return handles.error();
@@ -202,10 +197,7 @@ Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool
     const VkDeviceAddress start = alignUp(table.buffer.address, alignment);
     const std::vector<std::uint8_t> bytes = fillTable(source, layout, *handles);
     std::memcpy(table.buffer.mapped + (start - table.buffer.address), bytes.data(), bytes.size());
-    for (std::size_t i = 0; i < source.rayGeneration.size(); ++i) {
-        table.rayGeneration.push_back(
-            {start + i * layout.rayGenerationStride, layout.rayGenerationStride, layout.rayGenerationStride});
-    }
+    table.rayGeneration = {start, layout.missOffset, layout.missOffset};
     table.miss = {start + layout.missOffset, layout.stride, layout.stride * source.miss.size()};
     table.hit = {start + layout.hitOffset, layout.stride, layout.bytes - layout.hitOffset};
     if (source.hitRecords.empty()) {

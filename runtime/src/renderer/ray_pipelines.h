@@ -12,19 +12,19 @@ namespace glint {
 
 using SpirvWords = std::span<const std::uint32_t>;
 
-// The modules of a pipeline and of its table. Rays of its ray generation shaders do not recurse.
+// The modules of a pipeline and of its table. Its rays do not recurse.
 struct RayPipelineSource {
-    std::vector<SpirvWords> rayGeneration;  // one for each pass
-    std::vector<SpirvWords> miss;           // indexed by miss index
-    std::vector<SpirvWords> closestHit;     // one for each hit group
-    SpirvWords anyHit;                      // shared by all hit groups; empty: there is none
+    SpirvWords rayGeneration;
+    std::vector<SpirvWords> miss;        // indexed by miss index
+    std::vector<SpirvWords> closestHit;  // one for each hit group
+    SpirvWords anyHit;                   // shared by all hit groups; empty: there is none
     // The hit group of each record of the table. If empty, all hits use group 0, whatever their record.
     std::vector<std::uint32_t> hitRecords;
 };
 
 struct ShaderBindingTable {
     Buffer buffer;
-    std::vector<VkStridedDeviceAddressRegionKHR> rayGeneration;  // in the order of the source
+    VkStridedDeviceAddressRegionKHR rayGeneration{};
     VkStridedDeviceAddressRegionKHR miss{};
     VkStridedDeviceAddressRegionKHR hit{};
 };
