@@ -53,7 +53,7 @@ done
 paths=()
 if "$glint" render --help | grep -q -- '--bounces'; then
     # All light of a surface goes through rays: nothing of the sky counts without them.
-    paths=(--effects auto,indirect-diffuse --max-roughness 1 --bounces "$bounces")
+    paths=(--effects "auto,indirect-diffuse" --max-roughness 1 --bounces "$bounces")
 else
     echo "oracle_paths.sh: this glint render has no --bounces, so its default is compared" >&2
 fi

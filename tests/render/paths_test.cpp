@@ -4,7 +4,6 @@
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
-#include "support/nightly.h"
 
 #include <gtest/gtest.h>
 
@@ -391,12 +390,10 @@ TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
         setup.frame.seed = seed;
         return loaded.render(pathOptions(4, package::kStrategyUber), setup);
     };
-    // The nightly run takes six octaves instead of four.
-    const std::uint32_t most = test::nightly() ? 256 : 64;
-    const LinearImage reference = render(16 * most, 1);
+    const LinearImage reference = render(4096, 1);
     ASSERT_FALSE(reference.pixels.empty());
     std::vector<double> errors;
-    for (const std::uint32_t samples : {4U, most}) {
+    for (const std::uint32_t samples : {4U, 256U}) {
         double squares = 0.0;
         for (std::uint32_t seed = 2; seed < 6; ++seed) {
             const LinearImage image = render(samples, seed);
@@ -410,7 +407,7 @@ TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
         errors.push_back(std::sqrt(squares));
         std::printf("%u samples: error %.5f\n", samples, errors.back());
     }
-    const double slope = std::log2(errors[1] / errors[0]) / std::log2(most / 4.0);
+    const double slope = std::log2(errors[1] / errors[0]) / 6.0;
     std::printf("slope %.3f\n", slope);
     EXPECT_NEAR(slope, -0.5, 0.12);
 }
