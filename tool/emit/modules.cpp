@@ -3,6 +3,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/prune.h"
+#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "scene/deformed.h"
 
@@ -225,6 +226,12 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const CompileSettings& settings) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     MaterialCodeOfCases codeOfCases(sources, *plan.model);
+    // Every case evaluates what emissive lights emit.
+    materials::FeatureMask ofEmitters = 0;
+    if (settings.emissiveLights == EmissiveLights::On) {
+        const EmitterFeatures features = emitterFeatures(scenes, plan);
+        ofEmitters = features.always | features.sometimes;
+    }
     const SourceSet none;
     std::vector<ModuleSource> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
@@ -234,7 +241,8 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         if (ofCase) {
             const Case& shaderCase = plan.cases[key.index];
             addCase(context, scenes, *plan.model, shaderCase);
-            Result<const SourceSet*> code = codeOfCases.find(shaderCase.always | shaderCase.sometimes);
+            Result<const SourceSet*> code =
+                codeOfCases.find(shaderCase.always | shaderCase.sometimes | ofEmitters);
             if (!code) {
                 return code.error();
             }
