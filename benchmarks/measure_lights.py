@@ -54,13 +54,19 @@ def box(lower, upper):
     return corners
 
 
-def write_scene(path, count):
-    """A floor of 20 m by 20 m with 25 boxes, and lights between 0.5 m and 2.5 m above it."""
-    generator = random.Random(1)
+def floor_with_boxes(generator):
+    """Triangles of a floor of 20 m by 20 m with 25 boxes."""
     corners = box((-10, -0.1, -10), (10, 0, 10))
     for i in range(25):
         x, z = -8 + 4 * (i % 5), -8 + 4 * (i // 5)
         corners += box((x - 0.4, 0, z - 0.4), (x + 0.4, 0.5 + generator.random(), z + 0.4))
+    return corners
+
+
+def write_scene(path, count):
+    """The floor with boxes, and lights between 0.5 m and 2.5 m above it."""
+    generator = random.Random(1)
+    corners = floor_with_boxes(generator)
     positions = b"".join(struct.pack("<3f", *place) for place, _ in corners)
     normals = b"".join(struct.pack("<3f", *normal) for _, normal in corners)
     path.with_suffix(".bin").write_bytes(positions + normals)

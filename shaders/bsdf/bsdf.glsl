@@ -28,6 +28,9 @@ struct Bsdf {
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
     Layers layers;
+#if GLINT_EMISSIVE_LIGHTS
+    float mirrored;           // share of the microfacets' first reflection that counts; 1 unless rays bring the rest
+#endif
     // prepareBsdf() sets the following members, which depend on the view:
     vec3 view;         // unit, z >= kMinViewCosine
     float viewLoss;    // 1 - E: the share that white microfacets lose by single scattering
@@ -177,6 +180,9 @@ Facet facetBetween(Bsdf b, Features features, vec3 l) {
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
     Facet facet = facetBetween(b, features, l);
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
+#if GLINT_EMISSIVE_LIGHTS
+    specular *= b.mirrored;
+#endif
     if (GLINT_ENERGY_COMPENSATION != 0) {
         float lightLoss = lobeAlbedo(b, features, l).x;
         specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));

@@ -1,4 +1,5 @@
 #include "generated/features.glsl"
+#include "generated/scene.glsl"
 
 // The features that a case knows about its keys. `always` and `sometimes` are literals of the case; `lobes` and
 // `inputs` are the key of the geometry at hand. The functions are written so that SPIRV-Tools folds every decided bit:
@@ -32,12 +33,26 @@ bool inputOfKey(Features features, uint bit) {
 #define GLINT_MODULE_ANY_INPUTS 0xFFFFFFFFu
 #endif
 
+// Every module also evaluates what emissive lights emit, whichever case they belong to. So nothing is decided for a
+// module as a whole that is not decided for them.
+#if GLINT_EMISSIVE_LIGHTS
+#define GLINT_DECIDED_ALWAYS_LOBES GLINT_EMITTER_ALWAYS_LOBES
+#define GLINT_DECIDED_ALWAYS_INPUTS GLINT_EMITTER_ALWAYS_INPUTS
+#define GLINT_DECIDED_ANY_LOBES (GLINT_EMITTER_ALWAYS_LOBES | GLINT_EMITTER_SOMETIMES_LOBES)
+#define GLINT_DECIDED_ANY_INPUTS (GLINT_EMITTER_ALWAYS_INPUTS | GLINT_EMITTER_SOMETIMES_INPUTS)
+#else
+#define GLINT_DECIDED_ALWAYS_LOBES 0xFFFFFFFFu
+#define GLINT_DECIDED_ALWAYS_INPUTS 0xFFFFFFFFu
+#define GLINT_DECIDED_ANY_LOBES 0u
+#define GLINT_DECIDED_ANY_INPUTS 0u
+#endif
+
 #define hasLobe(features, bit)                                                                                  \
-    ((GLINT_MODULE_ALWAYS_LOBES & (bit)) != 0u ||                                                               \
-     ((GLINT_MODULE_ANY_LOBES & (bit)) != 0u && lobeOfKey(features, bit)))
+    ((GLINT_MODULE_ALWAYS_LOBES & GLINT_DECIDED_ALWAYS_LOBES & (bit)) != 0u ||                                  \
+     (((GLINT_MODULE_ANY_LOBES | GLINT_DECIDED_ANY_LOBES) & (bit)) != 0u && lobeOfKey(features, bit)))
 #define hasInput(features, bit)                                                                                 \
-    ((GLINT_MODULE_ALWAYS_INPUTS & (bit)) != 0u ||                                                              \
-     ((GLINT_MODULE_ANY_INPUTS & (bit)) != 0u && inputOfKey(features, bit)))
+    ((GLINT_MODULE_ALWAYS_INPUTS & GLINT_DECIDED_ALWAYS_INPUTS & (bit)) != 0u ||                                \
+     (((GLINT_MODULE_ANY_INPUTS | GLINT_DECIDED_ANY_INPUTS) & (bit)) != 0u && inputOfKey(features, bit)))
 
 // The features of any key of the scene, with all lobes: for primary surfaces.
 #define GLINT_PRIMARY_FEATURES(geometry)                                                                        \

@@ -12,11 +12,9 @@ uint rayKey(vec3 origin, vec3 direction) {
 }
 #endif
 
-// Returns whether the ray stops at the candidate: the alpha test of glTF 2.0, section 3.9.4, or with alphaMode BLEND a
-// random choice. It reads mip 0, because traversal knows no footprint. The module's own cases do not matter here: a ray
-// of any case meets masks of all cases.
-bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primitive, vec2 barycentrics) {
-    HostGeometry geometry = hostGeometry(geometryIndex);
+// Returns the alpha at a point of a triangle, and the cutoff. It reads mip 0, because traversal knows no footprint. The
+// module's own cases do not matter here: a ray of any case meets masks of all cases.
+vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
     Features features = Features(GLINT_ALPHA_ALWAYS_LOBES, GLINT_ALPHA_ALWAYS_INPUTS, GLINT_ALPHA_SOMETIMES_LOBES,
                                  GLINT_ALPHA_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
     MaterialRecord material = hostMaterials().data[geometry.materialIndex];
@@ -30,10 +28,31 @@ bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primi
         alpha *= vertexAlpha(geometry, primitive, barycentrics);
     }
     runMaskOpacity(point, features, alpha);
+    return vec2(alpha, material.alphaCutoff);
+}
+
+// Returns whether the ray stops at the candidate: the alpha test of glTF 2.0, section 3.9.4, or with alphaMode BLEND a
+// random choice.
+bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primitive, vec2 barycentrics) {
+    HostGeometry geometry = hostGeometry(geometryIndex);
+    vec2 alpha = alphaAndCutoff(geometry, primitive, barycentrics);
 #if GLINT_BLENDED
     if ((geometry.flags & kGeometryBlended) != 0u) {
-        return alpha > blendThreshold(rayKey(origin, direction), geometryIndex, primitive);
+        return alpha.x > blendThreshold(rayKey(origin, direction), geometryIndex, primitive);
     }
 #endif
-    return alpha >= material.alphaCutoff;
+    return alpha.x >= alpha.y;
 }
+
+#if GLINT_EMISSIVE_LIGHTS
+// The probability with which rays stop there.
+float coverageAt(HostGeometry geometry, uint primitive, vec2 barycentrics) {
+    vec2 alpha = alphaAndCutoff(geometry, primitive, barycentrics);
+#if GLINT_BLENDED
+    if ((geometry.flags & kGeometryBlended) != 0u) {
+        return clamp(alpha.x, 0.0, 1.0);
+    }
+#endif
+    return alpha.x >= alpha.y ? 1.0 : 0.0;
+}
+#endif

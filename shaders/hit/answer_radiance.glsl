@@ -12,6 +12,9 @@ struct ShadeResult {
     vec3 direct;
     vec3 shadowDirection;  // unit vector
     float shadowDistance;  // metres; 0 if no light reaches the surface and no ray is needed
+#if GLINT_EMISSIVE_LIGHTS
+    uint shadowSees;       // kShadow*
+#endif
 #if GLINT_PATHS
     PathStep path;
 #endif
@@ -19,11 +22,18 @@ struct ShadeResult {
 
 // The answer of a hit that no light leaves.
 ShadeResult darkness() {
-#if GLINT_PATHS
-    return ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0, endOfPath());
-#else
-    return ShadeResult(vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
+    ShadeResult result;
+    result.radiance = vec3(0.0);
+    result.direct = vec3(0.0);
+    result.shadowDirection = vec3(0.0);
+    result.shadowDistance = 0.0;
+#if GLINT_EMISSIVE_LIGHTS
+    result.shadowSees = kShadowOfLight;
 #endif
+#if GLINT_PATHS
+    result.path = endOfPath();
+#endif
+    return result;
 }
 
 // The colour of a hit with an unknown shader ID. It occurs only if scene and package disagree.

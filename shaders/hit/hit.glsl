@@ -40,6 +40,11 @@ struct Hit {
     PathArrival arrival;  // of the hit of a ray
     vec3 inset;           // from `position` to where rays start, within the triangle's plane: see edgeInset()
 #endif
+#if GLINT_EMISSIVE_LIGHTS
+    uint geometry;  // of the hit of a ray, as the next two
+    uint primitive;
+    vec3 start;     // of the ray
+#endif
 };
 
 // Returns the start of a ray from the surface. It lies off the surface, on the side to which `direction` points.
@@ -62,10 +67,23 @@ vec3 trianglePosition(HostGeometry geometry, uint primitive, vec2 barycentrics) 
                           p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
 }
 
+// The corners of a triangle in its mesh's space.
+struct TriangleCorners {
+    vec3 corners[3];
+};
+
+TriangleCorners vertexPositions(HostGeometry geometry, uint primitive) {
+    TriangleCorners triangle;
+    for (uint i = 0u; i < 3u; ++i) {
+        triangle.corners[i] = hostPosition(geometry, hostVertex(geometry, 3u * primitive + i));
+    }
+    return triangle;
+}
+
 // Fetches the attributes that `features` may need. rayDirection is a unit vector; coneWidth is that of the ray cone at
 // the hit.
-Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
-             uint target, Features features) {
+Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
+               uint target, Features features, TriangleCorners triangle) {
     InstanceRecord instance = hostInstance(geometry);
     uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
                          hostVertex(geometry, 3u * primitive + 2u));
@@ -78,9 +96,9 @@ Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayD
     hit.target = target;
 
     // The position and the plane of the triangle. In object space, the front is counter-clockwise.
-    vec3 p0 = GLINT_CORNER(0);
-    vec3 e1 = GLINT_CORNER(1) - p0;
-    vec3 e2 = GLINT_CORNER(2) - p0;
+    vec3 p0 = triangle.corners[0];
+    vec3 e1 = triangle.corners[1] - p0;
+    vec3 e2 = triangle.corners[2] - p0;
     precise vec3 objectPosition = p0 + (barycentrics.x * e1 + barycentrics.y * e2);
     precise vec3 position = transformPoint(instance.objectToWorld, objectPosition);
     hit.position = position;
@@ -161,4 +179,16 @@ Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayD
         hit.scale = sqrt((dot(x, x) + dot(y, y) + dot(z, z)) / 3.0);
     }
     return hit;
+}
+
+// The same for the triangle that was hit, whose corners a module may know already.
+Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
+             uint target, Features features) {
+    uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
+                         hostVertex(geometry, 3u * primitive + 2u));
+    TriangleCorners triangle;
+    triangle.corners[0] = GLINT_CORNER(0);
+    triangle.corners[1] = GLINT_CORNER(1);
+    triangle.corners[2] = GLINT_CORNER(2);
+    return fetchHitAt(geometry, primitive, barycentrics, rayDirection, coneWidth, target, features, triangle);
 }

@@ -25,9 +25,35 @@ vec2 withSine(float cosine) {
     return vec2(cosine, sqrt(square));
 }
 
-// An estimate of the irradiance that the lights of a node bring to a surface which faces them, without shadows. It is 0
-// only if they bring none.
-float lightImportance(LightNode node, vec3 position) {
+// The surface that chooses.
+struct LightReceiver {
+    vec3 position;
+    vec3 normal;  // unit vector, on the side from which light is scattered; 0 if light from both sides is
+};
+
+// A normal in 32 bits, by octahedralEncode(). Whoever chooses and whoever asks for the probability use the same one, in
+// every shader.
+const uint kBothSides = 0x80008000u;  // no vector has these
+
+uint packReceiver(vec3 normal) {
+    precise float sum = abs(normal.x) + abs(normal.y) + abs(normal.z);
+    precise vec2 p = normal.xy / sum;
+    precise vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    return packSnorm2x16(normal.z >= 0.0 ? p : folded);
+}
+
+vec3 unpackReceiver(uint packedNormal) {
+    vec2 e = unpackSnorm2x16(packedNormal);
+    precise float z = 1.0 - abs(e.x) - abs(e.y);
+    precise float fold = max(-z, 0.0);
+    vec3 normal = directionOr(vec3(e.x + (e.x >= 0.0 ? -fold : fold), e.y + (e.y >= 0.0 ? -fold : fold), z), vec3(0.0));
+    return packedNormal == kBothSides ? vec3(0.0) : normal;
+}
+
+// An estimate of the irradiance that the lights of a node bring to a surface, without shadows. It is 0 only if they
+// bring none.
+float lightImportance(LightNode node, LightReceiver receiver) {
+    vec3 position = receiver.position;
     precise vec3 outside = max(max(node.lower - position, position - node.upper), vec3(0.0));
     precise float gap = dot(outside, outside);
     if (gap > node.reach * node.reach) {
@@ -38,9 +64,14 @@ float lightImportance(LightNode node, vec3 position) {
     precise float radius2 = dot(radius, radius);
     precise float squared = dot(away, away);
     float facing = 1.0;
+    float incidence = 1.0;
     if (squared > radius2) {
         // The least angle between the axis of some light and its direction to the point.
-        precise float cosine = clamp(dot(node.axis, away) / sqrt(squared), -1.0, 1.0);
+        precise float apart = sqrt(squared);
+        precise float cosine = clamp(dot(node.axis, away) / apart, -1.0, 1.0);
+#if GLINT_EMISSIVE_LIGHTS
+        cosine = node.reach < 0.0 ? abs(cosine) : cosine;
+#endif
         precise float sine2 = radius2 / squared;
         vec2 box = vec2(sqrt(1.0 - sine2), sqrt(sine2));
         vec2 least = angleBeyond(angleBeyond(withSine(cosine), withSine(node.cosAxes)), box);
@@ -48,15 +79,24 @@ float lightImportance(LightNode node, vec3 position) {
             return 0.0;
         }
         facing = max(least.x, kMinLightFacing);
+        if (receiver.normal != vec3(0.0)) {
+            // The least angle between the normal and the direction to some light.
+            precise float above = clamp(-dot(receiver.normal, away) / apart, -1.0, 1.0);
+            vec2 highest = angleBeyond(withSine(above), box);
+            if (highest.x < -kLightCosineSlack) {
+                return 0.0;
+            }
+            incidence = max(highest.x, kMinLightFacing);
+        }
     }
     // Within its box a light may be anywhere.
-    precise float importance = node.intensity * facing / max(max(squared, radius2), kMinSquaredDistance);
+    precise float importance = node.intensity * facing * incidence / max(max(squared, radius2), kMinSquaredDistance);
     return importance;
 }
 
 // Returns the number of a light of the tree and the probability with which it was chosen, which is 0 if none brings
-// light to the point. `u` is uniform in [0, 1)³.
-uint lightOfTree(vec3 position, vec3 u, out float probability) {
+// light to the surface. `u` is uniform in [0, 1)³.
+uint lightOfTree(LightReceiver receiver, vec3 u, out float probability) {
     LightNodeArray nodes = GLINT_FRAME.lightNodes;
     uint index = 0u;
     precise float product = 1.0;
@@ -64,8 +104,8 @@ uint lightOfTree(vec3 position, vec3 u, out float probability) {
     uint level = 0u;
     uint next = nodes.data[0].next;
     while ((next & kLightLeaf) == 0u) {
-        float first = lightImportance(nodes.data[index + 1u], position);
-        float second = lightImportance(nodes.data[next], position);
+        float first = lightImportance(nodes.data[index + 1u], receiver);
+        float second = lightImportance(nodes.data[next], receiver);
         precise float both = first + second;
         if (!(both > 0.0)) {
             probability = 0.0;
@@ -91,14 +131,14 @@ uint lightOfTree(vec3 position, vec3 u, out float probability) {
 
 // The probability with which lightOfTree() chooses the light of a leaf. The first child of a node has all nodes up to
 // the second one below it, so the way to a leaf follows from its index.
-float lightProbability(vec3 position, uint leaf) {
+float lightProbability(LightReceiver receiver, uint leaf) {
     LightNodeArray nodes = GLINT_FRAME.lightNodes;
     uint index = 0u;
     precise float product = 1.0;
     uint next = nodes.data[0].next;
     while (index != leaf) {
-        float first = lightImportance(nodes.data[index + 1u], position);
-        float second = lightImportance(nodes.data[next], position);
+        float first = lightImportance(nodes.data[index + 1u], receiver);
+        float second = lightImportance(nodes.data[next], receiver);
         precise float both = first + second;
         if (!(both > 0.0)) {
             return 0.0;

@@ -27,6 +27,10 @@ Bsdf makeBase(SurfaceValues values, Features features) {
     bsdf.transmitted = vec3(0.0);
     bsdf.diffuseTransmitted = vec3(0.0);
     bsdf.eta = vec3(1.0);
+#if GLINT_EMISSIVE_LIGHTS
+    bsdf.mirrored = 1.0;
+    bsdf.layers.counted = wholeLayerShares();
+#endif
     return bsdf;
 }
 

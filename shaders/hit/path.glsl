@@ -18,10 +18,22 @@ struct PathStep {
     float density;
     float coneSpread;
     uint medium;
+#if GLINT_EMISSIVE_LIGHTS
+    uint receiver;      // LobeRay::normal
+#endif
 };
 
 PathStep endOfPath() {
-    return PathStep(vec3(0.0), vec3(0.0), 0.0, 0.0, 0u);
+    PathStep step;
+    step.direction = vec3(0.0);
+    step.throughput = vec3(0.0);
+    step.density = 0.0;
+    step.coneSpread = 0.0;
+    step.medium = 0u;
+#if GLINT_EMISSIVE_LIGHTS
+    step.receiver = 0u;
+#endif
+    return step;
 }
 
 // Whether hits of this bounce send further rays. Primary surfaces send those of the effects instead.

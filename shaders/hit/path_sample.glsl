@@ -1,6 +1,8 @@
 // Chooses the next ray of a path at a lit surface.
 #include "bsdf/sample.glsl"
 #include "hit/hit.glsl"
+#include "hit/receiver.glsl"
+#include "hit/samples.glsl"
 #include "hit/surface.glsl"
 #include "host/material.glsl"
 #include "host/random.glsl"
@@ -26,6 +28,15 @@ vec3 arrivingShare(PathArrival arrival, vec3 position) {
     return share;
 }
 
+// The medium of a ray from the hit, as in PathState.
+uint mediumBeyond(Hit hit, Features features, bool passes) {
+    uint medium = hit.arrival.medium;
+    if (passes && hasLobe(features, GLINT_VOLUME)) {
+        medium = hit.frontFace ? hit.material + 1u : 0u;
+    }
+    return medium;
+}
+
 // Samples a direction of all lobes by one-sample multiple importance sampling: one lobe is chosen by its share of the
 // light, and the weight is the whole BSDF over the density of the mixture (Veach 1997). `arriving` is the throughput at
 // the hit.
@@ -46,16 +57,21 @@ PathStep nextStep(Hit hit, Surface surface, Features features, vec3 arriving) {
     // A sample stands for a solid angle of 1 / density. Its cone fills it, up to the width that keeps textures sharp
     // enough for the mean of many samples.
     step.coneSpread = max(hit.arrival.coneSpread, min(kMostPathSpread, inversesqrt(drawn.pdf)));
-    step.medium = hit.arrival.medium;
-    if (passes && hasLobe(features, GLINT_VOLUME)) {
-        step.medium = hit.frontFace ? hit.material + 1u : 0u;
-    }
+    step.medium = mediumBeyond(hit, features, passes);
+#if GLINT_EMISSIVE_LIGHTS
+    step.receiver = receiverNormal(hit, features);
+#endif
     return step;
 }
 
 // The ray goes straight on through a surface that does not affect it.
 PathStep straightStep(Hit hit, vec3 arriving) {
-    return PathStep(-hit.view, arriving, 0.0, hit.arrival.coneSpread, hit.arrival.medium);
+    PathStep step = endOfPath();
+    step.direction = -hit.view;
+    step.throughput = arriving;
+    step.coneSpread = hit.arrival.coneSpread;
+    step.medium = hit.arrival.medium;
+    return step;
 }
 
 // Keeps the next ray, for the pass that puts it on the list.
@@ -67,4 +83,7 @@ void storePath(Hit hit, PathStep step) {
     GLINT_FRAME.paths.data[hit.target] =
         PathState(rayOrigin(hit, step.direction), step.medium, step.direction, step.density, step.throughput,
                   hit.arrival.coneWidth, step.coneSpread, 1u);
+#if GLINT_EMISSIVE_LIGHTS
+    storeLobeRay(hit.target, step.density, step.receiver);
+#endif
 }

@@ -13,6 +13,11 @@ Hit loadHit(HitRecord record, vec3 direction, HostGeometry geometry, Features fe
     RayRecord ray = GLINT_FRAME.rays.data[record.ray];
     hit.arrival = arrivalOf(record.target, ray.origin, record.coneWidth, ray.coneSpread);
 #endif
+#if GLINT_EMISSIVE_LIGHTS
+    hit.geometry = record.geometry;
+    hit.primitive = record.primitive;
+    hit.start = GLINT_FRAME.rays.data[record.ray].origin;
+#endif
     return hit;
 }
 
@@ -34,8 +39,13 @@ vec3 rayDirection(HitRecord record, HostGeometry geometry) {
 void resolveHit(Hit hit, ShadeResult result) {
     vec3 radiance = result.radiance;
     if (result.shadowDistance > 0.0) {
+#if GLINT_EMISSIVE_LIGHTS
+        uint sees = result.shadowSees;
+#else
+        uint sees = kShadowOfLight;
+#endif
         ShadowRay shadow = ShadowRay(rayOrigin(hit, result.shadowDirection), result.shadowDirection,
-                                     result.shadowDistance, result.direct);
+                                     result.shadowDistance, result.direct, sees);
         radiance += lightOrDefer(hit.target, shadow);
     }
     storeRadiance(hit.target, radiance, kPathHit);

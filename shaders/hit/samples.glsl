@@ -25,6 +25,13 @@ void storeSample(uint target, EffectSample drawn) {
 #endif
 }
 
+#if GLINT_EMISSIVE_LIGHTS
+// How the ray of a sample was chosen, for what it finds on emissive lights.
+void storeLobeRay(uint target, float density, uint normal) {
+    GLINT_FRAME.lobeRays.data[target] = LobeRay(density, normal);
+}
+#endif
+
 // path is one of kPath*. It is that of the first bounce; further bounces add their light.
 void storeRadiance(uint target, vec3 radiance, uint path) {
 #if GLINT_PATHS

@@ -2,7 +2,9 @@
 #include "effects/ambient.glsl"
 #include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
+#include "hit/emitter.glsl"
 #include "hit/material.glsl"
+#include "hit/receiver.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
 #if GLINT_PATHS
@@ -14,6 +16,7 @@ const uint kDimensionLight = 0u;
 const uint kDimensionHostLight = 1u;  // and the next two; three more for each further light
 // The pairs of the sequence.
 const uint kPairLightArea = 5u;
+const uint kPairLightChoice = 0x10000u;  // and one more for each further light
 
 // The same dimension, of the bounce that is shaded.
 uint shadingDimension(uint dimension) {
@@ -25,11 +28,17 @@ uint shadingDimension(uint dimension) {
 }
 
 // A light of the host's list.
-HostLight lightOfHost(Hit hit, uint index) {
+HostLight lightOfHost(Hit hit, Features features, uint index) {
     uint dimension = shadingDimension(kDimensionHostLight + 3u * index);
+#if GLINT_LIGHT_SAMPLES > 0
+    // The first numbers, which decide most, are well distributed.
+    vec2 first = hostRandomPair(hit.target, shadingDimension(kPairLightChoice + index));
+    return hostLight(index, receiverOf(hit, features), vec3(first, hostRandom(hit.target, dimension)));
+#else
     vec3 random = vec3(hostRandom(hit.target, dimension), hostRandom(hit.target, dimension + 1u),
                        hostRandom(hit.target, dimension + 2u));
     return hostLight(index, hit.position, random);
+#endif
 }
 
 // The light of one light on a surface, without its shadow.
@@ -57,19 +66,78 @@ void aimAtLight(Hit hit, HostLight light, inout ShadeResult result) {
     result.shadowDistance = aim.distance;
 }
 
+#if GLINT_EMISSIVE_LIGHTS
+
+// The light of an emissive light at the hit of a ray, without its shadow. The path's next ray finds such lights, too;
+// where there is none, this sample counts alone. Its aim is the shadow ray.
+vec3 lightOfEmitterAtHit(Hit hit, Surface surface, Features features, HostLight light, uint index,
+                         out LightSample aim) {
+    EmitterSample drawn = emitterLight(hit, light, shadingDimension(kPairEmitter + index));
+    aim = LightSample(vec3(0.0), 0.0, vec3(0.0), kRaySent);
+    if (drawn.density <= 0.0) {
+        return vec3(0.0);
+    }
+    aim = emitterAim(hit, drawn);
+    float density = drawn.density;
+#if GLINT_PATHS
+    if (pathGoesOn()) {
+        density += bsdfPdf(surface.bsdf, features, toSurface(surface, drawn.direction));
+    }
+#endif
+    return aim.distance > 0.0
+               ? scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / density
+               : vec3(0.0);
+}
+
+// What its shadow ray sees: as much as a ray of the path.
+uint seenTowardsEmitter(Hit hit, Features features, vec3 direction) {
+#if GLINT_PATHS
+    bool passes = dot(direction, hit.geometricNormal) < 0.0;
+    return mediumBeyond(hit, features, passes) == 0u ? kShadowOfEmitter : kShadowOfEmitterWithin;
+#else
+    return kShadowOfEmitterWithin;
+#endif
+}
+
+#endif
+
+// The emission that the hit adds to the light of its ray.
+vec3 countedEmission(Hit hit, Surface surface) {
+#if GLINT_EMISSIVE_LIGHTS
+    if (surface.emission != vec3(0.0)) {
+        return surface.emission * emissionOfRay(hit);
+    }
+#endif
+    return surface.emission;
+}
+
 // Direct light from one light. The light is chosen in one pass, with probability proportional to the luminance that it
 // would bring without shadows (weighted reservoir sampling, Chao 1982). The result is unbiased, and exact if one light
 // dominates.
-void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult result) {
+void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadeResult result) {
     float random = hostRandom(hit.target, shadingDimension(kDimensionLight));
     uint lights = hostLightCount(hit.position);
     float total = 0.0;
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
     uint index = 0u;
+#if GLINT_EMISSIVE_LIGHTS
+    // An effect that follows the transmitted light finds emissive lights itself.
+    Surface lobes = surface;
+    lobes.bsdf.transmitted *= sky.transmitted;
+    bool emits = false;
+    LightSample chosenAim;
+#endif
     for (uint i = 0u; i < lights; ++i) {
-        LightSample light = hostSampleLight(lightOfHost(hit, i), hit.position);
-        vec3 contribution = unshadowedLight(hit, surface, features, light);
+        HostLight light = lightOfHost(hit, features, i);
+#if GLINT_EMISSIVE_LIGHTS
+        LightSample aim;
+        vec3 contribution =
+            isEmitter(light) ? lightOfEmitterAtHit(hit, lobes, features, light, i, aim)
+                             : unshadowedLight(hit, surface, features, hostSampleLight(light, hit.position));
+#else
+        vec3 contribution = unshadowedLight(hit, surface, features, hostSampleLight(light, hit.position));
+#endif
         float weight = luminance(contribution);
         if (weight <= 0.0) {
             continue;
@@ -81,13 +149,25 @@ void chooseLight(Hit hit, Surface surface, Features features, inout ShadeResult 
             chosen = contribution;
             chosenWeight = weight;
             index = i;
+#if GLINT_EMISSIVE_LIGHTS
+            emits = isEmitter(light);
+            chosenAim = aim;
+#endif
         } else {
             random = (random - probability) / (1.0 - probability);
         }
     }
     result.direct = chosen * (total / chosenWeight);
+#if GLINT_EMISSIVE_LIGHTS
+    if (total > 0.0 && emits) {
+        result.shadowDirection = chosenAim.direction;
+        result.shadowDistance = chosenAim.distance;
+        result.shadowSees = seenTowardsEmitter(hit, features, chosenAim.direction);
+        return;
+    }
+#endif
     if (total > 0.0) {
-        aimAtLight(hit, lightOfHost(hit, index), result);
+        aimAtLight(hit, lightOfHost(hit, features, index), result);
     }
 }
 
@@ -101,8 +181,8 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     if (GLINT_FRAME.bounce == 1u) {
         changeSkyOfHit(hit, features, sky);
     }
-    result.radiance = surface.emission;
-    chooseLight(hit, surface, features, result);
+    result.radiance = countedEmission(hit, surface);
+    chooseLight(hit, surface, features, sky, result);
     if (pathGoesOn()) {
         // An effect that has traced the transmitted light itself leaves none.
         surface.bsdf.transmitted *= sky.transmitted;
@@ -120,8 +200,8 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     ShadeResult result = darkness();
     SkyShares sky = wholeSky();
     changeSkyOfHit(hit, features, sky);
-    result.radiance = surface.emission + ambientLight(surface, features, hit.view, sky);
-    chooseLight(hit, surface, features, result);
+    result.radiance = countedEmission(hit, surface) + ambientLight(surface, features, hit.view, sky);
+    chooseLight(hit, surface, features, sky, result);
     return result;
 }
 

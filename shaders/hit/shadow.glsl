@@ -8,6 +8,7 @@ struct ShadowRay {
     vec3 direction;  // unit vector
     float distance;  // metres
     vec3 light;      // light that arrives if nothing is in the way
+    uint sees;       // kShadow*
 };
 
 #if GLINT_SHADOWS_DEFERRED
@@ -36,10 +37,10 @@ vec3 lightOrDefer(uint target, ShadowRay shadow) {
     return shadow.light;
 #elif GLINT_SHADOWS_DEFERRED
     GLINT_FRAME.shadows.data[shadowSlot()] =
-        ShadowRecord(shadow.origin, target, shadow.direction, shadow.distance, shadow.light, 0u);
+        ShadowRecord(shadow.origin, target, shadow.direction, shadow.distance, shadow.light, shadow.sees);
     return vec3(0.0);
 #else
-    bool visible = isVisible(shadow.origin, shadow.direction, shadow.distance);
+    bool visible = isVisibleTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     return visible ? shadow.light : vec3(0.0);
 #endif

@@ -70,6 +70,18 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
 
+#if GLINT_EMISSIVE_LIGHTS
+// The same for what sees other surfaces (kShadow*).
+bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
+    uint culled = sees == kShadowOfEmitter ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | culled,
+                          GLINT_RAY_MASK, origin, 0.0, direction, distance);
+    GLINT_PROCEED(query, origin, direction);
+    return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
+}
+#endif
+
 // Returns the distance to the closest surface within `most`, seen from either side, or `most` if there is none.
 float closestDistance(vec3 origin, vec3 direction, float most) {
     rayQueryEXT query;
@@ -110,6 +122,17 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return traced.geometry == kMissGeometry;
 }
 
+#if GLINT_EMISSIVE_LIGHTS
+bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
+    uint culled = sees == kShadowOfEmitter ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
+    traced.geometry = 0u;
+    traceRayEXT(GLINT_TLAS,
+                kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT | culled,
+                GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0, direction, distance, GLINT_TRACE_LOCATION);
+    return traced.geometry == kMissGeometry;
+}
+#endif
+
 // Does the same as the function for ray queries above.
 float closestDistance(vec3 origin, vec3 direction, float most) {
     traceRayEXT(GLINT_TLAS, kOpacityFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
@@ -117,4 +140,8 @@ float closestDistance(vec3 origin, vec3 direction, float most) {
     return traced.geometry == kMissGeometry ? most : traced.distance;
 }
 
+#endif
+
+#if GLINT_EMISSIVE_LIGHTS == 0
+#define isVisibleTo(sees, origin, direction, distance) isVisible(origin, direction, distance)
 #endif

@@ -1,56 +1,124 @@
 // Lights that a surface may see. The light at a point is the sum over all of them. Here they are the punctual lights of
-// Glint's scene, or with --lights K those without bounds and K of the others, which a hierarchy chooses.
+// Glint's scene and, in packages with emissive lights, the triangles that emit light; or with --lights K those without
+// bounds and K of the others, which a hierarchy chooses.
 //
 // A host with many lights may return few: each stands for those that it was chosen from, at random, and its irradiance
 // is divided by the probability with which it was chosen. Then the mean of the sum is right, and so is the picture's.
 #include "host/resources.glsl"
 #include "hit/punctual.glsl"
-#if GLINT_LIGHT_SAMPLES > 0
 #include "hit/light_tree.glsl"
-#endif
 
 // A light. Glint only hands it back to the functions below.
+#if GLINT_EMISSIVE_LIGHTS
+struct SceneLight {
+    LightRecord punctual;
+    uint emitter;  // or an emissive triangle (hit/emitter.glsl)
+    float chance;  // of that: how often one of the surface's samples is expected to fall on it
+};
+#define HostLight SceneLight
+#define GLINT_PUNCTUAL(light) (light).punctual
+#else
 #define HostLight LightRecord
+#define GLINT_PUNCTUAL(light) light
+#endif
 
 uint hostLightCount(vec3 position) {
 #if GLINT_LIGHT_SAMPLES > 0
     return GLINT_FRAME.unboundedLights + (GLINT_FRAME.lightTreeNodes > 0u ? GLINT_LIGHT_SAMPLES : 0u);
+#elif GLINT_EMISSIVE_LIGHTS
+    return GLINT_FRAME.lightCount + GLINT_FRAME.emitterCount;
 #else
     return GLINT_FRAME.lightCount;
 #endif
 }
 
-// `random` is uniform in [0, 1)³, for hosts that choose. The same arguments give the same light.
-HostLight hostLight(uint index, vec3 position, vec3 random) {
+// A light of the scene by its number.
+HostLight lightOfScene(uint number) {
+#if GLINT_EMISSIVE_LIGHTS
+    return SceneLight(GLINT_FRAME.lights.data[number], kNoEmitter, 0.0);
+#else
+    return GLINT_FRAME.lights.data[number];
+#endif
+}
+
+#if GLINT_EMISSIVE_LIGHTS
+
+// An emissive triangle, of which a surface expects `chance` samples.
+HostLight lightOfEmitter(uint emitter, float chance) {
+    SceneLight light;
+    light.emitter = emitter;
+    light.chance = chance;
+    return light;
+}
+
+// Returns whether the light is an emissive triangle. The functions that sample lights are for the others.
+bool isEmitter(HostLight light) {
+    return light.emitter != kNoEmitter;
+}
+
+// How many samples of an emissive triangle a surface expects to take: SceneLight::chance.
+float emitterChance(LightReceiver receiver, uint emitter) {
+    uint leaf = GLINT_FRAME.emitters.data[emitter].leaf;
 #if GLINT_LIGHT_SAMPLES > 0
+    return leaf == kNoEmitter ? 0.0 : float(GLINT_LIGHT_SAMPLES) * lightProbability(receiver, leaf);
+#else
+    return leaf == kNoEmitter ? 0.0 : 1.0;
+#endif
+}
+
+#endif
+
+#if GLINT_LIGHT_SAMPLES > 0
+
+// The hierarchy knows the surface that asks. `random` is uniform in [0, 1)³. The same arguments give the same light.
+HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
     if (index < GLINT_FRAME.unboundedLights) {
         uint leaf = GLINT_FRAME.lightTreeNodes + index;
-        return GLINT_FRAME.lights.data[GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf];
+        return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
     }
     // The samples of a surface divide the first random number among them, which spreads them over the tree.
     precise float stratum = (float(index - GLINT_FRAME.unboundedLights) + random.x) / float(GLINT_LIGHT_SAMPLES);
     float probability;
-    uint chosen = lightOfTree(position, vec3(min(stratum, kBelowOne), random.yz), probability);
-    LightRecord light = GLINT_FRAME.lights.data[chosen];
-    light.intensity *= probability > 0.0 ? 1.0 / (float(GLINT_LIGHT_SAMPLES) * probability) : 0.0;
-    return light;
-#else
-    return GLINT_FRAME.lights.data[index];
+    uint chosen = lightOfTree(receiver, vec3(min(stratum, kBelowOne), random.yz), probability);
+    float chance = float(GLINT_LIGHT_SAMPLES) * probability;
+#if GLINT_EMISSIVE_LIGHTS
+    // Without light from any, it is an emitter with no chance, because there may be no other light.
+    if ((chosen & kLightEmitter) != 0u || probability <= 0.0) {
+        return lightOfEmitter(chosen & ~kLightEmitter, chance);
+    }
 #endif
+    HostLight light = lightOfScene(chosen);
+    GLINT_PUNCTUAL(light).intensity *= probability > 0.0 ? 1.0 / chance : 0.0;
+    return light;
 }
+
+#else
+
+// `random` is uniform in [0, 1)³, for hosts that choose. The same arguments give the same light.
+HostLight hostLight(uint index, vec3 position, vec3 random) {
+#if GLINT_EMISSIVE_LIGHTS
+    if (index >= GLINT_FRAME.lightCount) {
+        uint emitter = index - GLINT_FRAME.lightCount;
+        return lightOfEmitter(emitter, emitterChance(LightReceiver(position, vec3(0.0)), emitter));
+    }
+#endif
+    return lightOfScene(index);
+}
+
+#endif
 
 // The light of the light's centre at a point, without shadows.
 LightSample hostSampleLight(HostLight light, vec3 position) {
-    return sampleLight(light, position);
+    return sampleLight(GLINT_PUNCTUAL(light), position);
 }
 
 // Whether shadow rays go to a random point of the light, instead of its centre.
 bool hostLightHasSize(HostLight light) {
-    return light.size > 0.0;
+    return GLINT_PUNCTUAL(light).size > 0.0;
 }
 
 // Samples a point of a light that has a size, by the solid angle that it fills. `centre` comes from hostSampleLight(),
 // and u is uniform in [0, 1)². The distance is 0 if the point is within the light.
 LightSample hostSampleLightPoint(HostLight light, LightSample centre, vec2 u) {
-    return sampleLightArea(light, centre, u);
+    return sampleLightArea(GLINT_PUNCTUAL(light), centre, u);
 }

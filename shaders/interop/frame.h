@@ -102,8 +102,12 @@ struct ShadowRecord {
     vec3 direction;  // unit vector
     float distance;  // metres
     vec3 light;
-    uint pad;
+    uint sees;       // kShadow*
 };
+// What stops a shadow ray.
+GLINT_CONSTANT(kShadowOfLight, 0u);     // either side of every surface
+GLINT_CONSTANT(kShadowOfEmitter, 1u);   // what stops a ray that finds the emissive triangle by chance
+GLINT_CONSTANT(kShadowOfEmitterWithin, 2u);  // the same within a volume
 
 // A hit as a surface, for a host that lights it. 112 bytes. Vectors are in the world.
 struct SurfaceRecord {
@@ -150,6 +154,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleArray 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RadianceArray { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PathArray { PathState data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LobeRayArray { LobeRay data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HitArray { HitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PackedHitArray { PackedHitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowArray { ShadowRecord data[]; };
@@ -279,6 +284,11 @@ struct FrameConstants {
     GLINT_ADDRESS(Path) paths;    // of every sample, in the order of the samples
     uint bounce;      // of the hits that are being shaded, from 1; 0 on primary surfaces
     uint lastBounce;  // hits of this bounce send no further ray
+    // In packages with emissive lights:
+    GLINT_ADDRESS(Emitter) emitters;
+    GLINT_ADDRESS(Uint) firstEmitters;  // of every geometry: the emitter of its first triangle, or kNoEmitter
+    GLINT_ADDRESS(LobeRay) lobeRays;    // of every sample, in the order of the samples
+    uint emitterCount;
 };
 
 GLINT_INTEROP_END

@@ -26,12 +26,31 @@ struct LightRecord {
 // LightNode::next of a leaf: the number of its light is in the other bits.
 GLINT_CONSTANT(kLightLeaf, 0x80000000u);
 
+// In packages with emissive lights: the number of a leaf's light with this bit is that of an emissive triangle.
+GLINT_CONSTANT(kLightEmitter, 0x40000000u);
+// No emissive triangle.
+GLINT_CONSTANT(kNoEmitter, 0xFFFFFFFFu);
+
+// A triangle that emits light. The triangles of a geometry follow each other. 12 bytes.
+struct EmitterRecord {
+    uint geometry;   // GeometryRecord index
+    uint primitive;  // triangle within the geometry
+    uint leaf;       // its node of the hierarchy, 0 if there is none; kNoEmitter if the triangle is dark
+};
+
+// How an effect or a path has chosen a ray, for what it finds on emissive triangles. 8 bytes.
+struct LobeRay {
+    float density;  // by solid angle; 0 if no sample of a light could have taken its place
+    uint normal;    // of the surface that sent it: LightReceiver::packed
+};
+
 // A node of the hierarchy of lights, and bounds of what is below it. 56 bytes.
 struct LightNode {
     vec3 lower;         // box of the positions
     float intensity;    // sum of the luminance, candela
     vec3 upper;
-    float reach;        // the largest range, metres; infinite if a light has none
+    float reach;        // the largest range, metres; infinite if a light has none; negative if some light shines on
+                        // both sides
     vec3 axis;          // unit vector; the axes of all lights are within an angle of it
     float cosAxes;      // cosine of that angle
     float cosEmission;  // cosine of the most angle between the axis of a light and a direction in which it shines

@@ -20,6 +20,7 @@ GLINT_CONSTANT(kGeometryAlphaTested, 1u);  // non-opaque in the acceleration str
 GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
 GLINT_CONSTANT(kGeometryMasked, 4u);       // the raster pass tests alpha, whether or not hits do
 GLINT_CONSTANT(kGeometryBlended, 8u);      // alphaMode BLEND: alpha is compared with a random number, not with the cutoff
+GLINT_CONSTANT(kGeometryEmitter, 16u);     // its triangles are lights, in packages with emissive lights
 GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are the host's own
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing
@@ -50,5 +51,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Geo
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer InstanceArray { InstanceRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LightArray { LightRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LightNodeArray { LightNode data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EmitterArray { EmitterRecord data[]; };
 #endif
 #endif

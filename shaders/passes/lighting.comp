@@ -12,14 +12,54 @@
 
 GLINT_PIXEL_WORKGROUP
 
-vec3 directLight(Hit hit, Surface surface, Features features) {
+#if GLINT_EMISSIVE_LIGHTS
+
+// The light of an emissive light, without its shadow, for the shares of the lobes that rays of effects don't bring.
+vec3 lightOfEmitter(Hit hit, Surface surface, Features features, EmitterSample drawn, SkyShares shares) {
+    shareWithEffects(surface, features, toSurface(surface, drawn.direction), drawn.density, shares);
+    surface.bsdf.mirrored = shares.mirrored;
+    surface.bsdf.layers.counted = shares.layers;
+    surface.bsdf.diffuse *= shares.diffuse;
+    surface.bsdf.transmitted *= shares.transmitted;
+    surface.bsdf.diffuseTransmitted *= shares.behind;
+    return scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / drawn.density;
+}
+
+// The same with its shadow.
+vec3 visibleEmitter(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares shares,
+                    inout ShadowCounts counts) {
+    EmitterSample drawn = emitterLight(hit, light, kPairEmitter + index);
+    if (drawn.density <= 0.0) {
+        return vec3(0.0);
+    }
+    vec3 contribution = lightOfEmitter(hit, surface, features, drawn, shares);
+    LightSample aim = emitterAim(hit, drawn);
+    if (luminance(contribution) <= 0.0 || aim.distance <= 0.0) {
+        counts.facing += 1u;
+        return vec3(0.0);
+    }
+    bool visible = isVisibleTo(kShadowOfEmitter, rayOrigin(hit, aim.direction), aim.direction, aim.distance);
+    counts.rays += 1u;
+    counts.misses += visible ? 1u : 0u;
+    return visible ? contribution : vec3(0.0);
+}
+
+#endif
+
+vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
     vec3 sum = vec3(0.0);
     uint lights = hostLightCount(hit.position);
 #if GLINT_EFFECT_SHADOW
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
 #endif
     for (uint i = 0u; i < lights; ++i) {
-        HostLight light = lightOfHost(hit, i);
+        HostLight light = lightOfHost(hit, features, i);
+#if GLINT_EMISSIVE_LIGHTS
+        if (isEmitter(light)) {
+            sum += visibleEmitter(hit, surface, features, light, i, sky, counts);
+            continue;
+        }
+#endif
         LightSample centre = hostSampleLight(light, hit.position);
         vec3 contribution = unshadowedLight(hit, surface, features, centre);
         bool reaches = luminance(contribution) > 0.0;
@@ -66,7 +106,7 @@ void main() {
             Surface surface = evaluateSurface(hit, features);
             SkyShares sky = wholeSky();
             sampleEffects(hit, surface, features, sky);
-            radianceDepth.rgb = surface.emission + directLight(hit, surface, features) +
+            radianceDepth.rgb = surface.emission + directLight(hit, surface, features, sky) +
                                 ambientLight(surface, features, hit.view, sky);
         }
     }

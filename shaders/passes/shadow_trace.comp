@@ -12,7 +12,7 @@ void main() {
         return;
     }
     ShadowRecord shadow = GLINT_FRAME.shadows.data[index];
-    bool visible = isVisible(shadow.origin, shadow.direction, shadow.distance);
+    bool visible = isVisibleTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     if (visible) {
         // A sample has one ray, and its hit has one shadow ray, so no other thread writes here.

@@ -31,6 +31,7 @@ compiler::CompileSettings pathSettings(std::uint32_t bounces,
     compiler::CompileSettings settings;
     settings.strategies = strategy;
     settings.maxBounces = bounces;
+    settings.emissiveLights = compiler::EmissiveLights::Off;  // paths find emission by chance
     settings.effects = {false, 0};
     for (const char* const effect : kEffects) {
         settings.effects.named |= compiler::builtinEffects({effect});

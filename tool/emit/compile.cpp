@@ -187,6 +187,11 @@ Result<CompileSettings> completed(std::span<const gltf::Scene> scenes, CompileSe
     if ((settings.strategies & ~package::kPipelineStrategies) == 0) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
+    Result<EmissiveLights> emissive = emissiveLightsOf(scenes, settings);
+    if (!emissive) {
+        return emissive.error();
+    }
+    settings.emissiveLights = *emissive;
     Result<std::uint32_t> lights = lightSamplesOf(scenes, settings);
     if (!lights) {
         return lights.error();

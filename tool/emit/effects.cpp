@@ -25,7 +25,8 @@ bool isLit(const gltf::Scene& scene) {
 }  // namespace
 
 EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings) {
-    const bool lit = settings.addsLight || std::ranges::any_of(scenes.scenes(), isLit);
+    const bool lit = settings.addsLight || settings.emissiveLights == EmissiveLights::On ||
+                     std::ranges::any_of(scenes.scenes(), isLit);
     EffectPlan plan = decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
     if (settings.passes == package::Passes::Steps) {
         // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
@@ -76,6 +77,7 @@ void addEffect(mustache::data& context, const materials::MaterialModel& model,
     context.set("function", effect.function());
     context.set("bit", fmt::format("kEffect{}", effect.function()));
     context.set("main", effect.main());
+    context.set("sharesLights", mustache::data(effect.sharesLights));
     context.set("compose", file(effect.compose));
     context.set("hit", file(effect.hit));
     context.set("start", effect.start.empty() ? "effects/plain_start.glsl" : effect.start);

@@ -35,6 +35,7 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     settings.host.clear();
     settings.precision = package::ShadingPrecision::Single;
     settings.answer = package::HitAnswer::Radiance;
+    settings.emissiveLights = EmissiveLights::Off;
     Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources;
@@ -46,6 +47,9 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     }
     // Nothing of the library asks for samples in memory.
     sources->add("hit/samples.glsl", "");
+    // The host has the lights.
+    sources->add("hit/emitter.glsl", "");
+    sources->add("hit/receiver.glsl", "");
     return sources;
 }
 

@@ -1,14 +1,124 @@
 #include "emit/lights.h"
 
+#include "emit/effects.h"
 #include "emit/host.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::compiler {
+
+namespace {
+
+// The files of a host that decide where emissive triangles and their materials are.
+constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "geometry.glsl", "material.glsl"};
+
+bool castsShadows(std::span<const gltf::Scene> scenes, CompileSettings settings) {
+    settings.emissiveLights = EmissiveLights::On;
+    return planEffects(gltf::SceneList(scenes), settings).effects.lights != 0;
+}
+
+// Returns why the package can't have emissive lights, or an empty text.
+Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
+    Result<std::vector<std::string>> replaced = replacedHostFiles(settings.host);
+    if (!replaced) {
+        return replaced.error();
+    }
+    const bool ofHost = settings.passes == package::Passes::Steps ||
+                        std::ranges::any_of(kEmitterFiles, [&](std::string_view file) {
+                            return std::ranges::find(*replaced, file) != replaced->end();
+                        });
+    if (ofHost) {
+        return std::string("the lights or the geometry are the host's");
+    }
+    return std::string(castsShadows(scenes, settings) ? "" : "the package has no effect shadow");
+}
+
+}  // namespace
+
+std::size_t countEmitters(const gltf::Scene& scene) {
+    const gltf::SceneList list({&scene, 1});
+    std::vector<std::size_t> ofMeshes(scene.meshes.size());
+    for (const materials::PrimitiveInputs& primitive : list.primitives()) {
+        if (isEmitter(list.materials()[static_cast<std::size_t>(primitive.material)], primitive)) {
+            const auto mesh = static_cast<std::size_t>(primitive.mesh);
+            ofMeshes[mesh] +=
+                scene.meshes[mesh].primitives[static_cast<std::size_t>(primitive.primitive)].indices.size() /
+                3;
+        }
+    }
+    std::size_t count = 0;
+    for (const gltf::Node& node : scene.nodes) {
+        if (node.mesh >= 0 && node.canShow) {
+            const std::size_t copies =
+                node.instancing < 0 ? 1 : scene.instancings[static_cast<std::size_t>(node.instancing)].count;
+            count += copies * ofMeshes[static_cast<std::size_t>(node.mesh)];
+        }
+    }
+    return count;
+}
+
+Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
+                                        const CompileSettings& settings) {
+    const bool isOn = settings.emissiveLights == EmissiveLights::On;
+    if (settings.emissiveLights == EmissiveLights::Off || (!isOn && settings.maxBounces == 1)) {
+        return EmissiveLights::Off;
+    }
+    std::size_t most = 0;
+    for (const gltf::Scene& scene : scenes) {
+        most = std::max(most, countEmitters(scene));
+    }
+    if (most == 0 || (!isOn && most > kMostEmitters)) {
+        return EmissiveLights::Off;
+    }
+    const Result<std::string> why = hindrance(scenes, settings);
+    if (!why) {
+        return why.error();
+    }
+    if (isOn && !why->empty()) {
+        return makeError("emissive-lights", "",
+                         fmt::format("--emissive-lights on needs shadow rays of Glint's own: {}", *why),
+                         "add the effect shadow, or leave out --emissive-lights");
+    }
+    return why->empty() ? EmissiveLights::On : EmissiveLights::Off;
+}
+
+EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan) {
+    const materials::MaterialModel& model = *plan.model;
+    materials::FeatureMask covers = 0;
+    for (const materials::FeatureCode& code : model.code) {
+        covers |= code.coversEmission ? model.features[static_cast<std::size_t>(code.feature)].mask() : 0;
+    }
+    std::vector<materials::FeatureMask> masks;
+    EmitterFeatures result;
+    for (std::size_t i = 0; i < scenes.primitives().size(); ++i) {
+        const materials::PrimitiveInputs& primitive = scenes.primitives()[i];
+        if (isEmitter(scenes.materials()[static_cast<std::size_t>(primitive.material)], primitive)) {
+            masks.push_back(plan.primaryMaskOfPrimitive[i]);
+            result.coveredByLayers = result.coveredByLayers || (masks.back() & covers) != 0;
+        }
+    }
+    materials::FeatureMask read = 0;
+    for (const char* const name :
+         {"emissiveTexture", "emissiveStrength", "texCoord0", "texCoord1", "textureTransform"}) {
+        read |= model.mask(name);
+    }
+    if (result.coveredByLayers) {
+        read = ~materials::FeatureMask{0};
+    }
+    materials::FeatureMask any = 0;
+    result.always = masks.empty() ? 0 : read;
+    for (const materials::FeatureMask mask : masks) {
+        any |= mask & read;
+        result.always &= mask;
+    }
+    result.sometimes = any & ~result.always;
+    return result;
+}
 
 Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
     Result<std::vector<std::string>> replaced = replacedHostFiles(settings.host);
@@ -29,7 +139,8 @@ Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const 
         return *settings.lightSamples;
     }
     const auto tooMany = [&](const gltf::Scene& scene) {
-        return scene.lights.size() + (settings.addsLight ? 1 : 0) > kFewLights;
+        const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
+        return scene.lights.size() + emitters + (settings.addsLight ? 1 : 0) > kFewLights;
     };
     return !ofHost && std::ranges::any_of(scenes, tooMany) ? kSamplesOfManyLights : 0U;
 }

@@ -1,7 +1,8 @@
-// How many lights a surface takes: all of them, or some that a hierarchy chooses.
+// Which lights a surface takes: all of them, or some that a hierarchy chooses; and whether triangles that
+// emit light are among them.
 #pragma once
 
-#include "gltf/scene.h"
+#include "gltf/scene_list.h"
 #include "settings/compile_settings.h"
 
 #include <glint/result.h>
@@ -16,9 +17,30 @@ namespace glint::compiler {
 inline constexpr std::size_t kFewLights = 256;
 inline constexpr std::uint32_t kSamplesOfManyLights = 8;
 
+// `--emissive-lights auto` takes no more triangles of a scene as lights.
+inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
+
+// Returns the number of triangles of all instances of a scene that emit light, now or at a time of an
+// animation.
+std::size_t countEmitters(const gltf::Scene& scene);
+
+// Returns EmissiveLights::On or Off for a package of `scenes`. It is Off where nothing emits light. Error
+// "emissive-lights" if the settings demand what a host with lights of its own, or a package without shadow
+// rays, can't have.
+Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
+
+// Returns the features that decide what the triangles emit: those that all of them have, and those that some
+// have. If a layer covers the emission of one, they are all features.
+struct EmitterFeatures {
+    materials::FeatureMask always = 0;
+    materials::FeatureMask sometimes = 0;
+    bool coveredByLayers = false;
+};
+EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan);
+
 // Returns CompileSettings::lightSamples for a package of `scenes`, which decides by the scene with the most
-// lights. A host that has its own lights, or that sends its own rays, has no hierarchy. Error "lights" if the
-// settings demand one nevertheless.
+// lights. emissiveLights must be decided. A host that has its own lights, or that sends its own rays, has no
+// hierarchy. Error "lights" if the settings demand one nevertheless.
 Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
 
 }  // namespace glint::compiler

@@ -3,6 +3,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/prune.h"
+#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "scene/deformed.h"
 
@@ -247,6 +248,12 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const CompileSettings& settings) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     MaterialCodeOfCases codeOfCases(sources, *plan.model);
+    // Every case evaluates what emissive lights emit.
+    materials::FeatureMask ofEmitters = 0;
+    if (settings.emissiveLights == EmissiveLights::On) {
+        const EmitterFeatures features = emitterFeatures(scenes, plan);
+        ofEmitters = features.always | features.sometimes;
+    }
     const SourceSet none;
     const Case fallback = fallbackCase(plan);
     SourceSet fallbackSwitch;  // the switch of shaders that have the fallback alone
@@ -268,7 +275,8 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
             const Case& shaderCase = ofCase ? plan.cases[key.index] : fallback;
             addCase(context, scenes, *plan.model, shaderCase);
             context.set("skipsMisses", ofFallback);
-            Result<const SourceSet*> code = codeOfCases.find(shaderCase.always | shaderCase.sometimes);
+            Result<const SourceSet*> code =
+                codeOfCases.find(shaderCase.always | shaderCase.sometimes | ofEmitters);
             if (!code) {
                 return code.error();
             }

@@ -4,6 +4,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/host.h"
+#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
 #include "emit/modules.h"
@@ -75,6 +76,15 @@ std::string bindingDefines(const package::Bindings& bindings) {
     return text;
 }
 
+// The features that decide what emissive lights emit.
+std::string emitterDefines(const gltf::SceneList& scenes, const Plan& plan) {
+    const EmitterFeatures features = emitterFeatures(scenes, plan);
+    std::string text = "// Emissive lights\n";
+    defineFeatures(text, "GLINT_EMITTER", features.always, features.sometimes);
+    text += fmt::format("#define GLINT_EMITTER_LAYERS {}\n", features.coveredByLayers ? 1 : 0);
+    return text;
+}
+
 std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const CompileSettings& settings) {
     const auto has = [&](materials::AlphaMode mode) {
         return std::ranges::any_of(scenes.materials(), [mode](const materials::Material& material) {
@@ -112,6 +122,11 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
     text += fmt::format("#define GLINT_POSITION_FETCH {}\n", flag(settings.positionFetch));
     text += fmt::format("#define GLINT_LIGHT_SAMPLES {}\n", settings.lightSamples.value_or(0));
+    const bool emissive = settings.emissiveLights == EmissiveLights::On;
+    text += fmt::format("#define GLINT_EMISSIVE_LIGHTS {}\n", flag(emissive));
+    if (emissive) {
+        text += emitterDefines(scenes, plan);
+    }
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));

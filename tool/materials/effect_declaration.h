@@ -42,6 +42,9 @@ struct EffectDeclaration {
     EffectCoherence coherence{};
     std::vector<std::string> settings{};  // the settings that only change this effect
     std::string absent{};                 // why they are not worth trying without it
+    // Of the kind Rays: the sampled direction has a density, so that samples of emissive lights share the
+    // light of its lobes. `sample` then also has density…() and share…().
+    bool sharesLights = false;
     // Names of files as an #include gives them, empty where there are none. Each has a function whose name
     // ends with function(). light: shaders/hit/ calls it. apply: changes the sky's shares. sample: makes a
     // ray and its weight. compose: what the found light adds to the pixel; without it, the product with the

@@ -10,8 +10,9 @@ namespace {
 
 using package::EffectKind;
 
-constexpr std::string_view kMembers[] = {"$schema",   "name",    "about",    "kind",      "order", "glsl",
-                                         "calledFor", "refines", "settings", "coherence", "absent"};
+constexpr std::string_view kMembers[] = {"$schema",  "name",      "about",     "kind",
+                                         "order",    "glsl",      "calledFor", "refines",
+                                         "settings", "coherence", "absent",    "sharesLights"};
 
 constexpr struct {
     std::string_view name;
@@ -131,6 +132,10 @@ EffectDeclaration readEffect(const Members& members, std::string_view file, bool
     effect.absent = members.text("absent", "");
     if (effect.settings.empty() != effect.absent.empty()) {
         failAt(members.where(), "\"absent\" stands where \"settings\" are, and there alone");
+    }
+    effect.sharesLights = members.flag("sharesLights", false);
+    if (effect.sharesLights && effect.kind != EffectKind::Rays) {
+        failAt(members.at("sharesLights"), "only an effect of the kind rays can share light");
     }
     readFiles(members, file, effect);
     return effect;

@@ -81,6 +81,11 @@ public:
         return {};
     }
 
+    bool has(int feature) const {
+        return feature < 0 ||
+               (key_ & material_.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
+    }
+
     double leastRoughness() const {
         double least = materials::kUnlimited;
         for (const materials::BehaviourRule& rule : material_.model().behaviours) {
@@ -162,6 +167,17 @@ bool sendsRays(const materials::EffectDeclaration& effect, const materials::Mate
     EffectRequest request;
     request.maxReflectionRoughness = maxReflectionRoughness;
     return effect.kind == package::EffectKind::Rays && find(effect, alone, {}, request).usable;
+}
+
+bool isEmitter(const materials::Material& material, const materials::PrimitiveInputs& primitive) {
+    const SurfaceBehaviour behaviour({&material, &primitive});
+    if (material.isUnlit() || behaviour.why(materials::Behaviour::Emits, 0.0).empty()) {
+        return false;
+    }
+    return std::ranges::none_of(material.model().code, [&](const materials::FeatureCode& code) {
+        return code.isOfPack && !(code.emission.empty() && code.coordinates.empty()) &&
+               behaviour.has(code.feature);
+    });
 }
 
 double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive) {

@@ -60,6 +60,10 @@ EffectPlan decideEffects(std::span<const materials::Material> materials,
 bool sendsRays(const materials::EffectDeclaration& effect, const materials::Material& material,
                const materials::PrimitiveInputs& primitive, float maxReflectionRoughness);
 
+// Returns whether triangles of this material on this primitive can be lights: they emit light, and no code of
+// a pack changes that light or where its texture is read.
+bool isEmitter(const materials::Material& material, const materials::PrimitiveInputs& primitive);
+
 // Returns the least roughness of anything that reflects, without what textures do; infinity if nothing does.
 double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 

@@ -29,6 +29,17 @@ constexpr std::span<const Named<TextureLod>> namesOf(TextureLod /*type*/) {
     return kTextureLodNames;
 }
 
+// Whether triangles that emit light are lights.
+enum class EmissiveLights : std::uint8_t { Auto, Off, On };
+inline constexpr Named<EmissiveLights> kEmissiveLightsNames[] = {
+    {EmissiveLights::Auto, "auto", "in packages for several bounces, with up to 262,144 such triangles"},
+    {EmissiveLights::Off, "off", "rays find them by chance"},
+    {EmissiveLights::On, "on", "surfaces send shadow rays to them"},
+};
+constexpr std::span<const Named<EmissiveLights>> namesOf(EmissiveLights /*type*/) {
+    return kEmissiveLightsNames;
+}
+
 struct CompileSettings {
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -49,6 +60,7 @@ struct CompileSettings {
     // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
     // lights (emit/lights.h).
     std::optional<std::uint32_t> lightSamples{};
+    EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     package::ShadingPrecision precision = package::ShadingPrecision::Single;

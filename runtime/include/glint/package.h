@@ -87,6 +87,8 @@ public:
     // Returns how many lights a surface chooses by a hierarchy, which GpuScene then builds; 0 if it takes
     // all.
     std::uint32_t lightSamples() const;
+    // Returns where records of materials say what they emit, or null in packages without emissive lights.
+    const package::EmissionEntry* emission() const;
     // Returns the number of shader IDs, retired ones included.
     std::uint32_t caseCount() const;
     // Returns the number of buckets of a visibility buffer: bucket 0 holds misses, bucket 1 + shader ID holds

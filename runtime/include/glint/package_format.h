@@ -153,6 +153,7 @@ enum class SectionKind : std::uint32_t {
     Scenes = 8,      // SceneEntry
     Attributes = 9,  // AttributeEntry: attributes of vertices that packs declare
     Effects = 10,    // EffectEntry, by ascending bits
+    Emission = 11,   // one EmissionEntry, in packages with emissive lights
 };
 
 struct PackageSection {
@@ -277,6 +278,19 @@ struct EffectEntry {
     std::uint32_t pad;
 };
 
+// What the runtime has to know of a material's record to bound the light that its triangles emit.
+struct EmissionEntry {
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+    std::uint32_t factor;    // offset of three floats; kNone: they are 0
+    std::uint32_t strength;  // offset of a float; kNone: it is 1
+    std::uint32_t texture;   // slot of the texture; kNone if no record has one
+    // Bits of PrimitiveEntry::featureInputs: the key reads the texture; it reads UV set 0 or 1.
+    std::uint32_t textureInput;
+    std::uint32_t texCoord0Input;
+    std::uint32_t texCoord1Input;
+};
+
 struct SamplerEntry {
     std::uint32_t wrapU;  // 0 repeat, 1 clamp to edge, 2 mirrored repeat
     std::uint32_t wrapV;
@@ -296,5 +310,6 @@ static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);
 static_assert(sizeof(AttributeEntry) == 40);
 static_assert(sizeof(EffectEntry) == 24);
+static_assert(sizeof(EmissionEntry) == 24);
 
 }  // namespace glint::package

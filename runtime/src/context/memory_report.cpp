@@ -108,6 +108,10 @@ std::vector<MemoryItem> GpuScene::memory() const {
     if (state_->lightNodes.address != 0) {
         addTo(items, "light nodes", state_->lightNodes);
     }
+    if (state_->emitterRecords.address != 0) {
+        addTo(items, "emissive triangles", state_->emitterRecords);
+        addTo(items, "emissive triangles", state_->firstEmitters);
+    }
     if (state_->motion != nullptr) {
         addMotion(items, *state_->motion);
     }

@@ -44,7 +44,8 @@ void recordCopies(const GpuScene::State& state, VkCommandBuffer commands) {
     };
     copy(0, motion.lightOffset, state.instances);
     copy(motion.lightOffset, motion.lightNodeOffset, state.lights);
-    copy(motion.lightNodeOffset, motion.placedOffset, state.lightNodes);
+    copy(motion.lightNodeOffset, motion.emitterOffset, state.lightNodes);
+    copy(motion.emitterOffset, motion.placedOffset, state.emitterRecords);
     copy(motion.placedOffset, motion.materialOffset, motion.placedBuffer);
     std::vector<VkBufferCopy> regions;
     for (std::size_t i = 0; i < state.changing.size(); ++i) {
@@ -208,8 +209,15 @@ void stage(GpuScene::State& state, std::span<const InstanceView> instances,
     if (!records.empty()) {
         std::memcpy(bytes + motion.lightOffset, records.data(), records.size() * sizeof(gpu::LightRecord));
     }
+    state.emitters.takeMaterials(state.changing);
+    const std::vector<EmitterBounds> emitters = state.emitters.boundsAt(instances);
+    if (motion.placedOffset > motion.emitterOffset) {
+        state.emitters.setLeaves(emitters);
+        std::memcpy(bytes + motion.emitterOffset, state.emitters.records.data(),
+                    motion.placedOffset - motion.emitterOffset);
+    }
     if (!state.lightTree.nodes.empty()) {
-        refitLightTree(state.lightTree, records);
+        refitLightTree(state.lightTree, records, emitters);
         std::memcpy(bytes + motion.lightNodeOffset, state.lightTree.nodes.data(),
                     state.lightTree.nodes.size() * sizeof(gpu::LightNode));
     }

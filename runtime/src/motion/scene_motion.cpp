@@ -47,7 +47,10 @@ Status createBuffers(GpuScene::State& state, std::size_t lights) {
     motion.placedBuffer = std::move(*placedBuffer);
     motion.lightOffset = motion.meshes.size() * sizeof(gpu::InstanceRecord);
     motion.lightNodeOffset = motion.lightOffset + lights * sizeof(gpu::LightRecord);
-    motion.placedOffset = motion.lightNodeOffset + state.lightTree.nodes.size() * sizeof(gpu::LightNode);
+    motion.emitterOffset = motion.lightNodeOffset + state.lightTree.nodes.size() * sizeof(gpu::LightNode);
+    // A hierarchy tells which triangles are dark.
+    const std::size_t emitters = state.lightNodes.address == 0 ? state.emitters.records.size() : 0;
+    motion.placedOffset = motion.emitterOffset + emitters * sizeof(gpu::EmitterRecord);
     motion.materialOffset =
         motion.placedOffset + motion.placed.size() * sizeof(VkAccelerationStructureInstanceKHR);
     const VkDeviceSize bytes =

@@ -44,10 +44,12 @@ struct SceneMotion {
     std::vector<std::uint32_t> lightTypes;
 
     // The source of the copy to the device: instance records, light records, nodes of their hierarchy,
-    // `placed` and records of changing materials, one after the other.
+    // records of emissive triangles if there is no hierarchy, `placed` and records of changing materials, one
+    // after the other.
     Buffer staging;
     VkDeviceSize lightOffset = 0;
     VkDeviceSize lightNodeOffset = 0;
+    VkDeviceSize emitterOffset = 0;
     VkDeviceSize placedOffset = 0;
     VkDeviceSize materialOffset = 0;
 

@@ -98,6 +98,10 @@ std::uint32_t Package::lightSamples() const {
     return state_->header.lightSamples;
 }
 
+const package::EmissionEntry* Package::emission() const {
+    return state_->emission.empty() ? nullptr : state_->emission.data();
+}
+
 std::uint32_t Package::caseCount() const {
     return state_->header.caseCount;
 }

@@ -132,6 +132,25 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+// Shaders read what the offsets and the slot name in any case; the runtime does only if they are right.
+Status checkEmission(const Package::State& state, const std::string& where) {
+    if (state.emission.empty()) {
+        return okStatus();
+    }
+    const package::EmissionEntry& entry = state.emission.front();
+    const auto fits = [&](std::uint32_t offset, std::size_t bytes) {
+        return offset == package::EmissionEntry::kNone ||
+               (offset % 4 == 0 && offset + bytes <= state.materials.textureOffset);
+    };
+    const bool known =
+        entry.texture == package::EmissionEntry::kNone || entry.texture < state.materials.textureCount;
+    if (state.emission.size() != 1 || !fits(entry.factor, 3 * sizeof(float)) ||
+        !fits(entry.strength, sizeof(float)) || !known) {
+        return altered(where, "the emission of materials is outside of their records");
+    }
+    return okStatus();
+}
+
 Status checkCases(const Package::State& state, const std::string& where) {
     if (state.cases.size() != state.header.caseCount) {
         return altered(where, "the header names " + std::to_string(state.header.caseCount) +
@@ -171,14 +190,18 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
     if ((shadedBy.always & ~key) != 0) {
         return altered(where, name + " lacks features that its case takes for granted");
     }
-    constexpr std::uint32_t kKnownFlags =
-        gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided | gpu::kGeometryMasked | gpu::kGeometryBlended;
+    constexpr std::uint32_t kKnownFlags = gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided |
+                                          gpu::kGeometryMasked | gpu::kGeometryBlended |
+                                          gpu::kGeometryEmitter;
     if ((entry.geometryFlags & ~kKnownFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
         return altered(where, name + " has unknown flags");
     }
     if ((entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 &&
         state.header.alpha == package::AlphaPolicy::Opaque) {
         return altered(where, name + " is alpha tested, and the package is not");
+    }
+    if ((entry.geometryFlags & gpu::kGeometryEmitter) != 0 && state.emission.empty()) {
+        return altered(where, name + " is a light, and the package has no emissive lights");
     }
     return okStatus();
 }
@@ -335,8 +358,8 @@ Status checkTables(Package::State& state, const std::string& where) {
     for (const package::EffectEntry& entry : state.effectEntries) {
         state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
     }
-    for (const auto check :
-         {checkHeader, checkCases, checkModules, checkScenes, checkSamplers, checkAttributes}) {
+    for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkSamplers,
+                             checkAttributes}) {
         if (Status status = check(state, where); !status) {
             return status;
         }

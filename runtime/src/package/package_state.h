@@ -34,7 +34,8 @@ struct Package::State {
     std::span<const package::SceneEntry> scenes;
     std::span<const package::AttributeEntry> attributes;
     std::span<const package::EffectEntry> effectEntries;
-    std::vector<package::EffectInfo> effects;  // the same, with their names
+    std::vector<package::EffectInfo> effects;          // the same, with their names
+    std::span<const package::EmissionEntry> emission;  // empty without emissive lights
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
 };

@@ -125,6 +125,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.attributes);
         case package::SectionKind::Effects:
             return readSection(state, section, where, state.effectEntries);
+        case package::SectionKind::Emission:
+            return readSection(state, section, where, state.emission);
     }
     return makeError(
         "package-altered", where,
@@ -157,7 +159,9 @@ Status readTables(Package::State& state, const std::string& where) {
             return status;
         }
     }
+    // Every package has those up to the effects.
     constexpr std::size_t kSectionKinds = 10;
+    seen.erase(package::SectionKind::Emission);
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,
                          "the package has " + std::to_string(seen.size()) + " of " +

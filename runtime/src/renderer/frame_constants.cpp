@@ -73,6 +73,7 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.rays = frame.rays.address;
     constants.nextRays = frame.nextRays.address;
     constants.paths = frame.paths.address;
+    constants.lobeRays = frame.lobeRays.address;
     constants.hits = frame.hits.address;
     constants.packedHits = frame.hits.address;
     constants.shadows = frame.shadows.address;

@@ -144,6 +144,8 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
          MemoryUse::Device},
         {frame.nextRays, size.paths ? ownRays * sizeof(gpu::RayRecord) : 0, kStorage, MemoryUse::Device},
         {frame.paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
+        {frame.lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
+         MemoryUse::Device},
         {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {frame.orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
         {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},

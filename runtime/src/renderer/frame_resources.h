@@ -34,6 +34,7 @@ struct FrameResources {
     Buffer rays;
     Buffer nextRays;  // this buffer and the next are present if paths have several bounces
     Buffer paths;
+    Buffer lobeRays;     // present if the package has emissive lights
     Buffer hits;         // full or packed records; present if hits are ordered
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
@@ -52,13 +53,14 @@ struct FrameResources {
     VkDescriptorSet set = VK_NULL_HANDLE;
 
     // All buffers, with names for reports.
-    std::array<std::pair<const char*, const Buffer*>, 19> buffers() const {
+    std::array<std::pair<const char*, const Buffer*>, 20> buffers() const {
         return {{{"constants", &constants},
                  {"samples", &samples},
                  {"radiance of effects", &radiance},
                  {"rays", &rays},
                  {"next rays", &nextRays},
                  {"paths", &paths},
+                 {"rays of lobes", &lobeRays},
                  {"hits", &hits},
                  {"ordered hits", &orderedHits},
                  {"visited hits", &visitedHits},
@@ -93,7 +95,8 @@ struct FrameSize {
     bool hostRays = false;     // the list of rays and what they bring back are the host's
     bool rayPipeline = false;  // a ray tracing pipeline dispatches lists as rays
 
-    bool paths = false;         // the package's shaders keep the state of paths
+    bool paths = false;  // the package's shaders keep the state of paths
+    bool emissiveLights = false;
     std::uint32_t bounces = 1;  // the most of a path
 
     // The number of lists in a frame: one for each bounce of each round of effects.

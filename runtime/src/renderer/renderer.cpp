@@ -105,6 +105,9 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.lightNodes = state.scene.lightNodes.address;
     constants.lightTreeNodes = state.scene.lightTree.treeNodes;
     constants.unboundedLights = state.scene.lightTree.unbounded;
+    constants.emitters = state.scene.emitterRecords.address;
+    constants.firstEmitters = state.scene.firstEmitters.address;
+    constants.emitterCount = static_cast<std::uint32_t>(state.scene.emitters.records.size());
     constants.lastBounce = bouncesOf(state.size, options);
     fillLists(state.frame, state.size, constants);
     return constants;

@@ -33,6 +33,32 @@ Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const
     return uploader.copyToBuffer(bytesOf(records), target);
 }
 
+// Makes the hierarchy over lights and emissive triangles, in packages that have one, and the records of the
+// triangles, in packages that have those.
+Status uploadLightTree(GpuScene::State& state, const Package& package, const SceneView& scene,
+                       Uploader& uploader, std::span<const gpu::LightRecord> lights) {
+    const std::vector<EmitterBounds> bounds = state.emitters.boundsAt(scene.instances);
+    if (package.lightSamples() > 0) {
+        state.lightTree = buildLightTree(lights, bounds, scene.moves);
+        const std::span<const gpu::LightNode> nodes(state.lightTree.nodes);
+        if (Status s = uploadRecords(state, uploader, nodes, state.lightNodes); !s) {
+            return s;
+        }
+        state.emitters.setLeaves(state.lightTree);
+    } else {
+        state.emitters.setLeaves(bounds);
+    }
+    if (package.emission() == nullptr) {
+        return okStatus();
+    }
+    const std::span<const gpu::EmitterRecord> records(state.emitters.records);
+    if (Status s = uploadRecords(state, uploader, records, state.emitterRecords); !s) {
+        return s;
+    }
+    const std::span<const std::uint32_t> firsts(state.emitters.firsts);
+    return uploadRecords(state, uploader, firsts, state.firstEmitters);
+}
+
 // Makes `deformer` if an instance changes its shape.
 Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene, SceneLayout& layout,
                   std::unique_ptr<Deformer>& deformer) {
@@ -112,12 +138,9 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Lights(lights), state.lights); !s) {
         return s;
     }
-    if (package.lightSamples() > 0) {
-        state.lightTree = buildLightTree(lights);
-        const std::span<const gpu::LightNode> nodes(state.lightTree.nodes);
-        if (Status s = uploadRecords(state, **uploader, nodes, state.lightNodes); !s) {
-            return s;
-        }
+    state.emitters = Emitters(package, known, scene, layout, state.deformed.addresses, ordered, materials);
+    if (Status s = uploadLightTree(state, package, scene, **uploader, lights); !s) {
+        return s;
     }
     Result<std::vector<DeviceImage>> textures =
         uploadTextures(state.context, state.pool, **uploader, known.textures, scene.images);

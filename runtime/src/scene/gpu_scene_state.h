@@ -5,6 +5,7 @@
 #include "motion/scene_motion.h"
 #include "renderer/draw_batches.h"
 #include "scene/acceleration.h"
+#include "scene/emitters.h"
 #include "scene/geometry.h"
 #include "scene/light_tree.h"
 #include "scene/scene_materials.h"
@@ -44,6 +45,10 @@ struct GpuScene::State {
     // In packages that choose lights by a hierarchy:
     LightTree lightTree;
     Buffer lightNodes;
+    // In packages with emissive lights:
+    Emitters emitters;
+    Buffer emitterRecords;
+    Buffer firstEmitters;
     std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
     UniqueSetLayout setLayout;

@@ -45,6 +45,7 @@ struct LightBounds {
     double emission = 0.0;   // the most angle between a light's axis and a direction in which it shines
     double intensity = 0.0;  // sum, candela
     double reach = 0.0;      // metres; infinite if a light has no range
+    bool twoSided = false;   // a light shines along its axis and against it
     bool isEmpty = true;
 };
 
@@ -87,6 +88,7 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
     both.emission = std::max(a.emission, b.emission);
     both.intensity = a.intensity + b.intensity;
     both.reach = std::max(a.reach, b.reach);
+    both.twoSided = a.twoSided || b.twoSided;
     both.isEmpty = false;
     return both;
 }
@@ -110,6 +112,21 @@ LightBounds boundsOfLight(const gpu::LightRecord& light) {
     return bounds;
 }
 
+LightBounds boundsOfEmitter(const EmitterBounds& emitter) {
+    LightBounds bounds;
+    bounds.isEmpty = false;
+    bounds.lower = emitter.lower;
+    bounds.upper = emitter.upper;
+    bounds.emission = kLightPi / 2.0;
+    bounds.intensity = std::clamp(emitter.intensity, 0.0, kMaxIntensity);
+    bounds.reach = std::numeric_limits<double>::infinity();
+    if (dotOf(emitter.normal, emitter.normal) > 0.5) {
+        bounds.axes = {emitter.normal, 0.0};
+        bounds.twoSided = emitter.twoSided;
+    }
+    return bounds;
+}
+
 gpu::vec3 floatsOf(const Double3& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
@@ -119,7 +136,7 @@ gpu::LightNode makeLightNode(const LightBounds& bounds, std::uint32_t next) {
     node.lower = floatsOf(bounds.lower);
     node.upper = floatsOf(bounds.upper);
     node.intensity = static_cast<float>(bounds.intensity);
-    node.reach = static_cast<float>(bounds.reach);
+    node.reach = static_cast<float>(bounds.twoSided ? -bounds.reach : bounds.reach);
     node.axis = floatsOf(bounds.axes.axis);
     node.cosAxes = static_cast<float>(std::cos(bounds.axes.angle));
     node.cosEmission = static_cast<float>(std::cos(bounds.emission));
@@ -191,8 +208,8 @@ public:
 private:
     static std::size_t binOf(const LightBounds& bounds, const LightBounds& centres, std::size_t axis) {
         const double size = centres.upper[axis] - centres.lower[axis];
-        const double place =
-            (bounds.lower[axis] - centres.lower[axis]) / size * static_cast<double>(kLightBins);
+        const double middle = 0.5 * (bounds.lower[axis] + bounds.upper[axis]);
+        const double place = (middle - centres.lower[axis]) / size * static_cast<double>(kLightBins);
         return std::min(static_cast<std::size_t>(std::max(place, 0.0)), kLightBins - 1);
     }
 
@@ -250,7 +267,8 @@ private:
 
 }  // namespace
 
-LightTree buildLightTree(std::span<const gpu::LightRecord> lights) {
+LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<const EmitterBounds> emitters,
+                         bool keepsDark) {
     LightTree tree;
     std::vector<LightMember> members;
     std::vector<gpu::LightNode> unbounded;
@@ -261,6 +279,11 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights) {
             unbounded.push_back(leaf);
         } else {
             members.push_back({i, boundsOfLight(lights[i])});
+        }
+    }
+    for (std::uint32_t i = 0; i < emitters.size(); ++i) {
+        if (keepsDark || emitters[i].intensity > 0.0) {
+            members.push_back({gpu::kLightEmitter | i, boundsOfEmitter(emitters[i])});
         }
     }
     tree.unbounded = static_cast<std::uint32_t>(unbounded.size());
@@ -275,14 +298,18 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights) {
     return tree;
 }
 
-void refitLightTree(LightTree& tree, std::span<const gpu::LightRecord> lights) {
+void refitLightTree(LightTree& tree, std::span<const gpu::LightRecord> lights,
+                    std::span<const EmitterBounds> emitters) {
+    const auto boundsOfLeaf = [&](std::uint32_t number) {
+        return (number & gpu::kLightEmitter) != 0 ? boundsOfEmitter(emitters[number & ~gpu::kLightEmitter])
+                                                  : boundsOfLight(lights[number]);
+    };
     std::vector<LightBounds> bounds(tree.treeNodes);
     // Children come after their parent.
     for (std::uint32_t i = tree.treeNodes; i-- > 0;) {
         const std::uint32_t next = tree.nodes[i].next;
         const bool leaf = (next & gpu::kLightLeaf) != 0;
-        bounds[i] =
-            leaf ? boundsOfLight(lights[next & ~gpu::kLightLeaf]) : unite(bounds[i + 1], bounds[next]);
+        bounds[i] = leaf ? boundsOfLeaf(next & ~gpu::kLightLeaf) : unite(bounds[i + 1], bounds[next]);
         tree.nodes[i] = makeLightNode(bounds[i], next);
     }
 }

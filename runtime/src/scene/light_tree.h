@@ -3,6 +3,7 @@
 
 #include "interop/lights.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,14 +18,27 @@ struct LightTree {
     std::uint32_t unbounded = 0;
 };
 
+// What bounds the light of a triangle.
+struct EmitterBounds {
+    std::array<double, 3> lower{};
+    std::array<double, 3> upper{};
+    std::array<double, 3> normal{};  // unit vector, on the side that shines; 0 if it may be any
+    bool twoSided = false;
+    double intensity = 0.0;  // an estimate of that along the normal, candela; 0: the triangle is dark
+};
+
 // Builds the tree over lights that have bounds. Each split is the best of 12 bins in each axis, by the
 // surface area orientation heuristic: Conty Estevez and Kulla, "Importance Sampling of Many Lights with
 // Adaptive Tree Splitting" (2018), equation 1. Large trees are built by several threads. The result depends
 // on the lights alone. Takes O(n log n) time, unless the lights are spaced very unevenly.
-LightTree buildLightTree(std::span<const gpu::LightRecord> lights);
+// The leaf of an emitter has gpu::kLightEmitter in its number. With `keepsDark`, emitters that are dark have
+// leaves, too, because they may shine after refitLightTree().
+LightTree buildLightTree(std::span<const gpu::LightRecord> lights,
+                         std::span<const EmitterBounds> emitters = {}, bool keepsDark = false);
 
 // Gives the nodes the bounds of lights that moved or changed, and keeps their order. `lights` are as many as
 // at the build and have the same types. Takes O(n) time.
-void refitLightTree(LightTree& tree, std::span<const gpu::LightRecord> lights);
+void refitLightTree(LightTree& tree, std::span<const gpu::LightRecord> lights,
+                    std::span<const EmitterBounds> emitters = {});
 
 }  // namespace glint

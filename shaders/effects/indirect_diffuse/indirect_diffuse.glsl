@@ -14,6 +14,11 @@ const uint kPairIndirectSide = 4u;
 // a radian keeps out the finest texture levels, which would only make noise.
 const float kIndirectSpread = 0.125;
 
+#if GLINT_EMISSIVE_LIGHTS
+// The probability that the surface at hand sends its ray to the far side.
+float indirectFarChance = 0.0;
+#endif
+
 // Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
 // The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same.
 EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
@@ -30,6 +35,9 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
         return noSample(kRayAbsent);
     }
     float chance = luminance(back) / total;
+#if GLINT_EMISSIVE_LIGHTS
+    indirectFarChance = chance;
+#endif
     bool passes = chance > 0.0 && hostRandomPair(hit.target, kPairIndirectSide).x < chance;
     vec3 local = sampleCosine(hostRandomPair(hit.target, kPairIndirect));
     vec3 direction = onSide(toWorld(surface, passes ? vec3(local.xy, -local.z) : local),
@@ -37,3 +45,18 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     vec3 weight = passes ? back / chance : front / (1.0 - chance);
     return sentSample(hit, direction, weight, max(kIndirectSpread, GLINT_FRAME.pixelSpread));
 }
+
+#if GLINT_EMISSIVE_LIGHTS
+
+// The density of the ray that was sent, by solid angle.
+float densityIndirectDiffuse(Surface surface, Features features, vec3 l) {
+    return (l.z > 0.0 ? 1.0 - indirectFarChance : indirectFarChance) * abs(l.z) * kInversePi;
+}
+
+void shareIndirectDiffuse(Surface surface, Features features, vec3 l, float lights, inout SkyShares shares) {
+    float part = lights / (lights + densityIndirectDiffuse(surface, features, l));
+    shares.diffuse += (1.0 - shares.diffuse) * part;
+    shares.behind += (1.0 - shares.behind) * part;
+}
+
+#endif

@@ -23,6 +23,16 @@ vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
            baseShare(surface, features);
 }
 
+#if GLINT_EMISSIVE_LIGHTS
+// What the surface at hand sends.
+struct ReflectionRay {
+    TracedLayers layers;
+    float baseChance;  // that the ray is one of the base, if that is no mirror
+    bool isMirror;     // it goes to the one direction of a mirror
+};
+ReflectionRay reflectionRay;
+#endif
+
 // A ray in the mirror direction about `normal`, whatever its pdf is. A flat mirror continues the pixel's cone.
 EffectSample mirrorSample(Hit hit, vec3 normal, vec3 weight) {
     vec3 direction = onSide(reflect(-hit.view, normal), hit.geometricNormal);
@@ -67,6 +77,9 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, float trac
     weighLayers(layers, features, baseMirror, base);
     float ofLayers = sumOfLayers(layers);
     float brought = luminance(base) + ofLayers;
+#if GLINT_EMISSIVE_LIGHTS
+    reflectionRay = ReflectionRay(layers, baseMirror ? 0.0 : 1.0, baseMirror);
+#endif
     if (brought <= 0.0) {
         return noSample(traced > 0.0 ? kRayBlack : kRayRough);
     }
@@ -77,6 +90,10 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, float trac
         TracedLayer layer;
         chosen = chooseLayer(layers, features, brought, random, layer);
         chance = 1.0 - ofLayers / brought;
+#if GLINT_EMISSIVE_LIGHTS
+        reflectionRay = ReflectionRay(layers, baseMirror ? 0.0 : chance,
+                                      chosen == kChosenBase ? baseMirror : layer.isMirror);
+#endif
         if (chosen != kChosenBase && layer.isMirror) {
             return mirrorSample(hit, toWorld(surface, layer.normal), layer.light / layer.chance);
         }
@@ -93,3 +110,36 @@ EffectSample sampleReflection(Hit hit, Surface surface, Features features, inout
     TracedLayers layers = traceLayers(surface, features, sky.layers);
     return sampleLobes(hit, surface, features, traced, layers);
 }
+
+#if GLINT_EMISSIVE_LIGHTS
+
+// The density of rays to other directions than a mirror's, by solid angle.
+float glossyDensity(Surface surface, Features features, vec3 l) {
+    vec3 light = vec3(0.0);
+    float density = 0.0;
+    if (reflectionRay.baseChance > 0.0 && l.z > 0.0) {
+        density = reflectionRay.baseChance *
+                  mirroredPdf(surface.bsdf.view, normalize(surface.bsdf.view + l), surface.bsdf.alpha);
+    }
+    addTracedLayers(surface, features, reflectionRay.layers, l, light, density);
+    return density;
+}
+
+// The density of the ray that was sent; 0 if it is a mirror's, or if its end may be found on the screen, where nobody
+// knows what part of the light is emission.
+float densityReflection(Surface surface, Features features, vec3 l) {
+    return reflectionRay.isMirror || GLINT_FRAME.screenSteps != 0u ? 0.0 : glossyDensity(surface, features, l);
+}
+
+void shareReflection(Surface surface, Features features, vec3 l, float lights, inout SkyShares shares) {
+    if (GLINT_FRAME.screenSteps != 0u) {
+        return;
+    }
+    float part = lights / (lights + glossyDensity(surface, features, l));
+    if (reflectionRay.baseChance > 0.0) {
+        shares.mirrored += (1.0 - shares.mirrored) * part;
+    }
+    shareTracedLayers(features, reflectionRay.layers, part, shares.layers);
+}
+
+#endif

@@ -25,6 +25,11 @@ Hit shadedHit(HostGeometry geometry, Features features) {
 #if GLINT_PATHS
     hit.arrival = arrivalOf(target, gl_WorldRayOriginEXT, coneWidth, shaded.radiance.z);
 #endif
+#if GLINT_EMISSIVE_LIGHTS
+    hit.geometry = hitGeometry();
+    hit.primitive = uint(gl_PrimitiveID);
+    hit.start = gl_WorldRayOriginEXT;
+#endif
     return hit;
 }
 
@@ -41,6 +46,9 @@ void returnShaded(Hit hit, ShadeResult result) {
     shaded.shadowOrigin = rayOrigin(hit, result.shadowDirection);
     shaded.shadowDirection = result.shadowDirection;
     shaded.shadowDistance = result.shadowDistance;
+#if GLINT_EMISSIVE_LIGHTS
+    shaded.shadowSees = result.shadowSees;
+#endif
 #if GLINT_PATHS
     // The next ray waits in memory, where the other strategies leave it too, and the payload stays small.
     storePath(hit, result.path);

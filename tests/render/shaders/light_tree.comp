@@ -13,8 +13,9 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
+    LightReceiver receiver = LightReceiver(ray.origin, vec3(0.0));
     float probability;
-    uint chosen = lightOfTree(ray.origin, ray.direction, probability);
+    uint chosen = lightOfTree(receiver, ray.direction, probability);
     float sum = 0.0;
     uint unreachable = 0u;
     float evaluated = -1.0;
@@ -24,7 +25,7 @@ void main() {
             continue;
         }
         uint light = next & ~kLightLeaf;
-        float own = lightProbability(ray.origin, node);
+        float own = lightProbability(receiver, node);
         sum += own;
         LightSample arriving = sampleLight(GLINT_FRAME.lights.data[light], ray.origin);
         unreachable += own <= 0.0 && dot(arriving.irradiance, vec3(1.0)) > 0.0 ? 1u : 0u;

@@ -177,6 +177,65 @@ TEST(LightTree, DarkLightsHaveNoIntensity) {
     EXPECT_EQ(std::min(tree.nodes[1].intensity, tree.nodes[2].intensity), 0.0F);
 }
 
+// Triangles of random places and normals, of which every fifth is dark and every third shines on both sides.
+std::vector<EmitterBounds> someEmitters(std::size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    std::vector<EmitterBounds> emitters(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        EmitterBounds& emitter = emitters[i];
+        double squared = 0.0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            emitter.lower[axis] = unit(random);
+            emitter.upper[axis] = emitter.lower[axis] + 0.05 * (1.0 + unit(random));
+            emitter.normal[axis] = unit(random);
+            squared += emitter.normal[axis] * emitter.normal[axis];
+        }
+        for (double& component : emitter.normal) {
+            component /= std::sqrt(squared);
+        }
+        emitter.twoSided = i % 3 == 0;
+        emitter.intensity = i % 5 == 0 ? 0.0 : 1.0 + unit(random);
+    }
+    return emitters;
+}
+
+void expectEmitterBounds(const LightTree& tree, const std::vector<EmitterBounds>& emitters) {
+    for (const Leaf& leaf : leavesOf(tree)) {
+        if ((leaf.light & gpu::kLightEmitter) == 0) {
+            continue;
+        }
+        const EmitterBounds& emitter = emitters[leaf.light & ~gpu::kLightEmitter];
+        for (const std::uint32_t above : leaf.ancestors) {
+            const gpu::LightNode& node = tree.nodes[above];
+            const double slack = 1e-5;
+            EXPECT_LE(node.lower.x, emitter.lower[0] + slack);
+            EXPECT_GE(node.upper.y, emitter.upper[1] - slack);
+            EXPECT_GE(node.upper.z, emitter.upper[2] - slack);
+            EXPECT_EQ(std::abs(node.reach), INFINITY);
+            EXPECT_TRUE(!emitter.twoSided || node.reach < 0.0F);
+            EXPECT_NEAR(node.cosEmission, 0.0, 1e-6);
+            const double cosine = node.axis.x * emitter.normal[0] + node.axis.y * emitter.normal[1] +
+                                  node.axis.z * emitter.normal[2];
+            EXPECT_GE(cosine, node.cosAxes - slack);
+        }
+    }
+}
+
+TEST(LightTree, EmittersAreLeavesUnlessTheyAreDark) {
+    const std::vector<gpu::LightRecord> lights(3, point(1.0F, 2.0F, 3.0F));
+    std::vector<EmitterBounds> emitters = someEmitters(500, 7);
+    EXPECT_EQ(buildLightTree(lights, emitters).treeNodes, 2U * (400 + 3) - 1);
+    LightTree tree = buildLightTree(lights, emitters, true);
+    EXPECT_EQ(tree.treeNodes, 2U * (500 + 3) - 1);
+    // Points have a range of infinity and axes everywhere, so only subtrees of emitters are bounded.
+    tree = buildLightTree({}, emitters, true);
+    expectEmitterBounds(tree, emitters);
+    const std::vector<EmitterBounds> moved = someEmitters(500, 8);
+    refitLightTree(tree, {}, moved);
+    expectEmitterBounds(tree, moved);
+}
+
 // Threads build large trees; the result is the same.
 TEST(LightTree, BuildsOfManyLightsAreDeterministic) {
     const std::vector<gpu::LightRecord> lights = mixedLights(30000, 6);

@@ -85,7 +85,7 @@ constexpr MemberLayout kPackedHitRecord[] = {
 constexpr MemberLayout kShadowRecord[] = {
     GLINT_MEMBER(ShadowRecord, origin),    GLINT_MEMBER(ShadowRecord, target),
     GLINT_MEMBER(ShadowRecord, direction), GLINT_MEMBER(ShadowRecord, distance),
-    GLINT_MEMBER(ShadowRecord, light),     GLINT_MEMBER(ShadowRecord, pad),
+    GLINT_MEMBER(ShadowRecord, light),     GLINT_MEMBER(ShadowRecord, sees),
 };
 
 constexpr MemberLayout kDispatchArguments[] = {
@@ -168,6 +168,10 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, paths),
     GLINT_MEMBER(FrameConstants, bounce),
     GLINT_MEMBER(FrameConstants, lastBounce),
+    GLINT_MEMBER(FrameConstants, emitters),
+    GLINT_MEMBER(FrameConstants, firstEmitters),
+    GLINT_MEMBER(FrameConstants, lobeRays),
+    GLINT_MEMBER(FrameConstants, emitterCount),
 };
 
 constexpr MemberLayout kLightNode[] = {
@@ -175,6 +179,17 @@ constexpr MemberLayout kLightNode[] = {
     GLINT_MEMBER(LightNode, upper),       GLINT_MEMBER(LightNode, reach),
     GLINT_MEMBER(LightNode, axis),        GLINT_MEMBER(LightNode, cosAxes),
     GLINT_MEMBER(LightNode, cosEmission), GLINT_MEMBER(LightNode, next),
+};
+
+constexpr MemberLayout kEmitterRecord[] = {
+    GLINT_MEMBER(EmitterRecord, geometry),
+    GLINT_MEMBER(EmitterRecord, primitive),
+    GLINT_MEMBER(EmitterRecord, leaf),
+};
+
+constexpr MemberLayout kLobeRay[] = {
+    GLINT_MEMBER(LobeRay, density),
+    GLINT_MEMBER(LobeRay, normal),
 };
 
 constexpr MemberLayout kPushConstants[] = {
@@ -188,7 +203,8 @@ constexpr StructLayout kStructs[] = {
     GLINT_STRUCT(LightNode),       GLINT_STRUCT(LightRecord),    GLINT_STRUCT(EffectSample),
     GLINT_STRUCT(RayRecord),       GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),
     GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments),
-    GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),
+    GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),  GLINT_STRUCT(EmitterRecord),
+    GLINT_STRUCT(LobeRay),
 };
 
 constexpr MemberLayout kDeformRecord[] = {

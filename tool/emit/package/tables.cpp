@@ -86,18 +86,18 @@ private:
 };
 
 std::uint32_t geometryFlags(const materials::Material& material, materials::FeatureMask key,
-                            package::AlphaPolicy alpha) {
+                            package::AlphaPolicy alpha, bool emits) {
     const bool tested =
         alpha != package::AlphaPolicy::Opaque && (key & material.model().mask("alphaMask")) != 0;
     const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
     return (tested ? gpu::kGeometryAlphaTested : 0U) |
            (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
            (material.alphaMode == materials::AlphaMode::Mask || blended ? gpu::kGeometryMasked : 0U) |
-           (blended ? gpu::kGeometryBlended : 0U);
+           (blended ? gpu::kGeometryBlended : 0U) | (emits ? gpu::kGeometryEmitter : 0U);
 }
 
 std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::SceneList::Range range,
-                                           const Plan& plan, package::AlphaPolicy alpha) {
+                                           const Plan& plan, package::AlphaPolicy alpha, bool emissive) {
     std::vector<PrimitiveEntry> entries;
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
         const materials::PrimitiveInputs& inputs = scenes.primitives()[i];
@@ -111,7 +111,8 @@ std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::
         const materials::FeatureMask primary = plan.primaryMaskOfPrimitive[i];
         entry.featureLobes = static_cast<std::uint32_t>(primary & materials::kLobeMask);
         entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
-        entry.geometryFlags = geometryFlags(material, key.mask, alpha);
+        entry.geometryFlags =
+            geometryFlags(material, key.mask, alpha, emissive && isEmitter(material, inputs));
         entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
         entries.push_back(entry);
     }
@@ -139,6 +140,24 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
         entries.push_back(entry);
     }
     return entries;
+}
+
+EmissionEntry emissionOf(const MaterialLayout& layout) {
+    const materials::MaterialModel& model = *layout.model;
+    const auto offsetOf = [&](std::string_view name) {
+        const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
+        return field == layout.fields.end() ? EmissionEntry::kNone : field->offset;
+    };
+    const int slot = layout.slotOf(model.findTexture("emissiveTexture"));
+    const auto inputOf = [&](std::string_view name) {
+        return static_cast<std::uint32_t>(model.mask(name) >> 32U);
+    };
+    return {offsetOf("emissiveFactor"),
+            offsetOf("emissiveStrength"),
+            slot < 0 ? EmissionEntry::kNone : static_cast<std::uint32_t>(slot),
+            inputOf("emissiveTexture"),
+            inputOf("texCoord0"),
+            inputOf("texCoord1")};
 }
 
 std::vector<EffectEntry> makeEffects(const Plan& plan, StringTable& strings) {
@@ -229,6 +248,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
                          static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
     }
     const package::AlphaPolicy alpha = settings.plan.keys.alpha;
+    const bool emissive = settings.emissiveLights == EmissiveLights::On;
     const MaterialLayout layout = materialLayoutOf(plan);
     SceneTables tables;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
@@ -240,7 +260,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
         entry.materialCount = static_cast<std::uint32_t>(scene.materials.size());
         tables.materials.insert(tables.materials.end(), materials.materials.begin(),
                                 materials.materials.end());
-        append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, alpha),
+        append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, alpha, emissive),
                entry.firstPrimitive, entry.primitiveCount);
         append(tables.textures, materials.textures, entry.firstTexture, entry.textureCount);
         append(tables.samplers, makeSamplers(scene), entry.firstSampler, entry.samplerCount);
@@ -260,6 +280,9 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Cases, cases);
     writer.add(SectionKind::Attributes, attributes);
     writer.add(SectionKind::Effects, effects);
+    if (emissive) {
+        writer.add(SectionKind::Emission, std::vector{emissionOf(layout)});
+    }
 
     PackageHeader header{};
     std::memcpy(header.magic, kMagic, sizeof header.magic);

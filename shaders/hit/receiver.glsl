@@ -1,0 +1,14 @@
+// A surface that chooses lights.
+#include "bsdf/features.glsl"
+#include "hit/hit.glsl"
+#include "hit/light_tree.glsl"
+
+// The normal of LightReceiver in 32 bits. Surfaces that let light through take lights of both sides.
+uint receiverNormal(Hit hit, Features features) {
+    bool through = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
+    return through ? kBothSides : packReceiver(hit.geometricNormal);
+}
+
+LightReceiver receiverOf(Hit hit, Features features) {
+    return LightReceiver(hit.position, unpackReceiver(receiverNormal(hit, features)));
+}

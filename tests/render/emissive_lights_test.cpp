@@ -1,0 +1,409 @@
+// Triangles that emit light as lights: their samples share the light with the rays that find them by chance,
+// so that the mean is the same, and the noise is less.
+#include "render/harness.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+using compiler::EmissiveLights;
+
+using Double3 = std::array<double, 3>;
+
+struct Ways {
+    EmissiveLights emissive = EmissiveLights::On;
+    std::optional<std::uint32_t> lights = 1;
+    std::uint32_t bounces = 1;
+    bool traces = true;  // effects send rays, which find emissive surfaces by chance
+    std::uint32_t strategies = package::kStrategyUber;
+    package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
+};
+
+compiler::CompileSettings settingsOf(const Ways& ways) {
+    compiler::CompileSettings settings;
+    settings.strategies = ways.strategies;
+    settings.shadows = ways.shadows;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.effects = {false, compiler::builtinEffects({"shadow"})};
+    settings.effects.named |= ways.traces ? compiler::builtinEffects({"reflection", "indirect-diffuse"}) : 0;
+    settings.effects.maxReflectionRoughness = 1.0F;
+    settings.plan.keys.alpha = package::AlphaPolicy::Stochastic;
+    settings.emissiveLights = ways.emissive;
+    settings.lightSamples = ways.lights;
+    settings.maxBounces = ways.bounces;
+    // No ray of an effect brings what compensation adds, so that chance would not find it.
+    settings.energyCompensation = false;
+    settings.textureLod = compiler::TextureLod::Mip0;
+    return settings;
+}
+
+void noLights(scene_view::SceneViewData& data) {
+    data.lights.clear();
+}
+
+LoadedScene load(const gltf::Scene& scene, const Ways& ways) {
+    return LoadedScene(scene, settingsOf(ways), noLights);
+}
+
+RenderSetup setupOf(const gltf::Scene& scene, std::uint32_t samples, std::uint32_t seed,
+                    std::uint32_t height = 12) {
+    RenderSetup setup = defaultSetup(scene, 16, height);
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    setup.frame.maxReflectionRoughness = 1.0F;
+    setup.samples = samples;
+    setup.frame.seed = seed;
+    return setup;
+}
+
+LinearImage render(const LoadedScene& scene, const RenderSetup& setup, const Ways& ways = {}) {
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.bounces = ways.bounces;
+    return scene.render(options, setup);
+}
+
+materials::Material matte(float albedo) {
+    materials::Material material;
+    material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 1.0F;
+    material["specularFactor"] = 0.0F;
+    return material;
+}
+
+// A black surface that emits light.
+materials::Material lamp(gltf::Float3 color, float strength) {
+    materials::Material material = matte(0.0F);
+    material["emissiveFactor"] = {color[0], color[1], color[2]};
+    material["emissiveStrength"] = strength;
+    return material;
+}
+
+double meanOf(const LinearImage& image) {
+    double sum = 0.0;
+    for (const auto& pixel : image.pixels) {
+        sum += pixel[0] + pixel[1] + pixel[2];
+    }
+    return sum / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+double squaredDifference(const LinearImage& image, const LinearImage& reference) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
+            sum += difference * difference;
+        }
+    }
+    return sum;
+}
+
+// The mean of pictures with different seeds, and its standard error.
+struct Estimate {
+    double mean = 0.0;
+    double error = 0.0;
+};
+
+Estimate estimate(const LoadedScene& scene, const gltf::Scene& source, const Ways& ways,
+                  std::uint32_t samples) {
+    constexpr int kSeeds = 6;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        const double mean = meanOf(render(scene, setupOf(source, samples, 20 + seed), ways));
+        sum += mean;
+        squares += mean * mean;
+    }
+    const double mean = sum / kSeeds;
+    return {mean, std::sqrt(std::max(squares / kSeeds - mean * mean, 0.0) / (kSeeds - 1))};
+}
+
+void expectSameMean(const Estimate& a, const Estimate& b, const std::string& what) {
+    std::printf("%s: %.5f ± %.5f, expected %.5f ± %.5f\n", what.c_str(), a.mean, a.error, b.mean, b.error);
+    EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.error, b.error) + 1e-4 * b.mean) << what;
+    EXPECT_GT(b.mean, 1e-3) << what;
+}
+
+Double3 minus(const Double3& a, const Double3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+double dotOf(const Double3& a, const Double3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// The irradiance that a polygon of radiance 1 brings to a surface which sees all of it: Lambert's formula,
+// 1/2 Σ θ n·Γ over the edges, with the angle θ that an edge fills and the normal Γ of that angle's plane.
+double polygonIrradiance(const Double3& point, const Double3& normal, const std::vector<Double3>& corners) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Double3 a = minus(corners[i], point);
+        const Double3 b = minus(corners[(i + 1) % corners.size()], point);
+        const Double3 cross{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+        const double length = std::sqrt(dotOf(cross, cross));
+        sum += std::atan2(length, dotOf(a, b)) * dotOf(normal, cross) / length;
+    }
+    return 0.5 * std::abs(sum);
+}
+
+// A wall at z = -4 below a lamp that faces down.
+TEST(EmissiveLights, AQuadLightsAWallByItsFormFactor) {
+    constexpr double kAlbedo = 0.5;
+    constexpr double kRadiance = 3.0;
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, matte(kAlbedo)), {-8, -8, -4}, {16, 0, 0},
+                                               {0, 16, 0})));
+    // Its solid angle is large for some pixels, and small for others.
+    const std::vector<Double3> corners{{-1, 0.5, -3.8}, {1, 0.5, -3.8}, {1, 0.5, -2.6}, {-1, 0.5, -2.6}};
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp({1, 1, 1}, kRadiance)),
+                                               {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F})));
+    for (const bool traces : {false, true}) {
+        for (const std::uint32_t lights : {0U, 1U}) {
+            const Ways ways{EmissiveLights::On, lights, 1, traces};
+            const LoadedScene loaded = load(scene, ways);
+            ASSERT_TRUE(loaded.ok());
+            // A choice of one triangle has noise of its own.
+            const RenderSetup setup = setupOf(scene, lights == 0 ? 256 : 1024, 3, 16);
+            const LinearImage image = loaded.render(package::kStrategyUber, setup);
+            ASSERT_FALSE(image.pixels.empty());
+            double worst = 0.0;
+            double sum = 0.0;
+            double expected = 0.0;
+            // The lower half, which the lamp does not hide.
+            for (std::uint32_t y = 9; y < 16; ++y) {
+                for (std::uint32_t x = 0; x < 16; ++x) {
+                    double pixel = 0.0;
+                    for (int i = 0; i < 16; ++i) {
+                        const double u = (x + (i % 4 + 0.5) / 4.0) / 8.0 - 1.0;
+                        const double v = 1.0 - (y + (i / 4 + 0.5) / 4.0) / 8.0;
+                        pixel += polygonIrradiance({4.0 * u, 4.0 * v, -4.0}, {0, 0, 1}, corners) / 16.0;
+                    }
+                    pixel *= kRadiance * kAlbedo / std::numbers::pi;
+                    const double found = image.pixels[y * 16 + x][1];
+                    worst = std::max(worst, std::abs(found / pixel - 1.0));
+                    sum += found;
+                    expected += pixel;
+                }
+            }
+            std::printf("rays %d, lights %u: mean off by %.5f, worst pixel by %.4f\n", traces ? 1 : 0, lights,
+                        sum / expected - 1.0, worst);
+            EXPECT_NEAR(sum, expected, 4e-3 * expected);
+            EXPECT_LT(worst, 0.05);
+        }
+    }
+}
+
+// A floor, a glossy wall, a sheet that lets light through, and two lamps: a textured one that shines on both
+// sides, of which half is black, and a small one that shines down and is partly clear.
+gltf::Scene litRoom() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material glossy = mirrorMaterial();
+    glossy["roughnessFactor"] = 0.45F;
+    materials::Material sheet = matte(0.3F);
+    sheet["diffuseTransmissionFactor"] = 0.5F;
+    sheet.doubleSided = true;
+    materials::Material panel = lamp({1.0F, 0.8F, 0.5F}, 2.0F);
+    panel.doubleSided = true;
+    std::vector<std::uint8_t> texels;
+    for (int i = 0; i < 16; ++i) {
+        const std::uint8_t value = i % 4 < 2 ? 0 : i % 3 == 0 ? 255 : 160;
+        texels.insert(texels.end(), {value, value, 200, 255});
+        texels[texels.size() - 2] = value == 0 ? 0 : 200;
+    }
+    panel.texture("emissiveTexture").texture = addTexture(scene, 4, 4, texels);
+    materials::Material small = lamp({0.5F, 0.6F, 1.0F}, 30.0F);
+    small.alphaMode = materials::AlphaMode::Blend;
+    small["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 0.7F};
+    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+                         gltf::Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    };
+    add(matte(0.6F), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
+    add(glossy, {-4, -1, -5}, {8, 0, 0}, {0, 5, 0});
+    add(sheet, {1, -0.8F, -2.5F}, {1, 0, -1}, {0, 1.2F, 0});
+    // The camera sees neither lamp, so that their own pictures add no noise.
+    add(panel, {-1.5F, 2, -1.5F}, {1.2F, 0, 0.4F}, {0, 0.6F, 0.5F});
+    add(small, {0.9F, 2.2F, -1.2F}, {0.3F, 0, 0}, {0, 0, 0.3F});
+    return scene;
+}
+
+// With one bounce, hits take the light of lamps that two bounces find by chance.
+TEST(EmissiveLights, TheMeanIsThatOfChance) {
+    const gltf::Scene scene = litRoom();
+    const Ways chance{EmissiveLights::Off, 0, 2};
+    const LoadedScene byChance = load(scene, chance);
+    ASSERT_TRUE(byChance.ok());
+    EXPECT_EQ(byChance.package().emission(), nullptr);
+    const Estimate expected = estimate(byChance, scene, chance, 512);
+    for (const std::uint32_t lights : {0U, 1U}) {
+        const Ways ways{EmissiveLights::On, lights, 1};
+        const LoadedScene sampled = load(scene, ways);
+        ASSERT_TRUE(sampled.ok());
+        EXPECT_NE(sampled.package().emission(), nullptr);
+        expectSameMean(estimate(sampled, scene, ways, 64), expected, std::to_string(lights) + " lights");
+    }
+    // Three bounces by chance are two with samples.
+    const Ways further{EmissiveLights::Off, 0, 3};
+    const LoadedScene third = load(scene, further);
+    const Ways ways{EmissiveLights::On, 1, 2};
+    const LoadedScene sampled = load(scene, ways);
+    ASSERT_TRUE(third.ok() && sampled.ok());
+    expectSameMean(estimate(sampled, scene, ways, 64), estimate(third, scene, further, 512), "two bounces");
+}
+
+// Whether a ray stops at alphaMode BLEND depends on its last bits, so the lamps are opaque here.
+TEST(EmissiveLights, StrategiesAgree) {
+    gltf::Scene scene = litRoom();
+    for (materials::Material& material : scene.materials) {
+        material.alphaMode = materials::AlphaMode::Opaque;
+    }
+    std::optional<LinearImage> reference;
+    for (const package::ShadowPlacement shadows :
+         {package::ShadowPlacement::Inline, package::ShadowPlacement::Deferred}) {
+        const bool isInline = shadows == package::ShadowPlacement::Inline;
+        const Ways ways{EmissiveLights::On, 2, 2, true, package::kAllStrategies, shadows};
+        compiler::CompileSettings settings = settingsOf(ways);
+        settings.strategies = isInline ? package::kAllStrategies : std::uint32_t{package::kStrategyUber};
+        settings.tracers = package::kAllTracers;
+        settings.plan.merge = compiler::MergePolicy::None;
+        const LoadedScene loaded(scene, settings, noLights);
+        ASSERT_TRUE(loaded.ok());
+        for (const package::Strategy strategy : package::kStrategies) {
+            for (const package::Tracer tracer : package::kTracers) {
+                if ((sharedContext().handles().tracers & tracer) == 0 ||
+                    (settings.strategies & strategy) == 0 ||
+                    (package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {
+                    continue;
+                }
+                RendererOptions options;
+                options.strategy = strategy;
+                options.tracer = tracer;
+                options.bounces = ways.bounces;
+                const LinearImage image = loaded.render(options, setupOf(scene, 4, 1));
+                ASSERT_FALSE(image.pixels.empty());
+                reference = reference ? reference : image;
+                expectSameImage(
+                    image, *reference,
+                    std::string(package::nameOf(strategy)) + " with " + std::string(package::nameOf(tracer)));
+            }
+        }
+    }
+}
+
+// One lamp is moved, and another one changes its shape.
+TEST(EmissiveLights, LampsThatMoveAreFollowed) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    const int shining = addMaterial(scene, lamp({1, 1, 1}, 8.0F));
+    addInstance(
+        scene, addMesh(scene, makeQuad(addMaterial(scene, matte(0.5F)), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8})));
+    addInstance(scene, addMesh(scene, makeQuad(shining, {-1.5F, 0.2F, -4}, {0.6F, 0, 0}, {0, 0, 0.6F})));
+    gltf::Primitive sheet = makeQuad(shining, {1, -0.5F, -4}, {0.5F, 0, 0}, {0, 0.5F, 0});
+    gltf::Scene still = scene;
+    sheet.targets.resize(1);
+    gltf::Primitive bent = sheet;
+    for (std::size_t i = 0; i < sheet.positions.size(); ++i) {
+        const gltf::Float3 change{-0.4F, 0.3F * static_cast<float>(i), 0.5F};
+        sheet.targets[0].positions.push_back(change);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            bent.positions[i][axis] += change[axis];
+        }
+    }
+    sheet.normals.clear();
+    bent.normals.clear();
+    bent.targets.clear();
+    addInstance(still, addMesh(still, bent));
+    addInstance(scene, addMesh(scene, sheet));
+    scene.meshes.back().weights = {0.0};
+    scene.nodes.back().weights = {0.0};
+    for (const std::uint32_t lights : {0U, 1U}) {
+        const Ways ways{EmissiveLights::On, lights, 1, false};
+        const LoadedScene expected = load(still, ways);
+        ASSERT_TRUE(expected.ok());
+        std::vector<InstanceView> instances;
+        const LoadedScene moving(scene, settingsOf(ways), [&](scene_view::SceneViewData& data) {
+            data.lights.clear();
+            data.moves = true;
+            instances = data.instances;
+            data.instances[1].objectToWorld[3] += 50.0F;
+        });
+        ASSERT_TRUE(moving.ok());
+        constexpr std::array<float, 1> kBent{1.0F};
+        instances[2].morphWeights = kBent;
+        const Status moved = moving.gpuScene().updateAndWait({instances, {}});
+        ASSERT_TRUE(moved) << toString(moved.error());
+        expectSameMean(estimate(moving, scene, ways, 32), estimate(expected, still, ways, 32), "moved");
+        instances[1].visible = instances[2].visible = false;
+        ASSERT_TRUE(moving.gpuScene().updateAndWait({instances, {}}));
+        EXPECT_EQ(meanOf(render(moving, setupOf(scene, 2, 1))), 0.0) << "hidden";
+    }
+}
+
+// At as many samples, the noise is a fraction of that of chance, and falls with their root.
+TEST(EmissiveLights, TheNoiseIsLess) {
+    const gltf::Scene scene = litRoom();
+    const Ways chance{EmissiveLights::Off, 0, 2};
+    const Ways ways{EmissiveLights::On, 1, 1};
+    const LoadedScene byChance = load(scene, chance);
+    const LoadedScene sampled = load(scene, ways);
+    ASSERT_TRUE(byChance.ok() && sampled.ok());
+    const LinearImage reference = render(sampled, setupOf(scene, 1024, 1), ways);
+    ASSERT_FALSE(reference.pixels.empty());
+    std::array<double, 3> errors{};
+    for (int seed = 0; seed < 4; ++seed) {
+        errors[0] += squaredDifference(render(byChance, setupOf(scene, 64, 30 + seed), chance), reference);
+        errors[1] += squaredDifference(render(sampled, setupOf(scene, 64, 30 + seed), ways), reference);
+        errors[2] += squaredDifference(render(sampled, setupOf(scene, 4, 30 + seed), ways), reference);
+    }
+    std::printf("squared error: by chance %.4g, sampled %.4g, at a sixteenth of the samples %.4g\n",
+                errors[0], errors[1], errors[2]);
+    EXPECT_LT(errors[1], 0.1 * errors[0]);
+    const double slope = 0.5 * std::log2(errors[1] / errors[2]) / 4.0;
+    EXPECT_LT(slope, -0.4);
+    EXPECT_GT(slope, -0.75);
+}
+
+// A package without emissive lights has none of their code, and `auto` decides by the bounces.
+TEST(EmissiveLights, AutoDecidesByTheBounces) {
+    const gltf::Scene scene = litRoom();
+    compiler::CompileSettings settings = settingsOf({EmissiveLights::Auto, 1, 1});
+    const auto emissive = [&](const gltf::Scene& compiled) {
+        const auto plan = compiler::planPackage({&compiled, 1}, settings);
+        return plan && std::ranges::any_of(plan->modules, [](const compiler::PlannedModule& module) {
+                   return module.text.find("#define GLINT_EMISSIVE_LIGHTS 1") != std::string::npos;
+               });
+    };
+    EXPECT_FALSE(emissive(scene));
+    settings.emissiveLights = EmissiveLights::On;
+    EXPECT_TRUE(emissive(scene));
+    gltf::Scene dark = scene;
+    for (materials::Material& material : dark.materials) {
+        material["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
+    }
+    EXPECT_FALSE(emissive(dark));
+    settings.emissiveLights = EmissiveLights::Auto;
+    settings.maxBounces = 2;
+    EXPECT_TRUE(emissive(scene));
+    settings.effects.named = compiler::builtinEffects({"indirect-diffuse"});
+    EXPECT_FALSE(emissive(scene)) << "without shadow rays";
+    settings.emissiveLights = EmissiveLights::On;
+    const auto refused = compiler::planPackage({&scene, 1}, settings);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().id, "emissive-lights");
+}
+
+}  // namespace
