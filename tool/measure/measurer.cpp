@@ -126,6 +126,9 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
         }
         keep(all, round);
     }
+    if (!baseIsKnown_) {
+        base_.errorOfMean = image::measureErrors(baseMean_.mean(), truth_.image, truth_.exposure);
+    }
     baseIsKnown_ = true;
     return okStatus();
 }
@@ -173,6 +176,9 @@ void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
         point.hitRatios.push_back(ratio(exposure.hitMs, baseHitMs));
         if (i == 0 && baseIsKnown_) {
             continue;  // the same seeds give the same pictures
+        }
+        if (i == 0) {
+            baseMean_.add(exposure.image);
         }
         point.errors.push_back(errors[i]);
         point.errorRatios.push_back(

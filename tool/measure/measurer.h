@@ -2,6 +2,8 @@
 // picture, in random order.
 #pragma once
 
+#include "image/error.h"
+
 #include <glint/measure/bed.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/point.h>
@@ -45,7 +47,8 @@ public:
 private:
     Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth,
              BenchPoint& base)
-        : observer_(observer), bed_(bed), options_(options), truth_(truth), base_(base) {}
+        : observer_(observer), bed_(bed), options_(options), truth_(truth), base_(base),
+          baseMean_(truth.image.width, truth.image.height) {}
 
     // A configuration on the device, and its picture of the current round.
     struct Entry {
@@ -66,6 +69,7 @@ private:
     BenchPoint& base_;
     std::vector<Entry> baseEntry_;  // the one of the default
     bool baseIsKnown_ = false;      // its errors
+    image::MeanImage baseMean_;     // of its pictures, until they are known
     std::uint64_t batches_ = 0;
 };
 

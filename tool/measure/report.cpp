@@ -102,6 +102,7 @@ base::Json settingToJson(const Setting& setting) {
             {"option", "--" + setting.name},
             {"stage", setting.isCompiled ? "compile" : "render"},
             {"approximates", setting.approximates},
+            {"exact", hasExactValue(setting) ? base::Json(setting.exact) : base::Json(nullptr)},
             {"what", setting.what},
             {"default", setting.base},
             {"values", setting.values},
@@ -111,6 +112,8 @@ base::Json settingToJson(const Setting& setting) {
 base::Json referenceToJson(const BenchReport& report) {
     const Reference& reference = report.reference;
     return {{"image", kReferenceImage},
+            {"transport", reference.isFull ? "full" : "same"},
+            {"what", describeReference(report)},
             {"samples", reference.samples},
             {"relativeError", reference.relativeError},
             {"target", reference.target},
@@ -155,6 +158,26 @@ base::Json adviceToJson(const BenchReport& report) {
     return object;
 }
 
+base::Json errorPartsToJson(const BenchReport& report) {
+    const ErrorParts& all = report.errorParts;
+    base::Json parts = base::Json::array();
+    for (const ErrorPart& part : all.parts) {
+        parts.push_back({{"setting", part.setting},
+                         {"from", part.from},
+                         {"to", part.to},
+                         {"point", part.point},
+                         {"removed", toJson(part.removed)}});
+    }
+    base::Json object{{"parts", std::move(parts)}, {"exact", nullptr}, {"noise", nullptr}, {"rest", all.rest}};
+    if (all.exact) {
+        object["exact"] = {{"point", *all.exact}, {"removed", toJson(all.exactRemoved)}};
+    }
+    if (all.noise) {
+        object["noise"] = *all.noise;
+    }
+    return object;
+}
+
 base::Json strategiesToJson(const BenchReport& report) {
     const StrategyReport& strategies = report.strategies;
     base::Json rows = base::Json::array();
@@ -181,6 +204,20 @@ base::Json strategiesToJson(const BenchReport& report) {
 }
 
 }  // namespace
+
+std::string describeReference(const BenchReport& report) {
+    compiler::Configuration given;
+    for (const auto& [name, value] : report.base) {
+        const compiler::Descriptor& row = *compiler::sweptSetting(name);
+        if (row.bench.isTransport) {
+            given[name] = valueOf(name, report.reference.configuration, report.base);
+        }
+    }
+    return fmt::format("{} ({}), with every light and {} approximation off",
+                       report.reference.isFull ? "all of light transport" : "the default's transport",
+                       base::shellWords(compiler::wordsOf(given)),
+                       report.reference.isFull ? "every" : "every other");
+}
 
 Interval timeOf(const BenchReport& report, std::size_t point) {
     const double base = measure::intervalOf(report.points.front().times).median;
@@ -269,6 +306,7 @@ base::Json toJson(const BenchReport& report) {
             {"points", std::move(points)},
             {"front", report.front},
             {"advice", adviceToJson(report)},
+            {"errorParts", errorPartsToJson(report)},
             {"strategies", strategiesToJson(report)}};
 }
 

@@ -40,6 +40,28 @@ void join(Round& all, const Round& round) {
     all.rays = rays;
 }
 
+std::vector<RoundCase> casesOfPaths(std::vector<RoundCase> cases) {
+    for (RoundCase& one : cases) {
+        one.instructions *= kPathCode;
+    }
+    return cases;
+}
+
+// Adds the bounces of the rays that a round's hits send. Hits of the last one send none.
+void addBounces(std::vector<Round>& rounds, Round round, std::uint32_t bounces) {
+    for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
+        constexpr std::uint32_t kFirstOfRoulette = 3;
+        round.rays *= round.hitShare * (bounce > kFirstOfRoulette ? kRouletteShare : 1.0);
+        round.coherence = std::min(round.coherence, kPathCoherence);
+        round.scatter = 1.0 - round.coherence;
+        round.bounce = bounce;
+        if (round.rays < 1.0) {
+            return;
+        }
+        rounds.push_back(round);
+    }
+}
+
 }  // namespace
 
 std::vector<CaseFeatures> caseFeatures(const Plan& plan) {
@@ -97,7 +119,7 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
             effect.kind != package::EffectKind::Rays) {
             continue;
         }
-        Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
+        Round round{0.0, kRayHitShare, 0.0, 0.0, shape.bounces > 1 ? casesOfPaths(cases) : cases};
         double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const materials::Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
@@ -118,6 +140,10 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
         } else {
             rounds.push_back(std::move(round));
         }
+    }
+    const std::size_t first = rounds.size();
+    for (std::size_t i = 0; i < first; ++i) {
+        addBounces(rounds, rounds[i], shape.bounces);
     }
     return rounds;
 }

@@ -166,6 +166,32 @@ std::string skippedText(const measure::BenchReport& report) {
     return text;
 }
 
+std::string shareText(const Interval& share) {
+    return fmt::format("{} ({:.1f} to {:.1f})", percentText(share.median), 100.0 * share.low,
+                       100.0 * share.high);
+}
+
+// Returns what each approximation's exact value takes away from the default's error, and at what time.
+std::string errorPartsTable(const measure::BenchReport& report) {
+    const measure::ErrorParts& all = report.errorParts;
+    Rows rows{{"exact value alone", "share of the error", "ratio of time", std::string(nameOf(report.metric))}};
+    const auto add = [&](const std::string& name, const Interval& removed, std::size_t point) {
+        rows.push_back({name, shareText(removed), ratioText(report.points[point]),
+                        errorText(report, report.points[point])});
+    };
+    for (const measure::ErrorPart& part : all.parts) {
+        add(fmt::format("{} {} (not {})", part.setting, part.to, part.from), part.removed, part.point);
+    }
+    if (all.noise) {
+        rows.push_back({"any number of samples", percentText(*all.noise), "", ""});
+    }
+    rows.push_back({"the rest", percentText(all.rest), "", ""});
+    if (all.exact) {
+        add("all of these, same samples", all.exactRemoved, *all.exact);
+    }
+    return formatTable(rows);
+}
+
 std::string adviceText(const measure::BenchReport& report) {
     const measure::BenchAdvice& advice = *report.advice;
     std::string text = "\nAdvice\n" + advice.why + "\n";
@@ -199,8 +225,9 @@ std::string toText(const measure::BenchReport& report) {
         {{"scene", fmt::format("{}, {} x {}, camera {}", report.scene.file, report.scene.width,
                                report.scene.height, report.scene.camera)},
          {"device", fmt::format("{}, {}", report.machine.device, report.machine.driver)},
-         {"reference",
-          fmt::format("{} samples{}, within {:.2g} % ({})", reference.samples,
+         {"reference", describeReference(report)},
+         {"its samples",
+          fmt::format("{}{}, within {:.2g} % ({})", reference.samples,
                       reference.cached ? ", cached" : "", 100.0 * reference.relativeError,
                       reference.reached ? fmt::format("asked for {:.2g} %", 100.0 * reference.target)
                                         : fmt::format("NOT the {:.2g} % asked for: give more --reference-spp",
@@ -215,6 +242,8 @@ std::string toText(const measure::BenchReport& report) {
     if (const std::string skipped = skippedText(report); !skipped.empty()) {
         text += "\nNot tried\n" + skipped;
     }
+    text += "\nWhat the default's error consists of: the share that goes with each exact value\n" +
+            errorPartsTable(report);
     text += "\nPareto front, from the fastest\n" + frontTable(report);
     if (!report.strategies.why.empty()) {
         text += "\nStrategies: from the list of rays to their shaded hits\n" +

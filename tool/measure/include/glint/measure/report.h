@@ -19,6 +19,7 @@ namespace glint::measure {
 // accuracy needs.
 struct Reference {
     LinearImage image;
+    bool isFull = true;                     // has all of light transport
     compiler::Configuration configuration;  // over the base
     std::uint32_t samples = 0;              // a pixel
     double exposure = 0.0;                  // stops: automatic, for every measure and picture of the bench
@@ -64,6 +65,32 @@ struct StrategyReport {
 // `base` is the strategy of the default, which is the first of `points`.
 StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base);
 
+// An approximation of the default, and what is gained by its exact value alone. Shares are of the default's
+// error, in a measure that adds up (additive()).
+struct ErrorPart {
+    std::string setting;
+    std::string from;       // the default's value
+    std::string to;         // the reference's
+    std::size_t point = 0;  // index of the one with that value
+    Interval removed;       // share; below 0: the error grows
+};
+
+// Which part of the default's error is which approximation.
+struct ErrorParts {
+    std::vector<ErrorPart> parts;      // the largest first
+    std::optional<std::size_t> exact;  // index of the point that has all these values at once
+    Interval exactRemoved;             // share that it takes away
+    // Share that any number of samples would take away; absent if there was one round.
+    std::optional<double> noise;
+    // What is left of 1 without all these. Above 0 it is what only several exact values together take away,
+    // below 0 the parts overlap.
+    double rest = 0.0;
+};
+
+// `points` has the default first. Settings of which no point has the exact value alone are left out.
+ErrorParts partsOfError(std::span<const BenchPoint> points, std::span<const Setting> settings,
+                        ErrorMetric metric);
+
 struct BenchScene {
     std::string file;
     std::uint64_t triangles = 0;
@@ -102,8 +129,12 @@ struct BenchReport {
     std::vector<BenchPoint> points;  // the default first
     std::vector<std::size_t> front;  // indices of points, from the fastest
     StrategyReport strategies;
+    ErrorParts errorParts;
     std::optional<BenchAdvice> advice;
 };
+
+// Returns "all of light transport (--bounces unlimited ...)": what the reference is, in words.
+std::string describeReference(const BenchReport& report);
 
 // Returns milliseconds of a picture: the point's ratio times the default's median.
 Interval timeOf(const BenchReport& report, std::size_t point);
