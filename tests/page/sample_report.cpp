@@ -352,8 +352,7 @@ SamplePage sparsePage() {
     report["front"] = {0};
     report["advice"] = nullptr;
     report["strategies"] = nullptr;
-    report["errorParts"] = {
-        {"parts", Json::array()}, {"exact", nullptr}, {"noise", nullptr}, {"rest", 1.0}};
+    report["errorParts"] = {{"parts", Json::array()}, {"exact", nullptr}, {"noise", nullptr}, {"rest", 1.0}};
     report["commit"] = "unknown";
     report["reference"]["image"] = nullptr;
     return page;

@@ -291,7 +291,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitDone;
     }
     const compiler::EffectPlan effects = automaticEffects(scenes);
-    const Result<compiler::StrategyAdvice> advice = advise(*costs, planned, effects, arguments.settings.compile.maxBounces);
+    const Result<compiler::StrategyAdvice> advice =
+        advise(*costs, planned, effects, arguments.settings.compile.maxBounces);
     if (!advice) {
         console.report(advice.error());
         return kExitFailed;

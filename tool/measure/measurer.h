@@ -47,7 +47,11 @@ public:
 private:
     Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth,
              BenchPoint& base)
-        : observer_(observer), bed_(bed), options_(options), truth_(truth), base_(base),
+        : observer_(observer),
+          bed_(bed),
+          options_(options),
+          truth_(truth),
+          base_(base),
           baseMean_(truth.image.width, truth.image.height) {}
 
     // A configuration on the device, and its picture of the current round.

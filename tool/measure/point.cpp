@@ -9,8 +9,7 @@ namespace glint::measure {
 namespace {
 
 constexpr std::array<std::string_view, 4> kMetrics{"relMse", "trimmed", "rmse", "flip"};
-constexpr std::array<std::string_view, 6> kKinds{"default", "single", "pair",
-                                                 "search",  "package", "exact"};
+constexpr std::array<std::string_view, 6> kKinds{"default", "single", "pair", "search", "package", "exact"};
 
 }  // namespace
 

@@ -168,7 +168,8 @@ base::Json errorPartsToJson(const BenchReport& report) {
                          {"point", part.point},
                          {"removed", toJson(part.removed)}});
     }
-    base::Json object{{"parts", std::move(parts)}, {"exact", nullptr}, {"noise", nullptr}, {"rest", all.rest}};
+    base::Json object{
+        {"parts", std::move(parts)}, {"exact", nullptr}, {"noise", nullptr}, {"rest", all.rest}};
     if (all.exact) {
         object["exact"] = {{"point", *all.exact}, {"removed", toJson(all.exactRemoved)}};
     }

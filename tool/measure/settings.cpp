@@ -35,8 +35,8 @@ bool isNumber(const std::string& text) {
     return !text.empty() && text.find_first_not_of("0123456789.e-") == std::string::npos;
 }
 
-// Inserts a value if it is missing: a number by its size, behind a word at the front ("off", "all") and before
-// one at the end ("unlimited"); a word at the front.
+// Inserts a value if it is missing: a number by its size, behind a word at the front ("off", "all") and
+// before one at the end ("unlimited"); a word at the front.
 void insertValue(std::vector<std::string>& values, const std::string& value) {
     if (std::ranges::find(values, value) != values.end()) {
         return;
@@ -45,15 +45,14 @@ void insertValue(std::vector<std::string>& values, const std::string& value) {
         return std::strtod(other.c_str(), nullptr) < std::strtod(value.c_str(), nullptr);
     };
     auto at = values.begin();
-    while (isNumber(value) && at != values.end() &&
-           (isNumber(*at) ? isBefore(*at) : at == values.begin())) {
+    while (isNumber(value) && at != values.end() && (isNumber(*at) ? isBefore(*at) : at == values.begin())) {
         ++at;
     }
     values.insert(at, value);
 }
 
-// Returns why the setting changes nothing: the default lacks the effects that it belongs to. A higher limit of
-// roughness may call for reflections itself, and in a full reference it does.
+// Returns why the setting changes nothing: the default lacks the effects that it belongs to. A higher limit
+// of roughness may call for reflections itself, and in a full reference it does.
 std::string withoutEffects(const compiler::Descriptor& row, compiler::BenchFacts facts) {
     if (row.name == kMaxRoughness && facts.fullTransport) {
         facts.effects = facts.effectsOfAnyRoughness;
@@ -110,8 +109,7 @@ std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compil
 }
 
 bool hasExactValue(const Setting& setting) {
-    return !setting.exact.empty() &&
-           std::ranges::find(setting.values, setting.exact) != setting.values.end();
+    return !setting.exact.empty() && std::ranges::find(setting.values, setting.exact) != setting.values.end();
 }
 
 compiler::Configuration exactValues(const compiler::BenchFacts& facts) {

@@ -3,6 +3,7 @@
 #include "plan/cost.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace glint::compiler {
@@ -49,9 +50,12 @@ std::vector<RoundCase> casesOfPaths(std::vector<RoundCase> cases) {
 
 // Adds the bounces of the rays that a round's hits send. Hits of the last one send none.
 void addBounces(std::vector<Round>& rounds, Round round, std::uint32_t bounces) {
+    constexpr std::uint32_t kFree = 3;  // bounces without roulette
     for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
-        constexpr std::uint32_t kFirstOfRoulette = 3;
-        round.rays *= round.hitShare * (bounce > kFirstOfRoulette ? kRouletteShare : 1.0);
+        const double kept = bounce <= kFree       ? 1.0
+                            : bounce == kFree + 1 ? std::pow(kPathAlbedo, kFree)
+                                                  : kPathAlbedo;
+        round.rays *= round.hitShare * kept;
         round.coherence = std::min(round.coherence, kPathCoherence);
         round.scatter = 1.0 - round.coherence;
         round.bounce = bounce;

@@ -37,9 +37,11 @@ inline constexpr float kMirrorRoughness = 0.05F;
 inline constexpr double kPathCoherence = 0.1;
 // The shaders of packages with paths also choose and weigh the next ray over all lobes of a hit. Instructions
 // of a case's SPIR-V over those in a package for one bounce (docs/performance.md says how it was measured).
-inline constexpr double kPathCode = 2.0;
-// The share of the paths that Russian roulette lets go on from the third bounce on.
-inline constexpr double kRouletteShare = 0.6;
+inline constexpr double kPathCode = 1.9;
+// The share of light that a bounce leaves. Russian roulette keeps a path with the probability of its
+// throughput: after three bounces that of all three, and of one after each bounce that follows
+// (docs/paths.md).
+inline constexpr double kPathAlbedo = 0.5;
 
 struct FrameShape {
     double pixels = 1920.0 * 1080.0;  // times samples; the default is for an unknown size

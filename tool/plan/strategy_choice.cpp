@@ -49,9 +49,9 @@ std::string factsText(const FrameFacts& facts) {
             ? std::string()
             : fmt::format(" in {} bounces, {:.0f} % of them after the first, where neighbours go everywhere",
                           facts.bounces, 100.0 * facts.laterRays / std::max(facts.rays, 1e-12));
-    std::string text = fmt::format("{} rays{}, {} case{}, {} instructions a hit, hits of neighbouring rays {}",
-                                   whole(facts.rays), paths, facts.cases, facts.cases == 1 ? "" : "s",
-                                   whole(facts.instructions), alike);
+    std::string text = fmt::format(
+        "{} rays{}, {} case{}, {} instructions a hit, hits of neighbouring rays {}", whole(facts.rays), paths,
+        facts.cases, facts.cases == 1 ? "" : "s", whole(facts.instructions), alike);
     if (facts.cases > 1) {
         text +=
             fmt::format(": a subgroup of unsorted hits runs {:.1f} cases one after another", facts.casesRun);

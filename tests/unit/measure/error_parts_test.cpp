@@ -35,7 +35,10 @@ BenchPoint pointOf(compiler::Configuration configuration, double bias, double ba
 }
 
 Setting settingOf(std::string name, std::string base, std::string exact) {
-    Setting setting{.name = std::move(name), .approximates = true, .base = std::move(base)};
+    Setting setting;
+    setting.name = std::move(name);
+    setting.approximates = true;
+    setting.base = std::move(base);
     setting.values = {setting.base, exact};
     setting.exact = std::move(exact);
     return setting;
@@ -45,8 +48,7 @@ Setting settingOf(std::string name, std::string base, std::string exact) {
 std::vector<BenchPoint> world(ErrorMetric metric) {
     constexpr double kBias = 0.08;
     std::vector<BenchPoint> points{
-        pointOf({}, kBias, kBias, metric),
-        pointOf({{"texture-lod", "mip0"}}, kBias - 0.01, kBias, metric),
+        pointOf({}, kBias, kBias, metric), pointOf({{"texture-lod", "mip0"}}, kBias - 0.01, kBias, metric),
         pointOf({{"bounces", "unlimited"}}, kBias - 0.05, kBias, metric),
         pointOf({{"alpha", "stochastic"}}, kBias, kBias, metric),
         pointOf({{"alpha", "stochastic"}, {"bounces", "unlimited"}, {"texture-lod", "mip0"}}, 0.0, kBias,
@@ -61,8 +63,7 @@ TEST(ErrorParts, AreWhatEachExactValueTakesAway) {
     skipped.values = {"base"};
     const std::vector<Setting> settings{settingOf("texture-lod", "cones", "mip0"),
                                         settingOf("bounces", "1", "unlimited"),
-                                        settingOf("alpha", "opaque", "stochastic"), skipped,
-                                        {.name = "strategy", .base = "uber", .values = {"uber"}}};
+                                        settingOf("alpha", "opaque", "stochastic"), skipped};
     for (const ErrorMetric metric : {ErrorMetric::RelMse, ErrorMetric::Trimmed, ErrorMetric::Rmse}) {
         const ErrorParts parts = partsOfError(world(metric), settings, metric);
         ASSERT_EQ(parts.parts.size(), 3U);

@@ -174,7 +174,8 @@ std::string shareText(const Interval& share) {
 // Returns what each approximation's exact value takes away from the default's error, and at what time.
 std::string errorPartsTable(const measure::BenchReport& report) {
     const measure::ErrorParts& all = report.errorParts;
-    Rows rows{{"exact value alone", "share of the error", "ratio of time", std::string(nameOf(report.metric))}};
+    Rows rows{
+        {"exact value alone", "share of the error", "ratio of time", std::string(nameOf(report.metric))}};
     const auto add = [&](const std::string& name, const Interval& removed, std::size_t point) {
         rows.push_back({name, shareText(removed), ratioText(report.points[point]),
                         errorText(report, report.points[point])});
@@ -227,8 +228,8 @@ std::string toText(const measure::BenchReport& report) {
          {"device", fmt::format("{}, {}", report.machine.device, report.machine.driver)},
          {"reference", describeReference(report)},
          {"its samples",
-          fmt::format("{}{}, within {:.2g} % ({})", reference.samples,
-                      reference.cached ? ", cached" : "", 100.0 * reference.relativeError,
+          fmt::format("{}{}, within {:.2g} % ({})", reference.samples, reference.cached ? ", cached" : "",
+                      100.0 * reference.relativeError,
                       reference.reached ? fmt::format("asked for {:.2g} %", 100.0 * reference.target)
                                         : fmt::format("NOT the {:.2g} % asked for: give more --reference-spp",
                                                       100.0 * reference.target))},

@@ -47,9 +47,9 @@ struct BenchPoint {
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
     // Of the mean of all rounds' pictures; the default alone has it.
     std::optional<image::ImageErrors> errorOfMean;
-    bool sameImage = true;            // as the default's, bit by bit, in every round
-    LinearImage image;                // of the first round
-    FrameCounters counters;           // of its last sample
+    bool sameImage = true;   // as the default's, bit by bit, in every round
+    LinearImage image;       // of the first round
+    FrameCounters counters;  // of its last sample
     Renderer::Footprint footprint;
     std::uint32_t cases = 0;
     std::string tracer;
