@@ -189,7 +189,8 @@ class Rest(Page):
         self.assertEqual(len(rows), len(parts) + 3)
         for row, part in zip(rows, parts):
             self.assertIn(f"{part['setting']} {part['to']} instead of {part['from']}", row.text)
-            self.assertIn(f"{100 * part['removed']['median']:#.3g} %", row.text)
+            for share in (part["bias"], part["noise"], part["removed"]["median"]):
+                self.assertIn(f"{100 * share:#.3g} %".replace("-", "−"), row.text)
         self.assertIn("all of light transport", self.text("#error-parts-note"))
         rows[-1].find_element("css selector", "button").click()
         self.assertIn("selected", self.point(REPORT["errorParts"]["exact"]["point"]).get_attribute("class"))

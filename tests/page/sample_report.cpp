@@ -222,14 +222,19 @@ void Maker::addErrorParts() {
                          {"from", from},
                          {"to", to},
                          {"point", (*point)["id"]},
-                         {"removed", interval(share, 0.1)}});
+                         {"removed", interval(share, 0.1)},
+                         {"bias", 1.2 * share},
+                         {"noise", -0.2 * share}});
     }
     addPoint("exact", {{"bounces", "unlimited"}, {"max-roughness", "1"}, {"texture-lod", "mip0"}});
-    page_.report["errorParts"] = {
-        {"parts", std::move(parts)},
-        {"exact", {{"point", points.back()["id"]}, {"removed", interval(0.55, 0.05)}}},
-        {"noise", 0.31},
-        {"rest", -0.04}};
+    page_.report["errorParts"] = {{"parts", std::move(parts)},
+                                  {"exact",
+                                   {{"point", points.back()["id"]},
+                                    {"removed", interval(0.55, 0.05)},
+                                    {"bias", 0.7},
+                                    {"noise", -0.15}}},
+                                  {"noise", 0.31},
+                                  {"rest", -0.04}};
 }
 
 Json strategyRow(const char* strategy, double time, double shade, double order) {
@@ -352,7 +357,7 @@ SamplePage sparsePage() {
     report["front"] = {0};
     report["advice"] = nullptr;
     report["strategies"] = nullptr;
-    report["errorParts"] = {{"parts", Json::array()}, {"exact", nullptr}, {"noise", nullptr}, {"rest", 1.0}};
+    report["errorParts"] = {{"parts", Json::array()}, {"exact", nullptr}, {"noise", 0.0}, {"rest", 1.0}};
     report["commit"] = "unknown";
     report["reference"]["image"] = nullptr;
     return page;

@@ -2,8 +2,6 @@
 // picture, in random order.
 #pragma once
 
-#include "image/error.h"
-
 #include <glint/measure/bed.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/point.h>
@@ -47,18 +45,14 @@ public:
 private:
     Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth,
              BenchPoint& base)
-        : observer_(observer),
-          bed_(bed),
-          options_(options),
-          truth_(truth),
-          base_(base),
-          baseMean_(truth.image.width, truth.image.height) {}
+        : observer_(observer), bed_(bed), options_(options), truth_(truth), base_(base) {}
 
     // A configuration on the device, and its picture of the current round.
     struct Entry {
         BenchPoint* point = nullptr;
         Mount mount;
         Exposure exposure;
+        LinearImage mean;  // of its pictures so far
     };
     Result<Entry> mount(BenchPoint& point) const;
     Status measureBatch(std::span<Entry> entries, std::uint64_t seed);
@@ -73,7 +67,6 @@ private:
     BenchPoint& base_;
     std::vector<Entry> baseEntry_;  // the one of the default
     bool baseIsKnown_ = false;      // its errors
-    image::MeanImage baseMean_;     // of its pictures, until they are known
     std::uint64_t batches_ = 0;
 };
 

@@ -158,25 +158,25 @@ base::Json adviceToJson(const BenchReport& report) {
     return object;
 }
 
+base::Json removedToJson(const RemovedError& removed) {
+    return {{"point", removed.point},
+            {"removed", toJson(removed.all)},
+            {"bias", removed.bias},
+            {"noise", removed.noise}};
+}
+
 base::Json errorPartsToJson(const BenchReport& report) {
     const ErrorParts& all = report.errorParts;
     base::Json parts = base::Json::array();
     for (const ErrorPart& part : all.parts) {
-        parts.push_back({{"setting", part.setting},
-                         {"from", part.from},
-                         {"to", part.to},
-                         {"point", part.point},
-                         {"removed", toJson(part.removed)}});
+        base::Json object{{"setting", part.setting}, {"from", part.from}, {"to", part.to}};
+        object.update(removedToJson(part.removed));
+        parts.push_back(std::move(object));
     }
-    base::Json object{
-        {"parts", std::move(parts)}, {"exact", nullptr}, {"noise", nullptr}, {"rest", all.rest}};
-    if (all.exact) {
-        object["exact"] = {{"point", *all.exact}, {"removed", toJson(all.exactRemoved)}};
-    }
-    if (all.noise) {
-        object["noise"] = *all.noise;
-    }
-    return object;
+    return {{"parts", std::move(parts)},
+            {"exact", all.exact ? removedToJson(*all.exact) : base::Json(nullptr)},
+            {"noise", all.noise},
+            {"rest", all.rest}};
 }
 
 base::Json strategiesToJson(const BenchReport& report) {

@@ -31,6 +31,7 @@ BenchPoint pointOf(compiler::Configuration configuration, double bias, double ba
         const double base = valueOf(metric, errorsOf(kNoiseError * noise + baseBias));
         point.errorRatios.push_back(valueOf(metric, point.errors.back()) / base);
     }
+    point.errorOfMean = errorsOf(kNoiseError / std::size(kNoise) + bias);
     return point;
 }
 
@@ -54,7 +55,6 @@ std::vector<BenchPoint> world(ErrorMetric metric) {
         pointOf({{"alpha", "stochastic"}, {"bounces", "unlimited"}, {"texture-lod", "mip0"}}, 0.0, kBias,
                 metric)};
     points.front().kind = PointKind::Default;
-    points.front().errorOfMean = errorsOf(kNoiseError / std::size(kNoise) + kBias);
     return points;
 }
 
@@ -70,15 +70,35 @@ TEST(ErrorParts, AreWhatEachExactValueTakesAway) {
         EXPECT_EQ(parts.parts[0].setting, "bounces");
         EXPECT_EQ(parts.parts[0].from, "1");
         EXPECT_EQ(parts.parts[0].to, "unlimited");
-        EXPECT_EQ(parts.parts[0].point, 2U);
-        EXPECT_NEAR(parts.parts[0].removed.median, 0.5, 0.005);
-        EXPECT_NEAR(parts.parts[1].removed.median, 0.1, 0.001);
-        EXPECT_EQ(parts.parts[2].removed.median, 0.0);
-        EXPECT_NEAR(*parts.noise, 0.2, 1e-9);
-        EXPECT_NEAR(parts.rest, 0.2, 0.01);
-        EXPECT_EQ(parts.exact, 4U);
-        EXPECT_NEAR(parts.exactRemoved.median, 0.8, 0.01);
+        EXPECT_EQ(parts.parts[0].removed.point, 2U);
+        EXPECT_NEAR(parts.parts[0].removed.all.median, 0.5, 0.005);
+        EXPECT_NEAR(parts.parts[0].removed.bias, 0.5, 1e-9);
+        EXPECT_NEAR(parts.parts[0].removed.noise, 0.0, 1e-9);
+        EXPECT_NEAR(parts.parts[1].removed.bias, 0.1, 1e-9);
+        EXPECT_NEAR(parts.parts[2].removed.bias, 0.0, 1e-9);
+        EXPECT_NEAR(parts.noise, 0.2, 1e-9);
+        EXPECT_NEAR(parts.rest, 0.2, 1e-9);
+        ASSERT_TRUE(parts.exact);
+        EXPECT_EQ(parts.exact->point, 4U);
+        EXPECT_NEAR(parts.exact->all.median, 0.8, 0.01);
+        EXPECT_NEAR(parts.exact->bias, 0.8, 1e-9);
     }
+}
+
+// An exact value may add noise: rays in the place of a mean.
+TEST(ErrorParts, TellBiasFromNoise) {
+    std::vector<BenchPoint> points = world(ErrorMetric::Trimmed);
+    BenchPoint& bounces = points[2];
+    for (std::size_t i = 0; i < bounces.errors.size(); ++i) {
+        bounces.errors[i] = errorsOf(5.0 * kNoiseError * kNoise[i] + 0.03);
+        bounces.errorRatios[i] = bounces.errors[i].trimmed / points[0].errors[i].trimmed;
+    }
+    bounces.errorOfMean = errorsOf(5.0 * kNoiseError / std::size(kNoise) + 0.03);
+    const std::vector<Setting> settings{settingOf("bounces", "1", "unlimited")};
+    const RemovedError removed = partsOfError(points, settings, ErrorMetric::Trimmed).parts[0].removed;
+    EXPECT_NEAR(removed.bias, 0.5, 1e-9);
+    EXPECT_NEAR(removed.noise, -0.8, 1e-9);
+    EXPECT_LT(removed.all.median, 0.0);
 }
 
 TEST(ErrorParts, OfOneRoundSayNothingOfNoise) {
@@ -86,7 +106,7 @@ TEST(ErrorParts, OfOneRoundSayNothingOfNoise) {
     points.resize(1);
     points[0].errors.resize(1);
     const ErrorParts parts = partsOfError(points, {}, ErrorMetric::Trimmed);
-    EXPECT_FALSE(parts.noise);
+    EXPECT_EQ(parts.noise, 0.0);
     EXPECT_FALSE(parts.exact);
     EXPECT_TRUE(parts.parts.empty());
     EXPECT_EQ(parts.rest, 1.0);

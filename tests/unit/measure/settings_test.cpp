@@ -134,7 +134,7 @@ TEST(BenchSettings, TryFewerLightsThanThereAre) {
     EXPECT_EQ(named(settingsFor(facts, usual(), false), "lights").values,
               (std::vector<std::string>{"auto", "1", "2", "4"}));
     facts.lights = 1;
-    const measure::Setting& none = named(settingsFor(facts, usual(), false), "lights");
+    const measure::Setting none = named(settingsFor(facts, usual(), false), "lights");
     EXPECT_EQ(none.values, std::vector<std::string>{"auto"});
     EXPECT_FALSE(hasExactValue(none));
 }

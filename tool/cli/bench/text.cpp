@@ -166,29 +166,23 @@ std::string skippedText(const measure::BenchReport& report) {
     return text;
 }
 
-std::string shareText(const Interval& share) {
-    return fmt::format("{} ({:.1f} to {:.1f})", percentText(share.median), 100.0 * share.low,
-                       100.0 * share.high);
-}
-
 // Returns what each approximation's exact value takes away from the default's error, and at what time.
 std::string errorPartsTable(const measure::BenchReport& report) {
     const measure::ErrorParts& all = report.errorParts;
-    Rows rows{
-        {"exact value alone", "share of the error", "ratio of time", std::string(nameOf(report.metric))}};
-    const auto add = [&](const std::string& name, const Interval& removed, std::size_t point) {
-        rows.push_back({name, shareText(removed), ratioText(report.points[point]),
-                        errorText(report, report.points[point])});
+    Rows rows{{"exact value alone", "bias", "noise", "both", "ratio of time"}};
+    const auto add = [&](const std::string& name, const measure::RemovedError& removed) {
+        rows.push_back({name, percentText(removed.bias), percentText(removed.noise),
+                        fmt::format("{} ({:.1f} to {:.1f})", percentText(removed.all.median),
+                                    100.0 * removed.all.low, 100.0 * removed.all.high),
+                        ratioText(report.points[removed.point])});
     };
     for (const measure::ErrorPart& part : all.parts) {
-        add(fmt::format("{} {} (not {})", part.setting, part.to, part.from), part.removed, part.point);
+        add(fmt::format("{} {}", part.setting, part.to), part.removed);
     }
-    if (all.noise) {
-        rows.push_back({"any number of samples", percentText(*all.noise), "", ""});
-    }
-    rows.push_back({"the rest", percentText(all.rest), "", ""});
+    rows.push_back({"any number of samples", "", percentText(all.noise), "", ""});
+    rows.push_back({"the rest", percentText(all.rest), "", "", ""});
     if (all.exact) {
-        add("all of these, same samples", all.exactRemoved, *all.exact);
+        add("all these values, same samples", *all.exact);
     }
     return formatTable(rows);
 }
@@ -243,7 +237,7 @@ std::string toText(const measure::BenchReport& report) {
     if (const std::string skipped = skippedText(report); !skipped.empty()) {
         text += "\nNot tried\n" + skipped;
     }
-    text += "\nWhat the default's error consists of: the share that goes with each exact value\n" +
+    text += "\nWhat the default's error consists of: the share that goes with each exact value alone\n" +
             errorPartsTable(report);
     text += "\nPareto front, from the fastest\n" + frontTable(report);
     if (!report.strategies.why.empty()) {

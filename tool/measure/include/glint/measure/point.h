@@ -45,7 +45,7 @@ struct BenchPoint {
     std::vector<double> hitRatios;  // of hitMs to that of the default in the same round
     std::vector<image::ImageErrors> errors;
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
-    // Of the mean of all rounds' pictures; the default alone has it.
+    // Of the mean of all rounds' pictures.
     std::optional<image::ImageErrors> errorOfMean;
     bool sameImage = true;   // as the default's, bit by bit, in every round
     LinearImage image;       // of the first round

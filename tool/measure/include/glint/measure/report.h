@@ -65,24 +65,29 @@ struct StrategyReport {
 // `base` is the strategy of the default, which is the first of `points`.
 StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base);
 
-// An approximation of the default, and what is gained by its exact value alone. Shares are of the default's
-// error, in a measure that adds up (additive()).
+// What a configuration takes away from the default's error, as shares of that error in a measure that adds up
+// (additive()). Shares below 0: the error grows.
+struct RemovedError {
+    std::size_t point = 0;  // index of the configuration
+    Interval all;           // from rounds with the same seed
+    double bias = 0.0;      // what no number of samples would take away
+    double noise = 0.0;     // what samples would take away, too
+};
+
+// An approximation of the default, and what its exact value alone takes away.
 struct ErrorPart {
     std::string setting;
-    std::string from;       // the default's value
-    std::string to;         // the reference's
-    std::size_t point = 0;  // index of the one with that value
-    Interval removed;       // share; below 0: the error grows
+    std::string from;  // the default's value
+    std::string to;    // the reference's
+    RemovedError removed;
 };
 
 // Which part of the default's error is which approximation.
 struct ErrorParts {
-    std::vector<ErrorPart> parts;      // the largest first
-    std::optional<std::size_t> exact;  // index of the point that has all these values at once
-    Interval exactRemoved;             // share that it takes away
-    // Share that any number of samples would take away; absent if there was one round.
-    std::optional<double> noise;
-    // What is left of 1 without all these. Above 0 it is what only several exact values together take away,
+    std::vector<ErrorPart> parts;       // the most bias first
+    std::optional<RemovedError> exact;  // all these values at once; absent if none was measured
+    double noise = 0.0;                 // share of the error; 0 if there was one round
+    // The share of bias that is in no part. Above 0 it is what only several exact values together take away,
     // below 0 the parts overlap.
     double rest = 0.0;
 };
