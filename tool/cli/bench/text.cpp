@@ -237,8 +237,10 @@ std::string toText(const measure::BenchReport& report) {
     if (const std::string skipped = skippedText(report); !skipped.empty()) {
         text += "\nNot tried\n" + skipped;
     }
-    text += "\nWhat the default's error consists of: the share that goes with each exact value alone\n" +
-            errorPartsTable(report);
+    if (!report.errorParts.parts.empty()) {
+        text += "\nWhat the default's error consists of: the share that goes with each exact value alone\n" +
+                errorPartsTable(report);
+    }
     text += "\nPareto front, from the fastest\n" + frontTable(report);
     if (!report.strategies.why.empty()) {
         text += "\nStrategies: from the list of rays to their shaded hits\n" +
