@@ -14,7 +14,7 @@ import sys
 
 POINT = ("id", "name", "kind", "settings", "time", "ratio", "timeTie", "error", "errorTie", "sameImage", "rays", "cases")
 SCENE = ("name", "triangles", "materials", "instances", "lights", "camera", "width", "height")
-REFERENCE = ("samples", "relativeError", "target", "reached", "noise", "settings")
+REFERENCE = ("transport", "what", "samples", "relativeError", "target", "reached", "noise", "settings")
 MACHINE = ("device", "driver", "deviceType", "tracers", "cpu", "cores", "os")
 ENTRY = ("cases", "cost", "coherence", "shares", "lights", "shadows", "width", "height", "rays", "hits", "hitShare",
          "coherentShare", "filledCases", "instructions", "work", "samples", "strategies", "fastest")
@@ -41,7 +41,7 @@ def reduced_bench(report):
             "machine": only(report["machine"], MACHINE), "method": report["method"],
             "reference": only(report["reference"], REFERENCE),
             "settings": [only(setting, ("name", "default", "values")) for setting in report["settings"]],
-            "points": points, "front": report["front"]}
+            "points": points, "front": report["front"], **only(report, ("errorParts",))}
 
 
 def reduced_calibration(report):

@@ -70,9 +70,9 @@ protected:
     }
     // Returns the points of the packages, by name.
     std::map<std::string, Json> measure(const std::vector<std::string>& packages) const {
-        std::vector<std::string> arguments{"bench",  "scene.gltf", "-o",      "out",   "--quick",
-                                           "--size", "64x36",      "--spp",   "16",    "--only",
-                                           "spp",    "--depth",    "singles", "--json"};
+        std::vector<std::string> arguments{"bench",   "scene.gltf",  "-o",   "out",    "--quick", "--size",
+                                           "64x36",   "--spp",       "16",   "--only", "spp",     "--depth",
+                                           "singles", "--reference", "same", "--json"};
         arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
         arguments.insert(arguments.end(), kExactFrame.begin(), kExactFrame.end());
         for (const std::string& name : packages) {

@@ -109,6 +109,57 @@ TEST_F(Bench, WritesWhatItMeasured) {
     EXPECT_EQ(run({"compile", scene_, "-o", "package", "--settings", "out/settings.json"}).exit, 0);
 }
 
+// The default leaves out most of what surfaces reflect to each other. That is an error against all of light
+// transport, and none against a reference that leaves out the same.
+TEST_F(Bench, MeasuresAgainstAllOfTransport) {
+    const std::vector<std::string> options{
+        "--only", "effects,bounces,max-roughness,alpha", "--depth", "singles", "--rounds", "3", "--sky", "1"};
+    // A rough, white floor before a rough, white wall.
+    Json gltf = Json::parse(readText(scene_));
+    for (const int i : {0, 1}) {
+        gltf["materials"][i] = {
+            {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.9}}}};
+    }
+    gltf.erase("extensionsUsed");
+    writeText(scene_, gltf.dump());
+    const auto errorOf = [](const Json& one) {
+        return one.at("error").at("trimmed").at("median").get<double>();
+    };
+    const Json full = bench(options).json();
+    expectFits("bench", full);
+    const Json& reference = full.at("reference");
+    EXPECT_EQ(reference.at("transport"), "full");
+    EXPECT_EQ(reference.at("settings").at("bounces"), "unlimited");
+    EXPECT_EQ(reference.at("settings").at("effects"), "auto,indirect-diffuse");
+    EXPECT_TRUE(has(reference.at("what"), "--bounces unlimited")) << reference.at("what");
+    const Json& parts = full.at("errorParts");
+    std::vector<std::string> settings;
+    double largest = 0.0;
+    for (const Json& part : parts.at("parts")) {
+        settings.push_back(part.at("setting"));
+        const Json& one = full.at("points").at(part.at("point").get<std::size_t>());
+        EXPECT_EQ(one.at("settings"), Json({{settings.back(), part.at("to")}}));
+        largest = std::max(largest, part.at("bias").get<double>());
+    }
+    std::ranges::sort(settings);
+    EXPECT_EQ(settings, (std::vector<std::string>{"bounces", "effects", "max-roughness"}));
+    const Json& exact = full.at("points").at(parts.at("exact").at("point").get<std::size_t>());
+    EXPECT_EQ(exact.at("kind"), "exact");
+    // Nearly all of the error is bias, and all exact values together take it away.
+    const double bias = 1.0 - parts.at("noise").get<double>();
+    EXPECT_GT(bias, 0.7);
+    EXPECT_NEAR(parts.at("exact").at("bias").get<double>(), bias, 0.1);
+    EXPECT_GT(parts.at("exact").at("bias").get<double>(), largest);
+    EXPECT_NE(point(full, "bounces 2"), nullptr);
+
+    std::vector<std::string> more = options;
+    more.insert(more.end(), {"--reference", "same"});
+    const Json same = bench(more).json();
+    EXPECT_EQ(same.at("reference").at("transport"), "same");
+    EXPECT_FALSE(same.at("reference").at("settings").contains("bounces"));
+    EXPECT_LT(errorOf(same.at("points")[0]), 0.5 * errorOf(full.at("points")[0]));
+}
+
 TEST_F(Bench, TellsACommandThatMakesThePicture) {
     const Json report = bench({"--only", "spp", "--depth", "singles", "--camera", "auto"}).json();
     const Json* const one = point(report, "spp 4");

@@ -183,6 +183,36 @@ class Rest(Page):
         self.assertRegex(table, r"texture-lod\s+mip0\s+build")
         self.assertRegex(table, r"spp\s+1\s+render")
 
+    def test_shares_of_the_error(self):
+        rows = self.browser.all("#error-parts-table tbody tr")
+        parts = REPORT["errorParts"]["parts"]
+        self.assertEqual(len(rows), len(parts) + 3)
+        for row, part in zip(rows, parts):
+            self.assertIn(f"{part['setting']} {part['to']} instead of {part['from']}", row.text)
+            for share in (part["bias"], part["noise"], part["removed"]["median"]):
+                self.assertIn(f"{100 * share:#.3g} %".replace("-", "−"), row.text)
+        self.assertIn("all of light transport", self.text("#error-parts-note"))
+        rows[-1].find_element("css selector", "button").click()
+        self.assertIn("selected", self.point(REPORT["errorParts"]["exact"]["point"]).get_attribute("class"))
+
+    def test_value_by_value(self):
+        def heights(chart):
+            steps = self.browser.all(f"#ladder-box svg:nth-of-type({chart}) g:nth-of-type(2) .step")
+            return [float(step.get_attribute("cy")) for step in steps]
+
+        # More bounces: less error, so lower in the chart, and more time.
+        self.assertEqual(len(heights(1)), 4)
+        self.assertEqual(heights(1), sorted(heights(1)))
+        self.assertEqual(heights(2), sorted(heights(2), reverse=True))
+        self.assertIn("max-roughness 1", self.text("#ladder-legend"))
+        captions = [figure.text.split(" ")[:2] for figure in self.browser.all("#ladder-pictures figcaption")]
+        self.assertEqual(captions[:4], [["bounces", value] for value in ("1", "2", "4", "unlimited")])
+        self.assertEqual(captions[4][0], "reference")
+        self.browser.choose("#ladder-of", "lights")
+        self.assertEqual(len(self.browser.all("#ladder-pictures figure")), 5)
+        labels = [text.text for text in self.browser.all("#ladder-box svg:nth-of-type(1) .axes text")]
+        self.assertTrue({"all", "1", "4", "16", "--lights"} <= set(labels), labels)
+
     def test_slider_reveals(self):
         over = "return getComputedStyle(document.querySelector('#slider-left')).clipPath"
         before = self.browser.script(over)
@@ -256,6 +286,8 @@ class SparseReport(Page):
         self.assertIn("No strategies", self.text("#strategies"))
         self.assertFalse(self.browser.one("#images").is_displayed())
         self.assertFalse(self.browser.one("#passes").is_displayed())
+        self.assertFalse(self.browser.one("#error-parts").is_displayed())
+        self.assertFalse(self.browser.one("#ladder").is_displayed())
         self.assertNotIn("NaN", self.browser.script("return document.body.innerHTML.replace(/<script.*?<\\/script>/gs, '')"))
 
 

@@ -4,6 +4,7 @@
 #include "page/sample_settings.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <random>
@@ -41,6 +42,7 @@ private:
     void addImages(Json& point);
     void addSingles();
     void addCombinations();
+    void addErrorParts();
     void markFront();
 
     std::minstd_rand random_{11};
@@ -173,6 +175,9 @@ void Maker::addCombinations() {
         addPoint("pair", {{"spp", samples}, {"max-roughness", "0.2"}});
         addPoint("pair", {{"spp", samples}, {"max-roughness", "0.7"}});
     }
+    for (const char* bounces : {"2", "4", "unlimited"}) {
+        addPoint("pair", {{"bounces", bounces}, {"max-roughness", "1"}});
+    }
     addPoint("search", {{"spp", "2"}, {"max-roughness", "0.7"}, {"skip-below", "0.01"}});
     addPoint("search",
              {{"spp", "16"}, {"max-roughness", "1"}, {"shadow-samples", "2"}, {"texture-lod", "mip0"}});
@@ -201,6 +206,35 @@ void Maker::markFront() {
             page_.report["front"].push_back(i);
         }
     }
+}
+
+void Maker::addErrorParts() {
+    Json& points = page_.report["points"];
+    Json parts = Json::array();
+    const std::array<const char*, 3> exact[] = {
+        {"bounces", "1", "unlimited"}, {"max-roughness", "0.4", "1"}, {"texture-lod", "cones", "mip0"}};
+    for (const auto& [setting, from, to] : exact) {
+        const std::string name = std::string(setting) + ' ' + to;
+        const auto point = std::ranges::find_if(points, [&](const Json& one) { return one["name"] == name; });
+        const double share = 1.0 - (*point)["error"]["relMse"]["median"].get<double>() /
+                                       points[0]["error"]["relMse"]["median"].get<double>();
+        parts.push_back({{"setting", setting},
+                         {"from", from},
+                         {"to", to},
+                         {"point", (*point)["id"]},
+                         {"removed", interval(share, 0.1)},
+                         {"bias", 1.2 * share},
+                         {"noise", -0.2 * share}});
+    }
+    addPoint("exact", {{"bounces", "unlimited"}, {"max-roughness", "1"}, {"texture-lod", "mip0"}});
+    page_.report["errorParts"] = {{"parts", std::move(parts)},
+                                  {"exact",
+                                   {{"point", points.back()["id"]},
+                                    {"removed", interval(0.55, 0.05)},
+                                    {"bias", 0.7},
+                                    {"noise", -0.15}}},
+                                  {"noise", 0.31},
+                                  {"rest", -0.04}};
 }
 
 Json strategyRow(const char* strategy, double time, double shade, double order) {
@@ -241,6 +275,8 @@ SamplePage Maker::make() {
     report["method"] = {{"rounds", 7}, {"seed", 1},       {"confidence", 0.95}, {"quick", true},
                         {"batch", 12}, {"seconds", 93.1}, {"metric", "relMse"}};
     report["reference"] = {{"image", "images/reference.png"},
+                           {"transport", "full"},
+                           {"what", "all of light transport (--bounces unlimited), with every light"},
                            {"samples", 4096},
                            {"relativeError", 0.0061},
                            {"target", 0.005},
@@ -256,6 +292,7 @@ SamplePage Maker::make() {
     addPoint("default", {});
     addSingles();
     addCombinations();
+    addErrorParts();
     markFront();
     std::size_t advised = 0;
     for (const Json& id : report["front"]) {
@@ -320,6 +357,7 @@ SamplePage sparsePage() {
     report["front"] = {0};
     report["advice"] = nullptr;
     report["strategies"] = nullptr;
+    report["errorParts"] = {{"parts", Json::array()}, {"exact", nullptr}, {"noise", 0.0}, {"rest", 1.0}};
     report["commit"] = "unknown";
     report["reference"]["image"] = nullptr;
     return page;

@@ -214,6 +214,7 @@ Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptio
     compiler::FrameShape shape;
     shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects.all;
     shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
+    shape.bounces = settings.compile.maxBounces;
     if (!made) {
         made = makePlan(scenes.materials(), scenes.primitives(), plan);
     }

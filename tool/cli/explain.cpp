@@ -231,9 +231,10 @@ Result<std::vector<int>> chooseMaterials(const gltf::SceneList& scenes, const st
 
 // Advises for a frame of the usual size, with the effects that the scene calls for.
 Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& planned,
-                                        const compiler::EffectPlan& effects) {
+                                        const compiler::EffectPlan& effects, std::uint32_t bounces) {
     compiler::FrameShape shape;
     shape.effects = effects.effects.all;
+    shape.bounces = bounces;
     return measure::adviseStrategy(
         costs, measure::roundsOf(planned.scenes, planned.plan, planned.options, shape),
         measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
@@ -290,7 +291,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitDone;
     }
     const compiler::EffectPlan effects = automaticEffects(scenes);
-    const Result<compiler::StrategyAdvice> advice = advise(*costs, planned, effects);
+    const Result<compiler::StrategyAdvice> advice =
+        advise(*costs, planned, effects, arguments.settings.compile.maxBounces);
     if (!advice) {
         console.report(advice.error());
         return kExitFailed;

@@ -54,6 +54,10 @@ public:
         if (settings_.depth != "singles") {
             add(points, PointKind::Pair, pairs(report_.settings, report_.base, settings_.quick));
         }
+        // Beside each approximation's exact value alone, all of them together.
+        if (compiler::Configuration exact = exactTogether(report_.settings, report_.base); exact.size() > 1) {
+            add(points, PointKind::Exact, {std::move(exact)});
+        }
         Status measured = measure(*measurer, std::move(points));
         for (std::size_t i = 0; measured && i < searches(); ++i) {
             std::vector<BenchPoint> found;
@@ -87,6 +91,7 @@ private:
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
         facts.positionFetch = bed_.features().positionFetch;
         facts.float16 = bed_.features().float16;
+        facts.fullTransport = settings_.reference == "full";
         const ReferenceOptions options{settings_.referenceError,
                                        static_cast<std::uint32_t>(settings_.referenceSamples)};
         Result<Reference> reference = makeReference(observer_, bed_, facts, options, store_);
@@ -138,8 +143,7 @@ private:
         const auto add = [&](const BenchPoint& point) {
             if (point.kind != PointKind::Package) {
                 const double error = errorOf(point, report_.metric).median;
-                const bool isRoot = report_.metric == ErrorMetric::Rmse;
-                all.push_back({point.configuration, timeRatio(point).median, isRoot ? error * error : error,
+                all.push_back({point.configuration, timeRatio(point).median, additive(report_.metric, error),
                                isTimeTie(point), isErrorTie(point)});
             }
         };
@@ -156,6 +160,7 @@ private:
                               errorOf(point, report_.metric).median, isTimeTie(point), isErrorTie(point)});
         }
         report_.front = paretoFront(withTiesSettled(points));
+        report_.errorParts = partsOfError(report_.points, report_.settings, report_.metric);
         report_.strategies = compareStrategies(report_.points, report_.base.find("strategy")->second);
         if (settings_.budgetMs > 0.0 || settings_.maxError > 0.0) {
             report_.advice = advise();

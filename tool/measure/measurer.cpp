@@ -48,6 +48,20 @@ std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> ima
     return errors;
 }
 
+// Makes the mean of `count` - 1 pictures that of `count`.
+void addToMean(LinearImage& mean, const LinearImage& image, std::uint32_t count) {
+    if (count == 1) {
+        mean = image;
+        return;
+    }
+    const auto share = 1.0F / static_cast<float>(count);
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+        for (std::size_t c = 0; c < mean.pixels[i].size(); ++c) {
+            mean.pixels[i][c] += (image.pixels[i][c] - mean.pixels[i][c]) * share;
+        }
+    }
+}
+
 // Returns x / y. If both are 0, the ratio is 1, which means no change.
 double ratio(double x, double y) {
     return x == y ? 1.0 : x / std::max(y, 1e-300);
@@ -81,7 +95,7 @@ Result<Measurer::Entry> Measurer::mount(BenchPoint& point) const {
     if (mount->ordersHits()) {
         point.ordering = std::string(package::nameOf(mount->renderer().ordering()));
     }
-    return Entry{&point, std::move(*mount), {}};
+    return Entry{&point, std::move(*mount), {}, {}};
 }
 
 Status Measurer::measure(std::span<BenchPoint> points) {
@@ -125,6 +139,14 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
             }
         }
         keep(all, round);
+    }
+    std::vector<const LinearImage*> means;
+    for (const Entry* const entry : all) {
+        means.push_back(&entry->mean);
+    }
+    const std::vector<image::ImageErrors> errors = errorsOf(means, truth_);
+    for (std::size_t i = baseIsKnown_ ? 1 : 0; i < all.size(); ++i) {
+        all[i]->point->errorOfMean = errors[i];
     }
     baseIsKnown_ = true;
     return okStatus();
@@ -174,6 +196,7 @@ void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
         if (i == 0 && baseIsKnown_) {
             continue;  // the same seeds give the same pictures
         }
+        addToMean(entries[i]->mean, exposure.image, round + 1);
         point.errors.push_back(errors[i]);
         point.errorRatios.push_back(
             ratio(valueOf(options_.metric, errors[i]), valueOf(options_.metric, errors[0])));

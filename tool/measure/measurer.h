@@ -52,6 +52,7 @@ private:
         BenchPoint* point = nullptr;
         Mount mount;
         Exposure exposure;
+        LinearImage mean;  // of its pictures so far
     };
     Result<Entry> mount(BenchPoint& point) const;
     Status measureBatch(std::span<Entry> entries, std::uint64_t seed);

@@ -9,7 +9,7 @@ namespace glint::measure {
 namespace {
 
 constexpr std::array<std::string_view, 4> kMetrics{"relMse", "trimmed", "rmse", "flip"};
-constexpr std::array<std::string_view, 5> kKinds{"default", "single", "pair", "search", "package"};
+constexpr std::array<std::string_view, 6> kKinds{"default", "single", "pair", "search", "package", "exact"};
 
 }  // namespace
 
@@ -34,6 +34,10 @@ double valueOf(ErrorMetric metric, const image::ImageErrors& errors) {
             break;
     }
     return errors.flip;
+}
+
+double additive(ErrorMetric metric, double error) {
+    return metric == ErrorMetric::Rmse ? error * error : error;
 }
 
 std::string_view nameOf(PointKind kind) {

@@ -116,6 +116,7 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const c
                                 const ReferenceOptions& options, compiler::CacheStore* store) {
     const base::Clock::time_point start = base::Clock::now();
     Reference reference;
+    reference.isFull = facts.fullTransport;
     reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
     const std::uint32_t width = bed.base().renderer.width;
     const std::uint32_t height = bed.base().renderer.height;

@@ -7,10 +7,37 @@
 
 #include <algorithm>
 #include <numbers>
+#include <set>
+#include <string>
 
 namespace glint::measure {
 
 namespace {
+
+// Returns `--effects` for all that rays find: what the scene calls for, effects that refine the light of the
+// sky by rays, and those of packs that the user names. Effects that approximate what rays find are left out.
+std::string rayEffects(const compiler::EffectRequest& request) {
+    std::string words = "auto";
+    for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
+        if (effect.kind == package::EffectKind::Rays && !effect.refines.empty()) {
+            words += "," + effect.name;
+        }
+    }
+    for (const std::string& name : request.ofPacks) {
+        words += "," + name;
+    }
+    return words;
+}
+
+std::set<std::string, std::less<>> namesOfChosen(const compiler::EffectPlan& plan) {
+    std::set<std::string, std::less<>> names;
+    for (const compiler::EffectDecision& decision : plan.decisions) {
+        if (decision.chosen) {
+            names.insert(decision.name);
+        }
+    }
+    return names;
+}
 
 // Returns whether hits of any primitive lose a lobe if they keep only those of the base.
 bool losesLobes(const gltf::Scene& scene, const compiler::PlanOptions& plan) {
@@ -32,15 +59,17 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     });
     facts.furtherLobes = losesLobes(scene, plan);
     facts.textures = !scene.textures.empty();
-    const compiler::CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);
-    const compiler::EffectPlan effects = planEffects(gltf::SceneList({&scene, 1}), compile);
-    for (const compiler::EffectDecision& decision : effects.decisions) {
-        if (decision.chosen) {
-            facts.effects.emplace(decision.name);
-        }
-    }
+    compiler::CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);
+    const gltf::SceneList scenes({&scene, 1});
+    const compiler::EffectPlan effects = planEffects(scenes, compile);
+    facts.effects = namesOfChosen(effects);
     facts.sendsRays = effects.effects.rays != 0;
+    facts.rayEffects = rayEffects(compile.effects);
+    compile.effects.maxReflectionRoughness = 1.0F;
+    facts.effectsOfAnyRoughness = namesOfChosen(planEffects(scenes, compile));
     const scene_view::SceneViewData data = sceneView(settings, scene);
+    facts.lights = static_cast<std::size_t>(std::ranges::count_if(
+        data.lights, [](const LightView& light) { return light.type != LightView::Type::Directional; }));
     facts.manyLights = scene.lights.size() > compiler::kFewLights;
     facts.sizedLights =
         std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });

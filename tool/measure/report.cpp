@@ -102,6 +102,7 @@ base::Json settingToJson(const Setting& setting) {
             {"option", "--" + setting.name},
             {"stage", setting.isCompiled ? "compile" : "render"},
             {"approximates", setting.approximates},
+            {"exact", hasExactValue(setting) ? base::Json(setting.exact) : base::Json(nullptr)},
             {"what", setting.what},
             {"default", setting.base},
             {"values", setting.values},
@@ -111,6 +112,8 @@ base::Json settingToJson(const Setting& setting) {
 base::Json referenceToJson(const BenchReport& report) {
     const Reference& reference = report.reference;
     return {{"image", kReferenceImage},
+            {"transport", reference.isFull ? "full" : "same"},
+            {"what", describeReference(report)},
             {"samples", reference.samples},
             {"relativeError", reference.relativeError},
             {"target", reference.target},
@@ -155,6 +158,27 @@ base::Json adviceToJson(const BenchReport& report) {
     return object;
 }
 
+base::Json removedToJson(const RemovedError& removed) {
+    return {{"point", removed.point},
+            {"removed", toJson(removed.all)},
+            {"bias", removed.bias},
+            {"noise", removed.noise}};
+}
+
+base::Json errorPartsToJson(const BenchReport& report) {
+    const ErrorParts& all = report.errorParts;
+    base::Json parts = base::Json::array();
+    for (const ErrorPart& part : all.parts) {
+        base::Json object{{"setting", part.setting}, {"from", part.from}, {"to", part.to}};
+        object.update(removedToJson(part.removed));
+        parts.push_back(std::move(object));
+    }
+    return {{"parts", std::move(parts)},
+            {"exact", all.exact ? removedToJson(*all.exact) : base::Json(nullptr)},
+            {"noise", all.noise},
+            {"rest", all.rest}};
+}
+
 base::Json strategiesToJson(const BenchReport& report) {
     const StrategyReport& strategies = report.strategies;
     base::Json rows = base::Json::array();
@@ -181,6 +205,20 @@ base::Json strategiesToJson(const BenchReport& report) {
 }
 
 }  // namespace
+
+std::string describeReference(const BenchReport& report) {
+    compiler::Configuration given;
+    for (const auto& [name, value] : report.base) {
+        const compiler::Descriptor& row = *compiler::sweptSetting(name);
+        if (row.bench.isTransport) {
+            given[name] = valueOf(name, report.reference.configuration, report.base);
+        }
+    }
+    return fmt::format("{} ({}), with every light and {} approximation off",
+                       report.reference.isFull ? "all of light transport" : "the default's transport",
+                       base::shellWords(compiler::wordsOf(given)),
+                       report.reference.isFull ? "every" : "every other");
+}
 
 Interval timeOf(const BenchReport& report, std::size_t point) {
     const double base = measure::intervalOf(report.points.front().times).median;
@@ -269,6 +307,7 @@ base::Json toJson(const BenchReport& report) {
             {"points", std::move(points)},
             {"front", report.front},
             {"advice", adviceToJson(report)},
+            {"errorParts", errorPartsToJson(report)},
             {"strategies", strategiesToJson(report)}};
 }
 

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 namespace glint::measure {
 
 namespace {
+
+constexpr std::string_view kMaxRoughness = "max-roughness";
 
 std::vector<std::string> valuesToTry(const compiler::Descriptor& row, const compiler::BenchFacts& facts,
                                      const std::string& base, bool quick) {
@@ -28,18 +31,33 @@ std::vector<std::string> valuesToTry(const compiler::Descriptor& row, const comp
     return values;
 }
 
-// Inserts `base` if it is missing: a number by its size, a word at the front.
-void insertBase(std::vector<std::string>& values, const std::string& base) {
-    if (std::ranges::find(values, base) != values.end()) {
+bool isNumber(const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789.e-") == std::string::npos;
+}
+
+// Inserts a value if it is missing: a number by its size, behind a word at the front ("off", "all") and
+// before one at the end ("unlimited"); a word at the front.
+void insertValue(std::vector<std::string>& values, const std::string& value) {
+    if (std::ranges::find(values, value) != values.end()) {
         return;
     }
-    const auto number = [](const std::string& text) { return std::strtod(text.c_str(), nullptr); };
-    const bool isNumber = !base.empty() && base.find_first_not_of("0123456789.e-") == std::string::npos;
+    const auto isBefore = [&](const std::string& other) {
+        return std::strtod(other.c_str(), nullptr) < std::strtod(value.c_str(), nullptr);
+    };
     auto at = values.begin();
-    while (isNumber && at != values.end() && (*at == "off" || number(*at) < number(base))) {
+    while (isNumber(value) && at != values.end() && (isNumber(*at) ? isBefore(*at) : at == values.begin())) {
         ++at;
     }
-    values.insert(at, base);
+    values.insert(at, value);
+}
+
+// Returns why the setting changes nothing: the default lacks the effects that it belongs to. A higher limit
+// of roughness may call for reflections itself, and in a full reference it does.
+std::string withoutEffects(const compiler::Descriptor& row, compiler::BenchFacts facts) {
+    if (row.name == kMaxRoughness && facts.fullTransport) {
+        facts.effects = facts.effectsOfAnyRoughness;
+    }
+    return withoutEffect(row, facts);
 }
 
 bool ordersHits(std::string_view strategy) {
@@ -51,6 +69,7 @@ bool ordersHits(std::string_view strategy) {
 
 std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compiler::Configuration& base,
                                  bool quick) {
+    const compiler::Configuration exact = exactValues(facts);
     std::vector<Setting> settings;
     for (const compiler::Descriptor& row : compiler::settingsTable()) {
         const auto own = base.find(row.name);
@@ -66,8 +85,13 @@ std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compil
             return row.bench.against != nullptr ? row.bench.against(value, facts, base) : std::string();
         };
         std::vector<std::string> values = valuesToTry(row, facts, setting.base, quick);
-        insertBase(values, setting.base);
-        const std::string noEffect = withoutEffect(row, facts);
+        insertValue(values, setting.base);
+        const auto truth = exact.find(row.name);
+        if (truth != exact.end() && truth->second != setting.base) {
+            setting.exact = truth->second;
+            insertValue(values, setting.exact);
+        }
+        const std::string noEffect = withoutEffects(row, facts);
         const std::string reasonForAll = noEffect.empty() ? reasonAgainst("") : noEffect;
         for (std::string& value : values) {
             std::string reason = value == setting.base  ? std::string()
@@ -84,17 +108,26 @@ std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compil
     return settings;
 }
 
+bool hasExactValue(const Setting& setting) {
+    return !setting.exact.empty() && std::ranges::find(setting.values, setting.exact) != setting.values.end();
+}
+
 compiler::Configuration exactValues(const compiler::BenchFacts& facts) {
     compiler::Configuration exact;
     for (const compiler::Descriptor& row : compiler::settingsTable()) {
-        const bool isSwept = row.bench.use == compiler::BenchUse::Swept;
-        if (isSwept && row.bench.exact && !row.bench.exact->empty()) {
-            exact.emplace(row.name, *row.bench.exact);
+        const compiler::SettingBench& bench = row.bench;
+        const bool isSwept = bench.use == compiler::BenchUse::Swept;
+        if (!isSwept || !bench.exact || (bench.isTransport && !facts.fullTransport)) {
+            continue;
+        }
+        std::string value = bench.exactFor != nullptr ? bench.exactFor(facts) : std::string(*bench.exact);
+        if (!value.empty()) {
+            exact.emplace(row.name, std::move(value));
         }
     }
-    // A higher limit of roughness would call for reflections.
-    if (!withoutEffect(*compiler::sweptSetting("max-roughness"), facts).empty()) {
-        exact.erase("max-roughness");
+    // A higher limit of roughness would call for reflections, which are part of all transport alone.
+    if (!facts.fullTransport && !withoutEffect(*compiler::sweptSetting(kMaxRoughness), facts).empty()) {
+        exact.erase(std::string(kMaxRoughness));
     }
     return exact;
 }

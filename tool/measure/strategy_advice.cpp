@@ -19,7 +19,7 @@ namespace {
 
 compiler::FrameShape shapeOf(const compiler::Settings& render, std::uint32_t effects) {
     return {static_cast<double>(render.renderer.width) * render.renderer.height, effects,
-            render.frame.maxReflectionRoughness, render.renderer.batchEffects};
+            render.frame.maxReflectionRoughness, render.renderer.batchEffects, render.compile.maxBounces};
 }
 
 // Returns the rounds of a scene whose cases are those of a package.

@@ -29,6 +29,8 @@ constexpr Pair kPairs[] = {
     {"spp", "mirror-roughness", false},
     {"spp", "shadow-spp", true},
     {"spp", "skip-below", false},
+    // The rays of further effects bring more with each bounce.
+    {"effects", "bounces", true},
     // The number of shaders decides what each strategy costs.
     {"strategy", "merge", true},
     {"strategy", "hit-lobes", false},
@@ -37,6 +39,8 @@ constexpr Pair kPairs[] = {
     {"strategy", "position-fetch", true},
     {"strategy", "shadows", false},
     {"strategy", "batch-effects", false},
+    // Rays of later bounces hit different shaders.
+    {"strategy", "bounces", false},
     // Both settings leave out rays.
     {"max-roughness", "skip-below", false},
     {"max-roughness", "ssr", false},
@@ -53,6 +57,9 @@ std::vector<std::string> pairValues(const Setting& setting, bool quick) {
     std::vector<std::string> values;
     if (quick && setting.name == "merge") {
         return {"all"};  // the value that differs most from the others
+    }
+    if (setting.name == "effects") {
+        return hasExactValue(setting) ? std::vector{setting.exact} : values;
     }
     const auto own = std::ranges::find(setting.values, setting.base);
     const auto at = std::distance(setting.values.begin(), own);
@@ -205,6 +212,17 @@ std::vector<compiler::Configuration> singles(std::span<const Setting> settings,
         }
     }
     return all;
+}
+
+compiler::Configuration exactTogether(std::span<const Setting> settings,
+                                      const compiler::Configuration& base) {
+    compiler::Configuration all;
+    for (const Setting& setting : settings) {
+        if (hasExactValue(setting)) {
+            all.emplace(setting.name, setting.exact);
+        }
+    }
+    return simplified(all, base);
 }
 
 std::vector<compiler::Configuration> pairs(std::span<const Setting> settings,

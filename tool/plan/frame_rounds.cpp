@@ -3,6 +3,7 @@
 #include "plan/cost.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace glint::compiler {
@@ -38,6 +39,31 @@ void join(Round& all, const Round& round) {
         all.scatter = (all.rays * all.scatter + round.rays * round.scatter) / rays;
     }
     all.rays = rays;
+}
+
+std::vector<RoundCase> casesOfPaths(std::vector<RoundCase> cases) {
+    for (RoundCase& one : cases) {
+        one.instructions *= kPathCode;
+    }
+    return cases;
+}
+
+// Adds the bounces of the rays that a round's hits send. Hits of the last one send none.
+void addBounces(std::vector<Round>& rounds, Round round, std::uint32_t bounces) {
+    constexpr std::uint32_t kFree = 3;  // bounces without roulette
+    for (std::uint32_t bounce = 2; bounce <= bounces; ++bounce) {
+        const double kept = bounce <= kFree       ? 1.0
+                            : bounce == kFree + 1 ? std::pow(kPathAlbedo, kFree)
+                                                  : kPathAlbedo;
+        round.rays *= round.hitShare * kept;
+        round.coherence = std::min(round.coherence, kPathCoherence);
+        round.scatter = 1.0 - round.coherence;
+        round.bounce = bounce;
+        if (round.rays < 1.0) {
+            return;
+        }
+        rounds.push_back(round);
+    }
 }
 
 }  // namespace
@@ -97,7 +123,7 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
             effect.kind != package::EffectKind::Rays) {
             continue;
         }
-        Round round{0.0, kRayHitShare, 0.0, 0.0, cases};
+        Round round{0.0, kRayHitShare, 0.0, 0.0, shape.bounces > 1 ? casesOfPaths(cases) : cases};
         double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const materials::Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
@@ -118,6 +144,10 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
         } else {
             rounds.push_back(std::move(round));
         }
+    }
+    const std::size_t first = rounds.size();
+    for (std::size_t i = 0; i < first; ++i) {
+        addBounces(rounds, rounds[i], shape.bounces);
     }
     return rounds;
 }

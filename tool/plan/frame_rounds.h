@@ -32,11 +32,23 @@ inline constexpr double kRayHitShare = 0.7;
 // Surfaces that are rougher are glossy. This is the default of FrameOptions::mirrorRoughness.
 inline constexpr float kMirrorRoughness = 0.05F;
 
+// Paths (--bounces above 1). A hit's next ray may take any lobe, and neighbours have parted at least once
+// before, so the hits of later bounces are as unlike as those of diffuse rays.
+inline constexpr double kPathCoherence = 0.1;
+// The shaders of packages with paths also choose and weigh the next ray over all lobes of a hit. Instructions
+// of a case's SPIR-V over those in a package for one bounce (docs/performance.md says how it was measured).
+inline constexpr double kPathCode = 1.9;
+// The share of light that a bounce leaves. Russian roulette keeps a path with the probability of its
+// throughput: after three bounces that of all three, and of one after each bounce that follows
+// (docs/paths.md).
+inline constexpr double kPathAlbedo = 0.5;
+
 struct FrameShape {
     double pixels = 1920.0 * 1080.0;  // times samples; the default is for an unknown size
     std::uint32_t effects = 0;        // Effect bits
     float maxReflectionRoughness = 0.3F;
     bool batchEffects = false;  // The rays of all effects form one list.
+    std::uint32_t bounces = 1;  // the most of a path
 };
 
 // The features of a case's shader. A retired case has none, and no code.
@@ -62,7 +74,8 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
 std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
                                   const materials::MaterialModel& model = materials::builtinMaterialModel());
 
-// Returns one round for each effect that sends rays, in the order of the effects, or one round for all.
+// Returns one round for each effect that sends rays, in the order of the effects, or one round for all; then
+// one round for each further bounce of these.
 // `primitives` are those of one scene; their materials index `materials`.
 std::vector<Round> frameRounds(std::span<const materials::Material> materials,
                                std::span<const materials::PrimitiveInputs> primitives,

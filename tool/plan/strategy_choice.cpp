@@ -44,9 +44,14 @@ std::string factsText(const FrameFacts& facts) {
     const std::string alike = facts.coherence >= 0.75  ? "mostly alike"
                               : facts.coherence > 0.25 ? "partly alike"
                                                        : "unlike";
-    std::string text = fmt::format("{} rays, {} case{}, {} instructions a hit, hits of neighbouring rays {}",
-                                   whole(facts.rays), facts.cases, facts.cases == 1 ? "" : "s",
-                                   whole(facts.instructions), alike);
+    const std::string paths =
+        facts.bounces == 1
+            ? std::string()
+            : fmt::format(" in {} bounces, {:.0f} % of them after the first, where neighbours go everywhere",
+                          facts.bounces, 100.0 * facts.laterRays / std::max(facts.rays, 1e-12));
+    std::string text = fmt::format(
+        "{} rays{}, {} case{}, {} instructions a hit, hits of neighbouring rays {}", whole(facts.rays), paths,
+        facts.cases, facts.cases == 1 ? "" : "s", whole(facts.instructions), alike);
     if (facts.cases > 1) {
         text +=
             fmt::format(": a subgroup of unsorted hits runs {:.1f} cases one after another", facts.casesRun);
@@ -118,6 +123,8 @@ FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize) {
     for (const Round& round : rounds) {
         const double hits = round.rays * round.hitShare;
         facts.rays += round.rays;
+        facts.laterRays += round.bounce > 1 ? round.rays : 0.0;
+        facts.bounces = std::max(facts.bounces, round.bounce);
         facts.hits += hits;
         facts.cases = std::max(facts.cases, round.cases.size());
         facts.coherence += round.rays * round.coherence;

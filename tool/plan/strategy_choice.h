@@ -23,6 +23,8 @@ struct StrategyEstimate {
 // A summary of the rounds of a frame, for people. Averages are over hits unless a member says otherwise.
 struct FrameFacts {
     double rays = 0.0;
+    double laterRays = 0.0;  // of these, rays that hits send: the bounces after the first
+    std::uint32_t bounces = 1;
     double hits = 0.0;
     std::size_t cases = 0;
     double instructions = 0.0;  // to shade a hit, with kFetchCost for each fetch

@@ -96,6 +96,7 @@ struct Round {
     double coherence = 0.0;  // of neighbours' hits: 0 if drawn at random, 1 if all are of one case
     double scatter = 1.0;    // of neighbours' rays: 0 as from a mirror, 1 as from a diffuse surface
     std::vector<RoundCase> cases;
+    std::uint32_t bounce = 1;  // of paths; 1: the rays of primary surfaces
 };
 
 // The constants of one strategy on a device, in the units of costTerms(); 0 for terms that it lacks.

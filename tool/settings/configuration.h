@@ -20,6 +20,7 @@ struct BenchFacts {
     bool masks = false;         // some materials have the alpha mode MASK or BLEND
     bool furtherLobes = false;  // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
+    std::size_t lights = 0;    // with a position, of which a hierarchy chooses
     bool manyLights = false;   // more than --lights auto takes whole
     bool sizedLights = false;  // some light casts soft shadows
     bool rayPipeline = false;  // this and the next two are features of the device
@@ -27,6 +28,12 @@ struct BenchFacts {
     bool float16 = false;
     std::set<std::string, std::less<>> effects;  // effects of the default configuration, by name
     bool sendsRays = false;                      // one of them has rays whose hits are shaded
+    // The reference has all of light transport, whatever the default leaves out.
+    bool fullTransport = false;
+    // The value of --effects with which surfaces send rays wherever light comes from.
+    std::string rayEffects;
+    // The effects that the default configuration would have with --max-roughness 1.
+    std::set<std::string, std::less<>> effectsOfAnyRoughness;
     // The luminance that the picture's exposure maps to white, in the scene's units; 0 if unknown.
     double white = 0.0;
 };

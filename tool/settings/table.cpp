@@ -21,6 +21,11 @@ std::string withoutRays(std::string_view value, const BenchFacts& facts, const C
     return value.empty() && !facts.sendsRays ? "no effect sends rays whose hits are shaded" : "";
 }
 
+// The effects of a full reference send rays, even if those of the default don't.
+std::string withoutPaths(std::string_view value, const BenchFacts& facts, const Configuration& base) {
+    return facts.fullTransport ? std::string() : withoutRays(value, facts, base);
+}
+
 std::string withoutOrder(std::string_view value, const BenchFacts& facts, const Configuration& base) {
     const std::string reason = withoutRays(value, facts, base);
     return !reason.empty() || !value.empty() || ordersHits(base)
@@ -29,9 +34,28 @@ std::string withoutOrder(std::string_view value, const BenchFacts& facts, const 
                              base.find("strategy")->second);
 }
 
-// Returns the default's effects, and further values that leave out one effect each.
+// A hierarchy that may choose every light has nothing to choose.
+std::string withoutChoice(std::string_view value, const BenchFacts& facts, const Configuration& base) {
+    const std::string& own = base.find("lights")->second;
+    if (value == kAll) {
+        return own == kAuto && !facts.manyLights ? "auto takes all of so few lights" : "";
+    }
+    std::int64_t chosen = 1;
+    if (!value.empty() && !parseWhole(value, 1, package::kMaxLightSamples, chosen)) {
+        return "";
+    }
+    return static_cast<std::size_t>(chosen) < facts.lights
+               ? ""
+               : fmt::format("the scene has no more lights with a position: {}", facts.lights);
+}
+
+// Returns the default's effects, those of a reference of all transport, and values that leave out one effect
+// each.
 std::vector<std::string> effectsToTry(const BenchFacts& facts, const std::string& base, bool /*quick*/) {
     std::vector<std::string> values{base};
+    if (facts.fullTransport && facts.rayEffects != base) {
+        values.push_back(facts.rayEffects);
+    }
     for (const std::string& without : facts.effects) {
         std::vector<std::string> rest(facts.effects.begin(), facts.effects.end());
         std::erase(rest, without);
@@ -56,12 +80,20 @@ using Against = decltype(SettingBench::against);
 
 constexpr SettingBench approximates(std::string_view exact, std::string_view tried = {},
                                     std::string_view quick = {}, Against against = nullptr) {
-    return {BenchUse::Swept, exact, tried, quick, against};
+    return {.use = BenchUse::Swept, .exact = exact, .tried = tried, .quick = quick, .against = against};
+}
+
+// An approximation of how light travels. The full reference alone has the exact value.
+constexpr SettingBench approximatesTransport(std::string_view exact, std::string_view tried = {},
+                                             std::string_view quick = {}, Against against = nullptr) {
+    SettingBench bench = approximates(exact, tried, quick, against);
+    bench.isTransport = true;
+    return bench;
 }
 
 constexpr SettingBench changesTime(Against against = nullptr, std::string_view tried = {},
                                    std::string_view quick = {}) {
-    return {BenchUse::Swept, std::nullopt, tried, quick, against};
+    return {.use = BenchUse::Swept, .tried = tried, .quick = quick, .against = against};
 }
 
 constexpr std::string_view kPicture = "Picture";
@@ -158,13 +190,15 @@ constexpr Descriptor kRows[] = {
      .what = "which effects the package has, separated by commas",
      .values = kEffects,
      .bench = {.use = BenchUse::Swept,
-               .exact = "",
+               .exact = "auto,indirect-diffuse",
+               .isTransport = true,
                .against =
                    [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                       return std::string(value.empty() && facts.effects.empty() ? "there are no effects"
-                                                                                 : "");
+                       const bool isIdle = facts.effects.empty() && !facts.fullTransport;
+                       return std::string(value.empty() && isIdle ? "there are no effects" : "");
                    },
-               .triedFor = effectsToTry},
+               .triedFor = effectsToTry,
+               .exactFor = [](const BenchFacts& facts) { return facts.rayEffects; }},
      .document = "effects.md"},
     {.name = "max-roughness",
      .commands = kMakers,
@@ -210,12 +244,13 @@ constexpr Descriptor kRows[] = {
      .values = number<&Settings::frame, &FrameOptions::maxInterfaces>(1, 64),
      .bench = approximates("64", "2 4 8 16 32", "2 8")},
     {.name = "bounces",
-     .commands = kMakers,
+     .commands = kPlanners,
      .stage = SettingStage::Choice,
      .group = kEffectOptions,
      .what = "the most bounces of a path: rays that its hits send in turn",
      .values = kBounces,
-     .bench = kNoPicture,
+     .bench = approximatesTransport("unlimited", "1 2 4 8 unlimited", "1 2 4 unlimited", withoutPaths),
+     .document = "paths.md",
      .recorded = true},
     {.name = "hit-lobes",
      .commands = kPlanners,
@@ -235,11 +270,7 @@ constexpr Descriptor kRows[] = {
      .group = kShaders,
      .what = "how many lights a surface chooses by a hierarchy, besides directional ones",
      .values = kLights,
-     .bench = approximates("", "all 1 4 16", "all 1",
-                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
-                               return std::string(
-                                   !value.empty() || facts.manyLights ? "" : "the scene has few lights");
-                           }),
+     .bench = approximates("all", "all 1 2 4 8 16 32 64", "all 1 8", withoutChoice),
      .document = "lights.md",
      .recorded = true},
     {.name = "emissive-lights",

@@ -70,6 +70,9 @@ struct SettingBench {
     // The value in the reference. It is empty for the default's value, because the user asks for that value
     // or all values converge to the same picture. It is absent if the setting changes time alone.
     std::optional<std::string_view> exact{};
+    // The value matters for how much light is carried, not only for how exactly. A reference that shares the
+    // default's transport (BenchFacts::fullTransport) has the default's value.
+    bool isTransport = false;
     std::string_view tried{};  // values, separated by blanks; empty: all words
     std::string_view quick{};  // fewer values; empty: `tried`
     // Returns why a value is not worth trying, or the whole setting if `value` is empty. Returns an empty
@@ -79,6 +82,8 @@ struct SettingBench {
     // Returns the values if they depend on the scene; null if not.
     std::vector<std::string> (*triedFor)(const BenchFacts& facts, const std::string& base,
                                          bool quick) = nullptr;
+    // Returns the exact value if it depends on the scene; null if not.
+    std::string (*exactFor)(const BenchFacts& facts) = nullptr;
 };
 
 struct Descriptor {

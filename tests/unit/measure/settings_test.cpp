@@ -19,6 +19,7 @@ compiler::Configuration usual() {
             {"clamp", "0"},
             {"ssr", "off"},
             {"max-interfaces", "8"},
+            {"bounces", "1"},
             {"hit-lobes", "all"},
             {"lights", "auto"},
             {"energy-compensation", "on"},
@@ -40,7 +41,11 @@ compiler::BenchFacts rich() {
     facts.masks = facts.furtherLobes = facts.textures = facts.manyLights = facts.sizedLights = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
+    facts.effectsOfAnyRoughness = facts.effects;
     facts.sendsRays = true;
+    facts.lights = 1000;
+    facts.rayEffects = "auto,indirect-diffuse";
+    facts.fullTransport = true;
     facts.white = 2.0;
     return facts;
 }
@@ -79,6 +84,14 @@ TEST(BenchSettings, KeepADefaultOfTheirOwnInItsPlace) {
     EXPECT_EQ(named(settings, "spp").values,
               (std::vector<std::string>{"1", "2", "4", "6", "8", "16", "32", "64"}));
     EXPECT_EQ(named(settings, "ssr").values, (std::vector<std::string>{"off", "8", "12", "16", "32", "64"}));
+    // A word may be the largest value.
+    base["bounces"] = "3";
+    base["lights"] = "3";
+    const std::vector<measure::Setting> words = settingsFor(rich(), base, false);
+    EXPECT_EQ(named(words, "bounces").values,
+              (std::vector<std::string>{"1", "2", "3", "4", "8", "unlimited"}));
+    EXPECT_EQ(named(words, "lights").values,
+              (std::vector<std::string>{"all", "1", "2", "3", "4", "8", "16", "32", "64"}));
 }
 
 TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
@@ -87,7 +100,7 @@ TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
     const std::vector<measure::Setting> settings = settingsFor(facts, usual(), false);
     for (const char* const name : {"shadow-spp", "lights", "ao-spp", "max-roughness", "ssr", "max-interfaces",
                                    "hit-lobes", "texture-lod", "alpha", "precision", "strategy", "ordering",
-                                   "binning", "position-fetch", "clamp"}) {
+                                   "binning", "position-fetch", "clamp", "bounces"}) {
         const measure::Setting& setting = named(settings, name);
         EXPECT_EQ(setting.values, std::vector<std::string>{setting.base}) << name;
         EXPECT_TRUE(std::ranges::none_of(setting.skipped, [](const measure::SkippedValue& value) {
@@ -100,11 +113,50 @@ TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
 TEST(BenchSettings, TryEffectsWithoutEachOfThem) {
     compiler::BenchFacts facts = rich();
     facts.effects = {"reflection", "shadow"};
+    facts.fullTransport = false;
     EXPECT_EQ(named(settingsFor(facts, usual(), true), "effects").values,
               (std::vector<std::string>{"auto", "shadow", "reflection"}));
     facts.effects = {"shadow"};
     EXPECT_EQ(named(settingsFor(facts, usual(), true), "effects").values,
               (std::vector<std::string>{"auto", "none"}));
+    // The reference has further ones.
+    facts.fullTransport = true;
+    const measure::Setting effects = named(settingsFor(facts, usual(), true), "effects");
+    EXPECT_EQ(effects.values, (std::vector<std::string>{"auto", "auto,indirect-diffuse", "none"}));
+    EXPECT_EQ(effects.exact, "auto,indirect-diffuse");
+}
+
+// A hierarchy over as many lights as it chooses, or with none but directional ones, changes nothing.
+TEST(BenchSettings, TryFewerLightsThanThereAre) {
+    compiler::BenchFacts facts = rich();
+    facts.manyLights = false;
+    facts.lights = 5;
+    EXPECT_EQ(named(settingsFor(facts, usual(), false), "lights").values,
+              (std::vector<std::string>{"auto", "1", "2", "4"}));
+    facts.lights = 1;
+    const measure::Setting none = named(settingsFor(facts, usual(), false), "lights");
+    EXPECT_EQ(none.values, std::vector<std::string>{"auto"});
+    EXPECT_FALSE(hasExactValue(none));
+}
+
+// The exact value is tried even if the quick values lack it.
+TEST(BenchSettings, TryTheValuesOfTheReference) {
+    for (const bool quick : {false, true}) {
+        const std::vector<measure::Setting> settings = settingsFor(rich(), usual(), quick);
+        for (const char* const name : {"bounces", "max-interfaces", "mirror-roughness", "max-roughness"}) {
+            EXPECT_TRUE(hasExactValue(named(settings, name))) << name;
+        }
+        EXPECT_EQ(named(settings, "max-interfaces").values.back(), "64");
+        EXPECT_EQ(named(settings, "mirror-roughness").values.front(), "0");
+        EXPECT_FALSE(hasExactValue(named(settings, "spp")));
+        EXPECT_FALSE(hasExactValue(named(settings, "strategy")));
+    }
+    // Rough surfaces that send no ray by default may send one with a higher limit.
+    compiler::BenchFacts rough = rich();
+    rough.effects = {"shadow"};
+    EXPECT_TRUE(hasExactValue(named(settingsFor(rough, usual(), true), "max-roughness")));
+    rough.effectsOfAnyRoughness = rough.effects;
+    EXPECT_FALSE(hasExactValue(named(settingsFor(rough, usual(), true), "max-roughness")));
 }
 
 TEST(BenchSettings, ScaleTheClampByWhite) {
@@ -119,12 +171,21 @@ TEST(BenchSettings, OfTheReferenceApproximateNothing) {
     EXPECT_EQ(exact.at("alpha"), "stochastic");
     EXPECT_EQ(exact.at("max-roughness"), "1");
     EXPECT_EQ(exact.at("ssr"), "off");
+    EXPECT_EQ(exact.at("bounces"), "unlimited");
+    EXPECT_EQ(exact.at("lights"), "all");
+    EXPECT_EQ(exact.at("effects"), "auto,indirect-diffuse");
     EXPECT_FALSE(exact.contains("strategy"));
-    EXPECT_FALSE(exact.contains("effects"));
     EXPECT_FALSE(exact.contains("spp"));
     compiler::BenchFacts still = rich();
     still.effects = {"shadow"};
-    EXPECT_FALSE(exactValues(still).contains("max-roughness"));
+    EXPECT_EQ(exactValues(still).at("max-roughness"), "1");
+    // A reference with the default's transport keeps what decides how light travels, and calls for no effect.
+    still.fullTransport = false;
+    const compiler::Configuration same = exactValues(still);
+    EXPECT_FALSE(same.contains("bounces"));
+    EXPECT_FALSE(same.contains("effects"));
+    EXPECT_FALSE(same.contains("max-roughness"));
+    EXPECT_EQ(same.at("texture-lod"), "mip0");
 }
 
 TEST(BenchSettings, DropWhatHasNoEffectBesideOthers) {

@@ -83,9 +83,11 @@ std::string referenceOf(const compiler::SettingBench& bench) {
     if (bench.use != compiler::BenchUse::Swept) {
         return "";
     }
-    return !bench.exact           ? "changes time alone"
-           : bench.exact->empty() ? "as given"
-                                  : "`" + std::string(*bench.exact) + "`";
+    return !bench.exact ? "changes time alone"
+           : bench.exact->empty()
+               ? "as given"
+               : fmt::format("`{}`{}", *bench.exact,
+                             bench.isTransport ? "; as given with `--reference same`" : "");
 }
 
 std::string triedOf(const compiler::SettingBench& bench) {

@@ -96,6 +96,12 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
               "relMSE without the worst 0.1 % of pixels, so that\n"
               "fireflies do not decide")
         .group(errors);
+    addChoice(command, "--reference", arguments.reference, {"full", "same"},
+              "what errors are measured against; full: all of light\n"
+              "transport, that is unlimited bounces, effects that send\n"
+              "rays wherever light comes from, and so on; same: the\n"
+              "effects and bounces of the default")
+        .group(errors);
     addReal(command, "--reference-error", arguments.referenceError, 0.0, 1.0,
             fmt::format("relative error that the reference itself may have; 0: {},\n"
                         "or {} with --quick (0 to 1, default: 0)",

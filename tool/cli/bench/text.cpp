@@ -166,6 +166,27 @@ std::string skippedText(const measure::BenchReport& report) {
     return text;
 }
 
+// Returns what each approximation's exact value takes away from the default's error, and at what time.
+std::string errorPartsTable(const measure::BenchReport& report) {
+    const measure::ErrorParts& all = report.errorParts;
+    Rows rows{{"exact value alone", "bias", "noise", "both", "ratio of time"}};
+    const auto add = [&](const std::string& name, const measure::RemovedError& removed) {
+        rows.push_back({name, percentText(removed.bias), percentText(removed.noise),
+                        fmt::format("{} ({:.1f} to {:.1f})", percentText(removed.all.median),
+                                    100.0 * removed.all.low, 100.0 * removed.all.high),
+                        ratioText(report.points[removed.point])});
+    };
+    for (const measure::ErrorPart& part : all.parts) {
+        add(fmt::format("{} {}", part.setting, part.to), part.removed);
+    }
+    rows.push_back({"any number of samples", "", percentText(all.noise), "", ""});
+    rows.push_back({"the rest", percentText(all.rest), "", "", ""});
+    if (all.exact) {
+        add("all these values, same samples", *all.exact);
+    }
+    return formatTable(rows);
+}
+
 std::string adviceText(const measure::BenchReport& report) {
     const measure::BenchAdvice& advice = *report.advice;
     std::string text = "\nAdvice\n" + advice.why + "\n";
@@ -199,9 +220,10 @@ std::string toText(const measure::BenchReport& report) {
         {{"scene", fmt::format("{}, {} x {}, camera {}", report.scene.file, report.scene.width,
                                report.scene.height, report.scene.camera)},
          {"device", fmt::format("{}, {}", report.machine.device, report.machine.driver)},
-         {"reference",
-          fmt::format("{} samples{}, within {:.2g} % ({})", reference.samples,
-                      reference.cached ? ", cached" : "", 100.0 * reference.relativeError,
+         {"reference", describeReference(report)},
+         {"its samples",
+          fmt::format("{}{}, within {:.2g} % ({})", reference.samples, reference.cached ? ", cached" : "",
+                      100.0 * reference.relativeError,
                       reference.reached ? fmt::format("asked for {:.2g} %", 100.0 * reference.target)
                                         : fmt::format("NOT the {:.2g} % asked for: give more --reference-spp",
                                                       100.0 * reference.target))},
@@ -214,6 +236,10 @@ std::string toText(const measure::BenchReport& report) {
                         pointsTable(report));
     if (const std::string skipped = skippedText(report); !skipped.empty()) {
         text += "\nNot tried\n" + skipped;
+    }
+    if (!report.errorParts.parts.empty()) {
+        text += "\nWhat the default's error consists of: the share that goes with each exact value alone\n" +
+                errorPartsTable(report);
     }
     text += "\nPareto front, from the fastest\n" + frontTable(report);
     if (!report.strategies.why.empty()) {

@@ -26,6 +26,12 @@ function svg(name, attributes = {}, ...children) {
     return fill(document.createElementNS(SVG, name), attributes, children);
 }
 
+// Hides a section for which the report has nothing, and its link.
+function hideSection(id) {
+    byId(id).hidden = true;
+    byId("contents").querySelector(`a[href="#${id}"]`)?.remove();
+}
+
 // Fills a <select> with [value, text] and calls back with the chosen value.
 function fillSelect(select, options, chosen, changed) {
     select.replaceChildren(...options.map(([value, text, disabled]) => html("option", {value, disabled}, text)));

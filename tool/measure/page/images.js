@@ -12,8 +12,7 @@ function hasImage(point) {
 
 function showImages() {
     if (!points.some(hasImage)) {
-        byId("images").hidden = true;
-        byId("contents").querySelector('a[href="#images"]')?.remove();
+        hideSection("images");
         return;
     }
     const pictured = points.filter(hasImage).map((point) => [String(point.id), point.name]);

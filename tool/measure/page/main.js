@@ -9,11 +9,16 @@ function main() {
     onChange(["selected", "pointed", "metric"], showDetail);
     onChange(["metric"], showSettingsTable);
     onChange(["metric", "filter", "kind"], showPointsTable);
+    onChange(["metric"], showErrorParts);
+    onChange(["metric"], drawLadder);
+    onChange(["metric"], drawLadderPictures);
     drawChart();
     showDetail();
     showPointsTable();
     showPasses();
     showSettingsTable();
+    showErrorParts();
+    showLadders();
     showImages();
     showStrategies();
     showMethod();
@@ -27,6 +32,7 @@ function redrawOnResize() {
         if (byId("chart-box").clientWidth !== width) {
             width = byId("chart-box").clientWidth;
             drawChart();
+            drawLadder();
             if (!byId("passes").hidden) {
                 drawPasses();
             }

@@ -15,7 +15,7 @@ function referenceSentences() {
     const noise = METRICS.filter(({key}) => isNumber(reference.noise?.[key])).map(({key, name}) => `${name} ${number(reference.noise[key])}`);
     const set = Object.entries(reference.settings ?? {}).map(([name, value]) => `${name} ${value}`);
     return [
-        `The reference is the same scene with every approximation off${set.length > 0 ? ` (${set.join(", ")})` : ""}, the mean of ` +
+        `The reference is the same scene and view, ${reference.what ?? "with every approximation off"}${set.length > 0 ? ` (${set.join(", ")})` : ""}, the mean of ` +
         `${plural(reference.samples, "sample")} a pixel. Its relative standard error is ${percent(reference.relativeError)}; ${reached}. ` +
         `${noise.length > 0 ? `Its own noise is ${sentenceList(noise)}: no error below that can be measured. ` : ""}` +
         (reference.cached ? "It came from the cache." : `It took ${secondsText(reference.seconds)}.`),

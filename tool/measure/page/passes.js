@@ -41,8 +41,7 @@ function pointsOfGroup(group) {
 
 function showPasses() {
     if (!points.some((point) => point.passes?.length > 0)) {
-        byId("passes").hidden = true;
-        byId("contents").querySelector('a[href="#passes"]')?.remove();
+        hideSection("passes");
         return;
     }
     passColors = choosePassColors();

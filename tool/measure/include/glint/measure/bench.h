@@ -34,6 +34,9 @@ struct BenchSettings {
     std::string depth = "search";   // singles, pairs or search
     std::vector<std::string> only;  // settings; empty: all
     std::string metric = "trimmed";
+    // The reference has all of light transport. Otherwise it shares the default's effects, bounces and
+    // whatever else decides how light travels.
+    std::string reference = "full";  // or same
     double referenceError = 0.005;
     std::int64_t referenceSamples = 16384;
     std::vector<Candidate> candidates;

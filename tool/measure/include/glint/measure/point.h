@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,8 +22,10 @@ enum class ErrorMetric { RelMse, Trimmed, Rmse, Flip };
 std::string_view nameOf(ErrorMetric metric);  // as the JSON has it: "relMse"
 ErrorMetric metricNamed(std::string_view name);
 double valueOf(ErrorMetric metric, const image::ImageErrors& errors);
+// Returns the error in a measure that adds up over independent causes: that of RMSE is its square.
+double additive(ErrorMetric metric, double error);
 
-enum class PointKind { Default, Single, Pair, Search, Package };
+enum class PointKind { Default, Single, Pair, Search, Package, Exact };
 std::string_view nameOf(PointKind kind);
 
 // The name under which the passes of all cases count together: "shade <case>".
@@ -42,9 +45,11 @@ struct BenchPoint {
     std::vector<double> hitRatios;  // of hitMs to that of the default in the same round
     std::vector<image::ImageErrors> errors;
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
-    bool sameImage = true;            // as the default's, bit by bit, in every round
-    LinearImage image;                // of the first round
-    FrameCounters counters;           // of its last sample
+    // Of the mean of all rounds' pictures.
+    std::optional<image::ImageErrors> errorOfMean;
+    bool sameImage = true;   // as the default's, bit by bit, in every round
+    LinearImage image;       // of the first round
+    FrameCounters counters;  // of its last sample
     Renderer::Footprint footprint;
     std::uint32_t cases = 0;
     std::string tracer;

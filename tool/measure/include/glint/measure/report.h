@@ -19,6 +19,7 @@ namespace glint::measure {
 // accuracy needs.
 struct Reference {
     LinearImage image;
+    bool isFull = true;                     // has all of light transport
     compiler::Configuration configuration;  // over the base
     std::uint32_t samples = 0;              // a pixel
     double exposure = 0.0;                  // stops: automatic, for every measure and picture of the bench
@@ -64,6 +65,37 @@ struct StrategyReport {
 // `base` is the strategy of the default, which is the first of `points`.
 StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base);
 
+// What a configuration takes away from the default's error, as shares of that error in a measure that adds up
+// (additive()). Shares below 0: the error grows.
+struct RemovedError {
+    std::size_t point = 0;  // index of the configuration
+    Interval all;           // from rounds with the same seed
+    double bias = 0.0;      // what no number of samples would take away
+    double noise = 0.0;     // what samples would take away, too
+};
+
+// An approximation of the default, and what its exact value alone takes away.
+struct ErrorPart {
+    std::string setting;
+    std::string from;  // the default's value
+    std::string to;    // the reference's
+    RemovedError removed;
+};
+
+// Which part of the default's error is which approximation.
+struct ErrorParts {
+    std::vector<ErrorPart> parts;       // the most bias first
+    std::optional<RemovedError> exact;  // all these values at once; absent if none was measured
+    double noise = 0.0;                 // share of the error; 0 if there was one round
+    // The share of bias that is in no part. Above 0 it is what only several exact values together take away,
+    // below 0 the parts overlap.
+    double rest = 0.0;
+};
+
+// `points` has the default first. Settings of which no point has the exact value alone are left out.
+ErrorParts partsOfError(std::span<const BenchPoint> points, std::span<const Setting> settings,
+                        ErrorMetric metric);
+
 struct BenchScene {
     std::string file;
     std::uint64_t triangles = 0;
@@ -102,8 +134,12 @@ struct BenchReport {
     std::vector<BenchPoint> points;  // the default first
     std::vector<std::size_t> front;  // indices of points, from the fastest
     StrategyReport strategies;
+    ErrorParts errorParts;
     std::optional<BenchAdvice> advice;
 };
+
+// Returns "all of light transport (--bounces unlimited ...)": what the reference is, in words.
+std::string describeReference(const BenchReport& report);
 
 // Returns milliseconds of a picture: the point's ratio times the default's median.
 Interval timeOf(const BenchReport& report, std::size_t point);

@@ -21,6 +21,7 @@ struct Setting {
     bool isCompiled = false;            // another value needs another package
     bool approximates = false;          // false if it changes time alone
     std::string base;                   // the value in the default configuration
+    std::string exact{};                // the value in the reference; empty: `base`
     std::vector<std::string> values{};  // the values worth trying, including `base`, in their natural order
     std::vector<SkippedValue> skipped{};
 };
@@ -30,8 +31,12 @@ struct Setting {
 std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compiler::Configuration& base,
                                  bool quick);
 
+// Returns whether the reference has a value of its own, and that value is worth trying.
+bool hasExactValue(const Setting& setting);
+
 // Returns the configuration of the reference: every approximation is off, and other settings keep their
-// value.
+// value. Approximations of transport keep theirs, too, unless the reference has all of it
+// (BenchFacts::fullTransport).
 compiler::Configuration exactValues(const compiler::BenchFacts& facts);
 
 // Returns `configuration`, to be applied over `base`, without values that have no effect: an ordering if

@@ -17,6 +17,9 @@ namespace glint::measure {
 std::vector<compiler::Configuration> singles(std::span<const Setting> settings,
                                              const compiler::Configuration& base);
 
+// Returns the configuration in which every approximation that is swept has the reference's value.
+compiler::Configuration exactTogether(std::span<const Setting> settings, const compiler::Configuration& base);
+
 // Returns configurations that change two settings whose effects do not simply add up: for instance one that
 // saves time beside the number of samples, or one that shares shaders beside how they are run. With `quick`
 // there are fewer.
