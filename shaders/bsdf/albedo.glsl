@@ -45,13 +45,16 @@ vec2 ggxAlbedo(float nDotV, float alpha) {
 }
 
 // 2 ∫ ggxAlbedo(μ) μ dμ of exactly these fits, so that losses and their mean cancel: 1 - S̄, where S = f0 (E - y) + f90
-// y, is 0.9997 to 1.01 times its integral, for all f0 <= f90 <= 1. The logarithm comes from the tail of the loss,
+// y, is 0.9997 to 1.005 times its integral, for all f0 <= f90 <= 1. The logarithm comes from the tail of the loss,
 // alpha² / n·v².
 vec2 ggxMeanAlbedo(float alpha) {
     float a2 = alpha * alpha;
     float loss = 0.2189529 + a2 * (34.89501 * alpha - 34.52422) -
                  log2(alpha) * (0.7132721 + alpha * (alpha * (13.40621 + 11.68229 * alpha) - 0.5533438));
-    return vec2(a2 * loss, 0.0390746 + alpha * (-0.08094045 + 0.04194681 * alpha));
+    float roughness = sqrt(alpha);
+    float bias = 0.04699041 + roughness * (0.03384517 + roughness * (-0.3704664 + roughness * (0.5095749 -
+                 0.2168147 * roughness)));
+    return vec2(a2 * loss, bias);
 }
 
 // The alpha of the isotropic lobe that loses about as much as an anisotropic one.

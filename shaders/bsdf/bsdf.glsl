@@ -73,19 +73,26 @@ GLINT_RELAXED vec3 specularAlbedo(Bsdf b, Features features, GLINT_RELAXED float
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b, features) * loss : single;
 }
 
+// What of the light that single scattering loses passes the dielectric's microfacets in the end: 1 -
+// multiScatterFresnel(), or all of it without compensation.
+GLINT_RELAXED vec3 passedAgain(Bsdf b) {
+    if (GLINT_ENERGY_COMPENSATION == 0) {
+        return vec3(1.0);
+    }
+    GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
+    GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
+    GLINT_RELAXED vec3 mean = meanFresnel(b.f0, b.f90);
+    GLINT_RELAXED float meanLoss = b.meanLoss;
+    GLINT_RELAXED vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
+    return rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
+}
+
 // What the microfacets of the dielectric do not reflect: 1 - specularAlbedo() without metal. It is a sum of positive
 // terms; the difference would lose its digits where nearly all light is reflected.
 GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
     GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
-    GLINT_RELAXED vec3 again = vec3(1.0);  // 1 - multiScatterFresnel()
-    if (GLINT_ENERGY_COMPENSATION != 0) {
-        GLINT_RELAXED vec3 mean = meanFresnel(b.f0, b.f90);
-        GLINT_RELAXED float meanLoss = b.meanLoss;
-        GLINT_RELAXED vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
-        again = rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
-    }
-    return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + again * loss;
+    return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + passedAgain(b) * loss;
 }
 
 // The part of it that a white lobe lets through at the first bounce: the albedo of thinTransmission() with Fresnel.
@@ -133,12 +140,22 @@ bool seenFromWithin(Bsdf b, Features features) {
     return hasLobe(features, GLINT_VOLUME) && b.eta.y < 1.0 && refracts(b.eta.y);
 }
 
+// Returns whether what the facets of a volume block leaves along their own directions all the same, as the walk of
+// refracted rays has it: mirrored at the plane if these point to its other side. Then an interface loses nothing. The
+// albedo of a lobe that bends, by which its light could be divided instead, is not known in closed form.
+bool keepsBlocked(Bsdf b, Features features, float eta) {
+    return GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_VOLUME) && !passesStraight(features, eta);
+}
+
 // The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is reciprocal, and the
 // whole reflects at most what comes in: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
 // Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5. l.z > 0; light on
 // the far side is mirrored.
 GLINT_RELAXED float diffuseShare(Bsdf b, Features features, vec3 l, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
+        if (keepsBlocked(b, features, b.eta.y)) {
+            return 0.0;  // The facets take all: volumeBsdf() removes the diffuse lobes from within.
+        }
         // E does not include total reflection, so this uses what the smooth interface lets through, in both directions.
         vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
         vec2 light2 = exactSquare(vec2(l.z, 0.0));
@@ -176,9 +193,48 @@ Facet facetBetween(Bsdf b, Features features, vec3 l) {
     return facet;
 }
 
+// Returns whether a thin wall lets through what its facets block, in a lobe of its own.
+bool scattersPassage(Features features) {
+    return GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_TRANSMISSION) && !hasLobe(features, GLINT_VOLUME);
+}
+
+// The density with which visible facets send the view to l, or with l.z < 0 to below the plane: mirroredPdf(). It is 0
+// where rounding leaves no half vector.
+float facetDensity(Bsdf b, vec3 l) {
+    vec3 sum = b.view + l;
+    float size = sqrt(dot(sum, sum));
+    vec3 h = sum / max(size, 1e-12);
+    // v·h is half of the size.
+    return h.z > 0.0 && dot(b.view, h) < size ? mirroredPdf(b.view, h, b.alpha) : 0.0;
+}
+
+// What the facets of a volume's surface reflect to l within it, where l may be below the plane.
+vec3 facetReflection(Bsdf b, vec3 l) {
+    return fresnelInterface(b.f0, b.f90, halfCosine2(b.view, l), b.eta.y) * facetDensity(b, l);
+}
+
+// Light that metal reflects, times n·l.
+vec3 metalReflection(Bsdf b, Features features, vec3 l) {
+    vec3 h = normalize(b.view + l);
+    vec3 once = fresnelSchlick(b.metalF0, 1.0, min(dot(b.view, h), 1.0)) *
+                (ggxDistribution(h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
+    float lightLoss = lobeAlbedo(b, features, l).x;
+    return (once + multiScatterOf(b.metalF0, 1.0, b.meanLoss) *
+                       (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12))) * l.z;
+}
+
 // Light that the base reflects, times n·l; l.z > 0.
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
     Facet facet = facetBetween(b, features, l);
+    GLINT_RELAXED vec3 diffuse = diffuseLobe(b.layers, features, b.diffuse, b.view, l) *
+                                 (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
+    if (seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y)) {
+        vec3 within = facetReflection(b, l) + facetReflection(b, vec3(l.xy, -l.z));
+        if (hasInput(features, GLINT_PARTIAL_METAL)) {
+            within = mix(within, metalReflection(b, features, l), b.metallic);
+        }
+        return diffuse * l.z + within;
+    }
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
 #if GLINT_EMISSIVE_LIGHTS
     specular *= b.mirrored;
@@ -187,8 +243,6 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         float lightLoss = lobeAlbedo(b, features, l).x;
         specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
     }
-    GLINT_RELAXED vec3 diffuse = diffuseLobe(b.layers, features, b.diffuse, b.view, l) *
-                                 (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
     return (diffuse + specular) * l.z;
 }
 
@@ -211,16 +265,41 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     return lobe * passed;
 }
 
+// The density with which visible facets bend the view to l, for the index of one channel, times what they let through.
+// l may be on either side. From outside it is what the microfacets do not reflect in all: the reflection knows only its
+// own albedo.
+float bentLight(Bsdf b, vec3 l, float eta) {
+    RefractingFacet facet;
+    if (!refractionHalfVector(b.view, l, eta, facet)) {
+        return 0.0;
+    }
+    float passed = eta < 1.0 ? schlickPassed(b.f0, b.f90, facet.cosineL)
+                             : max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
+    return passed * visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
+}
+
+// specularTransmission() with what a volume's facets block.
+float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
+    return keepsBlocked(b, features, eta) ? bentLight(b, l, eta) + bentLight(b, vec3(l.xy, -l.z), eta)
+                                          : specularTransmission(b, features, l, eta);
+}
+
 // Light that the base passes, times |n·l|; l.z < 0.
 vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     vec3 result = vec3(0.0);
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        vec3 lobe = vec3(specularTransmission(b, features, l, b.eta.y));
+        vec3 lobe = vec3(wholeTransmission(b, features, l, b.eta.y));
         if (hasLobe(features, GLINT_DISPERSION)) {
-            lobe.x = specularTransmission(b, features, l, b.eta.x);
-            lobe.z = specularTransmission(b, features, l, b.eta.z);
+            lobe.x = wholeTransmission(b, features, l, b.eta.x);
+            lobe.z = wholeTransmission(b, features, l, b.eta.z);
         }
         result += b.transmitted * lobe;
+        if (scattersPassage(features)) {
+            // Kulla and Conty's lobe of several bounces, on the far side.
+            float lightLoss = lobeAlbedo(b, features, vec3(l.xy, -l.z)).x;
+            result += b.transmitted * (smallest(passedAgain(b)) * -l.z *
+                                       (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12)));
+        }
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
         // Light leaves on the other side, where the half vector has no meaning, so the Fresnel of the view counts.

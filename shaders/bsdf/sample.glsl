@@ -11,7 +11,7 @@ struct BsdfSample {
 struct LobeChances {
     float microfacets;  // visible normals of the base, for reflection and passage
     float diffuse;      // cosine-weighted: diffuse, multiple scattering
-    float passed;       // cosine-weighted, on the far side
+    float passed;       // cosine-weighted, on the far side: diffuse, multiple scattering
     LayerChances layers;
 };
 
@@ -24,10 +24,12 @@ LobeChances lobeChances(Bsdf b, Features features) {
     chances.diffuse = luminance(b.diffuse) * below + luminance(all - single);
     chances.passed = 0.0;
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        chances.microfacets += luminance(b.transmitted) * below;
+        float later = scattersPassage(features) ? smallest(passedAgain(b)) * b.viewLoss : 0.0;
+        chances.microfacets += luminance(b.transmitted) * max(below - later, 0.0);
+        chances.passed = luminance(b.transmitted) * later;
     }
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
-        chances.passed = luminance(b.diffuseTransmitted) * below;
+        chances.passed += luminance(b.diffuseTransmitted) * below;
     }
     float base = layerChances(b.layers, features, b.view, chances.layers);
     float total = base * (chances.microfacets + chances.diffuse + chances.passed) + sumOfChances(chances.layers);
@@ -69,6 +71,16 @@ float sampledIndex(Bsdf b, Features features, float u) {
     return b.eta.y;
 }
 
+// The density of a direction to which facets bend the view, for the index of one colour.
+float bendingPdf(Bsdf b, Features features, vec3 l, float eta) {
+    RefractingFacet facet;
+    if (!refractionHalfVector(b.view, l, eta, facet)) {
+        return 0.0;
+    }
+    return facetChances(b, features, exactSquare(vec2(facet.cosineV, 0.0)), eta).y *
+           visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
+}
+
 // The density of a direction beyond the microfacets, for the index of one colour.
 float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
     if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
@@ -78,24 +90,26 @@ float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
         return facetChances(b, features, decidingCosine2(b, features, halfCosine2(b.view, mirrored), eta), eta).y *
                mirroredPdf(b.view, h, alpha);
     }
-    RefractingFacet facet;
-    if (!refractionHalfVector(b.view, l, eta, facet)) {
-        return 0.0;
+    float pdf = bendingPdf(b, features, l, eta);
+    return keepsBlocked(b, features, eta) ? pdf + bendingPdf(b, features, vec3(l.xy, -l.z), eta) : pdf;
+}
+
+// The density of the microfacets' reflections: of a direction above the plane, or below it.
+float reflectedPdf(Bsdf b, Features features, vec3 l) {
+    vec2 facet2 = halfCosine2(b.view, l);
+    float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;
+    if (hasLobe(features, GLINT_DISPERSION)) {
+        chance = (facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.x), b.eta.x).x + chance +
+                  facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.z), b.eta.z).x) / 3.0;
     }
-    return facetChances(b, features, exactSquare(vec2(facet.cosineV, 0.0)), eta).y *
-           visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
+    return chance * facetDensity(b, l);
 }
 
 float microfacetPdf(Bsdf b, Features features, vec3 l) {
     if (l.z > 0.0) {
-        vec3 h = normalize(b.view + l);
-        vec2 facet2 = halfCosine2(b.view, l);
-        float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;
-        if (hasLobe(features, GLINT_DISPERSION)) {
-            chance = (facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.x), b.eta.x).x + chance +
-                      facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.z), b.eta.z).x) / 3.0;
-        }
-        return chance * mirroredPdf(b.view, h, b.alpha);
+        float pdf = reflectedPdf(b, features, l);
+        bool mirrors = seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y);
+        return mirrors ? pdf + reflectedPdf(b, features, vec3(l.xy, -l.z)) : pdf;
     }
     if (!hasLobe(features, GLINT_TRANSMISSION)) {
         return 0.0;
@@ -124,7 +138,8 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     vec3 reflected = reflectAbout(b.view, h);
     vec2 facet2 = exactSquare(exactDot(b.view, h));
     if (chooser < facetChances(b, features, decidingCosine2(b, features, facet2, eta), eta).x) {
-        return reflected.z > 0.0 ? reflected : vec3(0.0);
+        bool mirrors = seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y);
+        return mirrors ? vec3(reflected.xy, abs(reflected.z)) : reflected.z > 0.0 ? reflected : vec3(0.0);
     }
     if (passesStraight(features, eta)) {
         h = sampleVisibleNormal(b.view, vec2(kMinAlpha), u.xy);
@@ -134,7 +149,11 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
         return reflected.z > 0.0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0.0);
     }
     vec3 refracted;
-    return refractDirection(b.view, h, eta, refracted) && refracted.z < 0.0 ? refracted : vec3(0.0);
+    if (!refractDirection(b.view, h, eta, refracted)) {
+        return vec3(0.0);
+    }
+    bool passes = refracted.z < 0.0 || keepsBlocked(b, features, eta);
+    return passes ? vec3(refracted.xy, -abs(refracted.z)) : vec3(0.0);
 }
 
 // Samples a direction for the prepared view; u is uniform in [0, 1)³.

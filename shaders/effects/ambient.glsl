@@ -85,5 +85,8 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
     if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
         back += surface.bsdf.diffuseTransmitted * (below * sky.behind) * hostSkyIrradianceOverPi(-surface.normal);
     }
+#if GLINT_SHADOW_GLASS
+    back *= surface.unabsorbed;
+#endif
     return addSkyOfLayers(surface, features, view, sky, open, front * open + back);
 }

@@ -35,6 +35,11 @@ vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
 // random choice.
 bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primitive, vec2 barycentrics) {
     HostGeometry geometry = hostGeometry(geometryIndex);
+#if GLINT_SHADOW_GLASS
+    if ((geometry.flags & kGeometryAlphaTested) == 0u) {
+        return true;  // Glass without alpha is a candidate for the sake of shadow rays.
+    }
+#endif
     vec2 alpha = alphaAndCutoff(geometry, primitive, barycentrics);
 #if GLINT_BLENDED
     if ((geometry.flags & kGeometryBlended) != 0u) {

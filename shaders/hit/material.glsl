@@ -43,6 +43,9 @@ Surface evaluateSurface(Hit hit, Features features) {
     surface.normal = values.normal * facing(hit, features);
     surface.occlusion = values.occlusion;
     surface.roughness = values.roughness;
+#if GLINT_SHADOW_GLASS
+    surface.unabsorbed = vec3(1.0);
+#endif
     buildBasis(surface.normal, surface.tangent, surface.bitangent);
     surface.bsdf = makeBase(values, features);
     runBsdfStage(hit, features, values, surface);

@@ -111,6 +111,21 @@ vec3 countedEmission(Hit hit, Surface surface) {
     return surface.emission;
 }
 
+// The light of a light that emits from no triangle, without its shadow. Where shadow rays pass glass, the surface that
+// sent the ray has had the light of such lights behind this glass on the straight line, with all that happens within: it
+// would count twice.
+vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light) {
+#if GLINT_SHADOW_GLASS
+    if (hasLobe(features, GLINT_TRANSMISSION)) {
+        if (hasLobe(features, GLINT_VOLUME) && showsBack(features) && !hit.frontFace) {
+            return vec3(0.0);
+        }
+        surface.bsdf.transmitted = vec3(0.0);
+    }
+#endif
+    return unshadowedLight(hit, surface, features, hostSampleLight(light, hit.position));
+}
+
 // Direct light from one light. The light is chosen in one pass, with probability proportional to the luminance that it
 // would bring without shadows (weighted reservoir sampling, Chao 1982). The result is unbiased, and exact if one light
 // dominates.
@@ -134,9 +149,9 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
         LightSample aim;
         vec3 contribution =
             isEmitter(light) ? lightOfEmitterAtHit(hit, lobes, features, light, i, aim)
-                             : unshadowedLight(hit, surface, features, hostSampleLight(light, hit.position));
+                             : lightOfLight(hit, surface, features, light);
 #else
-        vec3 contribution = unshadowedLight(hit, surface, features, hostSampleLight(light, hit.position));
+        vec3 contribution = lightOfLight(hit, surface, features, light);
 #endif
         float weight = luminance(contribution);
         if (weight <= 0.0) {

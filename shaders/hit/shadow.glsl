@@ -1,7 +1,7 @@
 // Shadow rays of hits, which are traced at once or put on a list.
 #include "hit/bindings.glsl"
 #include "hit/count.glsl"
-#include "hit/trace.glsl"
+#include "hit/light_ray.glsl"
 
 struct ShadowRay {
     vec3 origin;
@@ -40,7 +40,7 @@ vec3 lightOrDefer(uint target, ShadowRay shadow) {
         ShadowRecord(shadow.origin, target, shadow.direction, shadow.distance, shadow.light, shadow.sees);
     return vec3(0.0);
 #else
-    bool visible = isVisibleTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance);
+    bool visible = lightArrivesTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance, shadow.light);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     return visible ? shadow.light : vec3(0.0);
 #endif

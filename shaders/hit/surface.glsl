@@ -9,6 +9,10 @@ struct Surface {
     float roughness; // sqrt of the larger alpha
     vec3 emission;
     GLINT_RELAXED float occlusion; // of ambient light only
+#if GLINT_SHADOW_GLASS
+    GLINT_RELAXED vec3 unabsorbed; // share of light from behind that passes the volume's thickness, for light that is
+                                   // not followed: rays measure the distance
+#endif
 };
 
 vec3 toSurface(Surface surface, vec3 direction) {

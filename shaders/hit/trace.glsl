@@ -52,16 +52,18 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
 #ifdef GLINT_KEEPS_CORNERS
     rayQueryGetIntersectionTriangleVertexPositionsEXT(query, true, tracedCorners);
 #endif
-    return hitRecord(ray, rayIndex,
-                     TracePayload(geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, true),
-                                                rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
-                                                rayQueryGetIntersectionGeometryIndexEXT(query, true)),
-                                  uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true)),
-                                  rayQueryGetIntersectionBarycentricsEXT(query, true),
-                                  rayQueryGetIntersectionTEXT(query, true)));
+    TracePayload found;
+    found.geometry = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, true),
+                                   rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
+                                   rayQueryGetIntersectionGeometryIndexEXT(query, true));
+    found.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
+    found.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
+    found.distance = rayQueryGetIntersectionTEXT(query, true);
+    return hitRecord(ray, rayIndex, found);
 }
 
-// Returns whether nothing stands between `origin` and a light. Both sides of a surface cast shadows.
+// Returns whether nothing stands in the way, seen from either side. What light keeps on its way from a light is for
+// lightArrives() (hit/light_ray.glsl).
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
@@ -126,8 +128,12 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
     uint culled = sees == kShadowOfEmitter ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
     traced.geometry = 0u;
-    traceRayEXT(GLINT_TLAS,
-                kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT | culled,
+#if defined(GLINT_LIGHT_IN_HIT_PAYLOAD) && (GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE)
+    const uint kEnd = gl_RayFlagsNoneEXT;  // The any-hit shader knows rays to other lights by the flag (hit/any_hit.glsl).
+#else
+    const uint kEnd = gl_RayFlagsTerminateOnFirstHitEXT;
+#endif
+    traceRayEXT(GLINT_TLAS, kOpacityFlags | kEnd | gl_RayFlagsSkipClosestHitShaderEXT | culled,
                 GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0, direction, distance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry;
 }

@@ -21,6 +21,8 @@ GLINT_CONSTANT(kGeometryDoubleSided, 2u);  // back faces are visible
 GLINT_CONSTANT(kGeometryMasked, 4u);       // the raster pass tests alpha, whether or not hits do
 GLINT_CONSTANT(kGeometryBlended, 8u);      // alphaMode BLEND: alpha is compared with a random number, not with the cutoff
 GLINT_CONSTANT(kGeometryEmitter, 16u);     // its triangles are lights, in packages with emissive lights
+// Shadow rays keep a share of their light on their way through it: non-opaque in the acceleration structure.
+GLINT_CONSTANT(kGeometryPassesLight, 32u);
 GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are the host's own
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing

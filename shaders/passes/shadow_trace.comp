@@ -1,8 +1,8 @@
 #version 460
 // Traces the deferred shadow rays of hits. Light that nothing blocks is added to the results of their samples.
 #include "hit/count.glsl"
+#include "hit/light_ray.glsl"
 #include "hit/list.glsl"
-#include "hit/trace.glsl"
 
 GLINT_RAY_WORKGROUP
 
@@ -12,7 +12,7 @@ void main() {
         return;
     }
     ShadowRecord shadow = GLINT_FRAME.shadows.data[index];
-    bool visible = isVisibleTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance);
+    bool visible = lightArrivesTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance, shadow.light);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     if (visible) {
         // A sample has one ray, and its hit has one shadow ray, so no other thread writes here.

@@ -8,6 +8,8 @@ layout(location = 0) rayPayloadInEXT TracePayload traced;
 hitAttributeEXT vec2 hitBarycentrics;
 
 void main() {
-    traced = TracePayload(geometryOfHit(gl_InstanceID, gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT),
-                          uint(gl_PrimitiveID), hitBarycentrics, gl_HitTEXT);
+    traced.geometry = geometryOfHit(gl_InstanceID, gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT);
+    traced.primitive = uint(gl_PrimitiveID);
+    traced.barycentrics = hitBarycentrics;
+    traced.distance = gl_HitTEXT;
 }

@@ -336,14 +336,14 @@ TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
 
 // A mirror shows a block of glass, whose single-sided surface the paths enter and leave. `color` is what one
 // metre of the glass lets through.
-double brightnessOfMirroredGlass(gltf::Float3 color) {
+double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
     const int mirror = addMaterial(scene, mirrorMaterial());
     addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     materials::Material glass = diffuse(1.0F, 0.0F);
     glass["specularFactor"] = 1.0F;
-    glass["roughnessFactor"] = 0.0F;
+    glass["roughnessFactor"] = roughness;
     glass["transmissionFactor"] = 1.0F;
     glass["thicknessFactor"] = 1.0F;
     glass["attenuationDistance"] = 1.0F;
@@ -362,6 +362,12 @@ double brightnessOfMirroredGlass(gltf::Float3 color) {
 
 TEST(Paths, ClearGlassIsWhiteInAUniformSky) {
     const double mean = brightnessOfMirroredGlass({1, 1, 1});
+    std::printf("mean %.5f\n", mean);
+    EXPECT_NEAR(mean, 1.0, 0.01);
+}
+
+TEST(Paths, RoughGlassIsWhiteInAUniformSky) {
+    const double mean = brightnessOfMirroredGlass({1, 1, 1}, 0.7F);
     std::printf("mean %.5f\n", mean);
     EXPECT_NEAR(mean, 1.0, 0.01);
 }

@@ -119,13 +119,13 @@ struct Prepared {
     std::vector<ModuleSource> modules;
 };
 
-Result<Prepared> prepare(const gltf::SceneList& scenes, const CompileSettings& settings,
-                         std::optional<Plan> made) {
+Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& settings, std::optional<Plan> made) {
     if (Status valid = checkSettings(settings, scenes.path()); !valid) {
         return valid.error();
     }
     Plan plan = made ? std::move(*made) : makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     plan.effects = planEffects(scenes, settings);
+    settings.shadowThrough = shadowThroughOf(scenes, plan, settings);
     if (const auto excess = describeExcess(plan, settings.plan)) {
         return makeError("max-shaders", scenes.path(), *excess);
     }
@@ -140,8 +140,8 @@ Result<Prepared> prepare(const gltf::SceneList& scenes, const CompileSettings& s
     return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
 }
 
-Result<CompiledPackage> compile(const gltf::SceneList& scenes, const CompileSettings& settings,
-                                ModuleCache* cache, std::optional<Plan> made) {
+Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings settings, ModuleCache* cache,
+                                std::optional<Plan> made) {
     Result<Prepared> prepared = prepare(scenes, settings, std::move(made));
     if (!prepared) {
         return prepared.error();

@@ -145,4 +145,20 @@ Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const 
     return !ofHost && std::ranges::any_of(scenes, tooMany) ? kSamplesOfManyLights : 0U;
 }
 
+package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
+                                       const CompileSettings& settings) {
+    using enum package::ShadowThrough;
+    if (settings.shadowThrough == Alpha || plan.effects.effects.lights == 0) {
+        return Alpha;
+    }
+    const bool passesBlended = settings.plan.keys.alpha == package::AlphaPolicy::Stochastic;
+    const auto asked = [&](const materials::PrimitiveInputs& primitive) {
+        const materials::Material& material =
+            scenes.materials()[static_cast<std::size_t>(primitive.material)];
+        return (passesBlended && material.alphaMode == materials::AlphaMode::Blend) ||
+               (settings.shadowThrough == Glass && passesLight(material, primitive));
+    };
+    return std::ranges::any_of(scenes.primitives(), asked) ? settings.shadowThrough : Alpha;
+}
+
 }  // namespace glint::compiler

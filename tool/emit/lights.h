@@ -1,7 +1,8 @@
-// Which lights a surface takes: all of them, or some that a hierarchy chooses; and whether triangles that
-// emit light are among them.
+// Which lights a surface takes: all of them, or some that a hierarchy chooses; whether triangles that emit
+// light are among them; and what shadow rays pass.
 #pragma once
 
+#include "gltf/scene.h"
 #include "gltf/scene_list.h"
 #include "settings/compile_settings.h"
 
@@ -37,6 +38,11 @@ struct EmitterFeatures {
     bool coveredByLayers = false;
 };
 EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan);
+
+// Returns CompileSettings::shadowThrough for a package, or Alpha if it would change nothing: without shadows,
+// and where no material has what light would pass otherwise.
+package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
+                                       const CompileSettings& settings);
 
 // Returns CompileSettings::lightSamples for a package of `scenes`, which decides by the scene with the most
 // lights. emissiveLights must be decided. A host that has its own lights, or that sends its own rays, has no

@@ -60,6 +60,7 @@ constexpr RoleSource kSources[] = {
     {ModuleRole::HitCase, "strategies/hit_shaders/hit_case.rchit.mustache"},
     {ModuleRole::HitUnknown, "strategies/hit_shaders/hit_unknown.rchit"},
     {ModuleRole::HitMiss, "strategies/hit_shaders/hit_miss.rmiss"},
+    {ModuleRole::HitAnyHit, "strategies/hit_shaders/hit_any.rahit"},
     {ModuleRole::PathRays, "passes/path_rays.comp"},
     {ModuleRole::Deform, "passes/deform.comp"},
     {ModuleRole::UberFallback, "strategies/uber/uber.comp"},
@@ -240,7 +241,8 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
             settings.passes,
             settings.maxBounces,
-            settings.plan.fallback};
+            settings.plan.fallback,
+            settings.shadowThrough != package::ShadowThrough::Alpha};
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,

@@ -102,12 +102,18 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
     // These macros are separate, so that other features of a scene do not change modules that test alpha.
     text += "// What the alpha test of rays needs of the same.\n";
+    const bool passesGlass = settings.shadowThrough == package::ShadowThrough::Glass;
     const materials::FeatureMask alpha =
         alphaPolicy != package::AlphaPolicy::Opaque ? alphaFeatures(*plan.model) : 0;
-    defineFeatures(text, "GLINT_ALPHA", plan.always & alpha, plan.sometimes & alpha);
+    // Shadow rays that pass glass read what glass is made of, whatever hits keep.
+    defineFeatures(text, "GLINT_ALPHA", passesGlass ? plan.primaryAlways : plan.always & alpha,
+                   passesGlass ? plan.primarySometimes : plan.sometimes & alpha);
     text += "// Settings\n";
     text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(alphaPolicy != package::AlphaPolicy::Opaque));
     text += fmt::format("#define GLINT_BLENDED {}\n", flag(hasBlended));
+    text += fmt::format("#define GLINT_SHADOW_GLASS {}\n", flag(passesGlass));
+    text += fmt::format("#define GLINT_SHADOW_OPAQUE {}\n",
+                        flag(settings.shadowThrough == package::ShadowThrough::Opaque));
     text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));

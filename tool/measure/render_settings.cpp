@@ -57,6 +57,12 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     facts.masks = std::ranges::any_of(scene.materials, [](const materials::Material& material) {
         return material.alphaMode != materials::AlphaMode::Opaque;
     });
+    const std::vector<materials::PrimitiveInputs> primitives = planningInputs(scene);
+    facts.passesLight = std::ranges::any_of(primitives, [&](const materials::PrimitiveInputs& primitive) {
+        const materials::Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+        return material.alphaMode == materials::AlphaMode::Blend ||
+               compiler::passesLight(material, primitive);
+    });
     facts.furtherLobes = losesLobes(scene, plan);
     facts.textures = !scene.textures.empty();
     compiler::CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);

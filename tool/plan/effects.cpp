@@ -180,6 +180,11 @@ bool isEmitter(const materials::Material& material, const materials::PrimitiveIn
     });
 }
 
+bool passesLight(const materials::Material& material, const materials::PrimitiveInputs& primitive) {
+    return !material.isUnlit() &&
+           !SurfaceBehaviour({&material, &primitive}).why(materials::Behaviour::Transmits, 1.0).empty();
+}
+
 double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive) {
     return SurfaceBehaviour({&material, &primitive}).leastRoughness();
 }

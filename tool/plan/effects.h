@@ -64,6 +64,9 @@ bool sendsRays(const materials::EffectDeclaration& effect, const materials::Mate
 // a pack changes that light or where its texture is read.
 bool isEmitter(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 
+// Returns whether light may pass straight through the surface.
+bool passesLight(const materials::Material& material, const materials::PrimitiveInputs& primitive);
+
 // Returns the least roughness of anything that reflects, without what textures do; infinity if nothing does.
 double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 

@@ -44,6 +44,7 @@ struct CompileSettings {
     std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
+    package::ShadowThrough shadowThrough = package::ShadowThrough::Alpha;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
     std::uint32_t maxBounces = 1;  // of paths: 1 to package::kMaxBounces
     package::Passes passes = package::Passes::Frame;

@@ -315,6 +315,20 @@ constexpr Descriptor kRows[] = {
                                return std::string(value.empty() && !facts.masks ? "no material has alpha"
                                                                                 : "");
                            })},
+    {.name = "shadow-through",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "what light of lights keeps on its straight way through alpha and glass",
+     .values = enumerator<&Settings::compile, &CompileSettings::shadowThrough>(),
+     .bench = approximates("glass", {}, {},
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               return std::string(!value.empty() || facts.passesLight
+                                                      ? ""
+                                                      : "no material lets light through");
+                           }),
+     .document = "shadows.md",
+     .recorded = true},
     {.name = "precision",
      .commands = kMakers,
      .stage = SettingStage::Package,

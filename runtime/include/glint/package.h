@@ -67,6 +67,9 @@ public:
     bool alphaTested() const;
     // What rays do with the alpha of materials.
     package::AlphaPolicy alpha() const;
+    // What light of lights keeps on its straight way through alpha and glass. It is Alpha where the scenes
+    // call for nothing else.
+    package::ShadowThrough shadowThrough() const;
     // Returns the strategies, the tracers, the placement of shadow rays and whatever else decides which
     // modules the package has.
     package::PackageShape shape() const;

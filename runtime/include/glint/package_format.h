@@ -51,6 +51,13 @@ enum class AlphaPolicy : std::uint32_t {
     Stochastic = 2,  // as above, but a ray stops at BLEND with the probability alpha
 };
 
+// What light of lights keeps on its straight way through alpha and glass.
+enum class ShadowThrough : std::uint32_t {
+    Alpha = 0,   // what AlphaPolicy gives all rays; glass blocks it
+    Opaque = 1,  // glass and alphaMode BLEND block it
+    Glass = 2,   // a share of each colour
+};
+
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
@@ -139,7 +146,7 @@ struct PackageHeader {
     std::uint32_t
         lightSamples;        // lights that a surface chooses by the hierarchy; 0: it takes all, without one
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
-    std::uint32_t pad;
+    ShadowThrough shadowThrough;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -203,6 +210,7 @@ enum class ModuleRole : std::uint32_t {
     ShadeFallback = 29,
     SortedFallback = 30,
     HitFallback = 31,
+    HitAnyHit = 32,  // TraceAnyHit of the strategy hit-shaders, where shadow rays read more than alpha
 };
 
 struct ModuleEntry {

@@ -27,7 +27,8 @@ struct PackageShape {
     bool deforms = false;                  // a scene has meshes that follow skins or morph targets
     Passes passes = Passes::Frame;
     std::uint32_t maxBounces = 1;
-    bool fallback = false;  // it has shaders for every material beside those of its cases
+    bool fallback = false;      // it has shaders for every material beside those of its cases
+    bool shadowsApart = false;  // candidates of shadow rays are not treated as those of other rays
 };
 
 // One module of a package. The fields are those of ModuleEntry.
@@ -90,6 +91,11 @@ inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
     {AlphaPolicy::Tested, "tested", "each candidate hit is tested; BLEND is opaque"},
     {AlphaPolicy::Stochastic, "stochastic", "tested, and a ray stops at BLEND with the probability alpha"},
 };
+inline constexpr Named<ShadowThrough> kShadowThroughNames[] = {
+    {ShadowThrough::Opaque, "opaque", "glass and BLEND block"},
+    {ShadowThrough::Alpha, "alpha", "as --alpha says; glass blocks"},
+    {ShadowThrough::Glass, "glass", "coloured light passes glass and BLEND"},
+};
 inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
     {HitRecordFormat::Full, "full", "32 bytes"},
     {HitRecordFormat::Packed, "packed", "16 bytes, with less precision"},
@@ -131,6 +137,9 @@ constexpr std::span<const Named<ShadowPlacement>> namesOf(ShadowPlacement /*type
 }
 constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
     return kAlphaNames;
+}
+constexpr std::span<const Named<ShadowThrough>> namesOf(ShadowThrough /*type*/) {
+    return kShadowThroughNames;
 }
 constexpr std::span<const Named<HitRecordFormat>> namesOf(HitRecordFormat /*type*/) {
     return kHitRecordNames;
@@ -213,6 +222,7 @@ inline constexpr RoleInfo kRoles[] = {
     {ModuleRole::SortedFallback, kStrategySortedUber, "SortedFallback", ShaderKind::Tracing,
      Purpose::Fallback, Repeated::Once, true},
     {ModuleRole::HitFallback, kStrategyHitShaders, "HitFallback", ShaderKind::ClosestHit, Purpose::Fallback},
+    {ModuleRole::HitAnyHit, kStrategyHitShaders, "HitAnyHit", ShaderKind::AnyHit},
 };
 
 // Returns null for a number that is no role.
@@ -280,8 +290,9 @@ constexpr bool traces(const RoleInfo& info, const PackageShape& shape) {
 // The result is empty if the package does not need the role.
 inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const PackageShape& shape) {
     const std::uint32_t strategies = info.strategies & shape.strategies;
-    const bool untested = info.kind == ShaderKind::AnyHit && !shape.alphaTested;
-    if (strategies == 0 || !hasPurpose(info.purpose, shape) || untested) {
+    const bool untested = info.kind == ShaderKind::AnyHit && !shape.alphaTested && !shape.shadowsApart;
+    const bool shared = info.role == ModuleRole::HitAnyHit && !shape.shadowsApart;
+    if (strategies == 0 || !hasPurpose(info.purpose, shape) || untested || shared) {
         return {};
     }
     const std::uint32_t tracers = tracersOf(strategies, shape.tracers);

@@ -62,6 +62,10 @@ package::AlphaPolicy Package::alpha() const {
     return state_->header.alpha;
 }
 
+package::ShadowThrough Package::shadowThrough() const {
+    return state_->header.shadowThrough;
+}
+
 package::PackageShape Package::shape() const {
     return shapeOf(*state_);
 }

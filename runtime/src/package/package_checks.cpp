@@ -99,6 +99,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.shadows > package::ShadowPlacement::Deferred) {
         return outside("the placement of shadow rays", static_cast<std::uint32_t>(header.shadows));
     }
+    if (header.shadowThrough > package::ShadowThrough::Glass) {
+        return outside("what shadow rays pass", static_cast<std::uint32_t>(header.shadowThrough));
+    }
     if (header.hitRecord > package::HitRecordFormat::Packed) {
         return outside("the hit record", static_cast<std::uint32_t>(header.hitRecord));
     }
@@ -192,7 +195,7 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
     }
     constexpr std::uint32_t kKnownFlags = gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided |
                                           gpu::kGeometryMasked | gpu::kGeometryBlended |
-                                          gpu::kGeometryEmitter;
+                                          gpu::kGeometryEmitter | gpu::kGeometryPassesLight;
     if ((entry.geometryFlags & ~kKnownFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
         return altered(where, name + " has unknown flags");
     }
@@ -202,6 +205,10 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
     }
     if ((entry.geometryFlags & gpu::kGeometryEmitter) != 0 && state.emission.empty()) {
         return altered(where, name + " is a light, and the package has no emissive lights");
+    }
+    if ((entry.geometryFlags & gpu::kGeometryPassesLight) != 0 &&
+        state.header.shadowThrough != package::ShadowThrough::Glass) {
+        return altered(where, name + " passes light, and shadow rays of the package do not ask");
     }
     return okStatus();
 }
@@ -348,6 +355,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     shape.passes = header.passes;
     shape.maxBounces = header.maxBounces;
     shape.fallback = header.fallback != 0;
+    shape.shadowsApart = header.shadowThrough != package::ShadowThrough::Alpha;
     return shape;
 }
 

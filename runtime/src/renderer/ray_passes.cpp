@@ -29,7 +29,8 @@ RayPipelineSource hitShaderStart(const Package& package) {
     source.rayGeneration = rayWords(package, ModuleRole::HitTrace);
     // The miss indices are those of rays in the list and of shadow rays, in this order.
     source.miss = {rayWords(package, ModuleRole::HitMiss), rayWords(package, ModuleRole::TraceMiss)};
-    source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    source.anyHit =
+        rayWords(package, package.shape().shadowsApart ? ModuleRole::HitAnyHit : ModuleRole::TraceAnyHit);
     return source;
 }
 

@@ -25,6 +25,7 @@ struct BlasGeometry {
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;  // must not be 0
     bool opaque = true;
+    bool once = false;  // a ray meets each triangle at most once, although it goes on
 };
 
 // The most that one BLAS may hold.

@@ -20,7 +20,9 @@ VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry
     VkAccelerationStructureGeometryKHR described{};
     described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
     described.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
-    described.flags = geometry.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : 0;
+    described.flags |= geometry.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : VkGeometryFlagBitsKHR{};
+    described.flags |=
+        geometry.once ? VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR : VkGeometryFlagBitsKHR{};
     VkAccelerationStructureGeometryTrianglesDataKHR& triangles = described.geometry.triangles;
     triangles.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
     triangles.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;

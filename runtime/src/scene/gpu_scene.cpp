@@ -185,7 +185,8 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
             positions = own == state.deformed.addresses.end() ? positions : own->second.positions;
         }
         input.geometries.push_back({positions, indices, primitive.vertexCount, range.count,
-                                    (flags & gpu::kGeometryAlphaTested) == 0});
+                                    (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0,
+                                    (flags & gpu::kGeometryPassesLight) != 0});
     }
     return input;
 }

@@ -2,8 +2,8 @@
 // (hit/shade.glsl).
 #include "hit/count.glsl"
 #include "hit/hit.glsl"
+#include "hit/light_ray.glsl"
 #include "hit/sequence.glsl"
-#include "hit/trace.glsl"
 #include "host/lights.glsl"
 
 // The pair of dimensions of the sequence for the first light. Each further light has the next pair.
@@ -34,29 +34,40 @@ void reportShadows(ShadowCounts counts) {
     }
 }
 
+// A share of a light: of each colour if glass may stand before it, or counted.
+#if GLINT_SHADOW_GLASS
+#define LightShare vec3
+#define LightSum vec3
+#else
+#define LightShare float
+#define LightSum uint
+#endif
+
 // The visible share of a light's solid angle. A light without a size is visible or not.
-float visibleShare(Hit hit, HostLight light, LightSample centre, uint index, inout ShadowCounts counts) {
+LightShare visibleShare(Hit hit, HostLight light, LightSample centre, uint index, inout ShadowCounts counts) {
+    vec3 share = vec3(1.0);
     if (!hostLightHasSize(light)) {
-        bool visible = isVisible(rayOrigin(hit, centre.direction), centre.direction, centre.distance);
+        bool visible = lightArrives(rayOrigin(hit, centre.direction), centre.direction, centre.distance, share);
         counts.rays += 1u;
         counts.misses += visible ? 1u : 0u;
-        return visible ? 1.0 : 0.0;
+        return visible ? LightShare(share) : LightShare(0.0);
     }
     float side = dot(hit.geometricNormal, centre.direction);
-    uint seen = 0u;
+    LightSum seen = LightSum(0u);
     for (uint i = 0u; i < GLINT_FRAME.shadowSamples; ++i) {
         uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.shadowSamples + i;
         vec2 u = sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index);
         LightSample point = hostSampleLightPoint(light, centre, u);
         // The surface itself hides the part of the light that is below it.
         if (point.distance <= 0.0) {
-            seen += 1u;
+            seen += LightSum(1u);
         } else if (side * dot(hit.geometricNormal, point.direction) > 0.0) {
-            bool visible = isVisible(rayOrigin(hit, point.direction), point.direction, point.distance);
+            share = vec3(1.0);
+            bool visible = lightArrives(rayOrigin(hit, point.direction), point.direction, point.distance, share);
             counts.rays += 1u;
             counts.misses += visible ? 1u : 0u;
-            seen += visible ? 1u : 0u;
+            seen += visible ? LightSum(share) : LightSum(0u);
         }
     }
-    return float(seen) / float(GLINT_FRAME.shadowSamples);
+    return LightShare(seen) / float(GLINT_FRAME.shadowSamples);
 }

@@ -35,7 +35,11 @@ void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Su
             thickness *= texel.g;
         }
         GLINT_RELAXED vec3 transmittance = volumeTransmittance(GLINT_MATERIAL_ABSORPTION(hit), thickness);
+#if GLINT_SHADOW_GLASS
+        surface.unabsorbed = transmittance;
+#else
         surface.bsdf.transmitted *= transmittance;
         surface.bsdf.diffuseTransmitted *= transmittance;
+#endif
     }
 }

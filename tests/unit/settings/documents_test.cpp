@@ -197,6 +197,7 @@ const std::map<std::string, std::set<std::string>, std::less<>>& enumerations() 
         {"tracers", namesOfAll<package::Tracer>()},
         {"ordering", namesOfAll<package::Ordering>()},
         {"shadows", namesOfAll<package::ShadowPlacement>()},
+        {"shadowThrough", namesOfAll<package::ShadowThrough>()},
         {"hitRecord", namesOfAll<package::HitRecordFormat>()},
         {"textureLod", namesOfAll<compiler::TextureLod>()},
         {"merge", namesOfAll<compiler::MergePolicy>()},
@@ -245,7 +246,7 @@ TEST(Schemas, EnumerateTheValuesOfSettings) {
                             entry.path().filename().string(), found);
     }
     for (const char* const name : {"strategy", "strategies", "fastest", "tracer", "tracers", "shadows",
-                                   "hitRecord", "textureLod", "merge", "alpha"}) {
+                                   "shadowThrough", "hitRecord", "textureLod", "merge", "alpha"}) {
         EXPECT_GE(found[name], 1) << name;
     }
 }

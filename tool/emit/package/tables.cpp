@@ -85,19 +85,22 @@ private:
     base::Bytes content_;
 };
 
-std::uint32_t geometryFlags(const materials::Material& material, materials::FeatureMask key,
-                            package::AlphaPolicy alpha, bool emits) {
+std::uint32_t geometryFlags(const materials::Material& material, const materials::PrimitiveInputs& inputs,
+                            materials::FeatureMask key, const CompileSettings& settings, bool emits) {
+    const package::AlphaPolicy alpha = settings.plan.keys.alpha;
     const bool tested =
         alpha != package::AlphaPolicy::Opaque && (key & material.model().mask("alphaMask")) != 0;
     const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
-    return (tested ? gpu::kGeometryAlphaTested : 0U) |
+    const bool passes =
+        settings.shadowThrough == package::ShadowThrough::Glass && (blended || passesLight(material, inputs));
+    return (tested ? gpu::kGeometryAlphaTested : 0U) | (passes ? gpu::kGeometryPassesLight : 0U) |
            (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
            (material.alphaMode == materials::AlphaMode::Mask || blended ? gpu::kGeometryMasked : 0U) |
            (blended ? gpu::kGeometryBlended : 0U) | (emits ? gpu::kGeometryEmitter : 0U);
 }
 
 std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::SceneList::Range range,
-                                           const Plan& plan, package::AlphaPolicy alpha, bool emissive) {
+                                           const Plan& plan, const CompileSettings& settings) {
     std::vector<PrimitiveEntry> entries;
     for (std::size_t i = range.first; i < range.first + range.count; ++i) {
         const materials::PrimitiveInputs& inputs = scenes.primitives()[i];
@@ -111,8 +114,8 @@ std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::
         const materials::FeatureMask primary = plan.primaryMaskOfPrimitive[i];
         entry.featureLobes = static_cast<std::uint32_t>(primary & materials::kLobeMask);
         entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
-        entry.geometryFlags =
-            geometryFlags(material, key.mask, alpha, emissive && isEmitter(material, inputs));
+        const bool emits = settings.emissiveLights == EmissiveLights::On && isEmitter(material, inputs);
+        entry.geometryFlags = geometryFlags(material, inputs, key.mask, settings, emits);
         entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
         entries.push_back(entry);
     }
@@ -247,8 +250,6 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
         cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
                          static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
     }
-    const package::AlphaPolicy alpha = settings.plan.keys.alpha;
-    const bool emissive = settings.emissiveLights == EmissiveLights::On;
     const MaterialLayout layout = materialLayoutOf(plan);
     SceneTables tables;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
@@ -260,7 +261,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
         entry.materialCount = static_cast<std::uint32_t>(scene.materials.size());
         tables.materials.insert(tables.materials.end(), materials.materials.begin(),
                                 materials.materials.end());
-        append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, alpha, emissive),
+        append(tables.primitives, makePrimitives(scenes, scenes.primitivesOf(i), plan, settings),
                entry.firstPrimitive, entry.primitiveCount);
         append(tables.textures, materials.textures, entry.firstTexture, entry.textureCount);
         append(tables.samplers, makeSamplers(scene), entry.firstSampler, entry.samplerCount);
@@ -301,7 +302,8 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.maxBounces = settings.maxBounces;
     header.fallback = settings.plan.fallback ? 1 : 0;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
-    header.alpha = alpha;
+    header.alpha = settings.plan.keys.alpha;
+    header.shadowThrough = settings.shadowThrough;
     header.materialTextureOffset = layout.textureOffset;
     header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());

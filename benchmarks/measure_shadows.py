@@ -1,0 +1,183 @@
+#!/usr/bin/env python3
+"""Measures what --shadow-through costs, by the number of panes between surfaces and their lights.
+
+    benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--size WxH] [--rounds N] [--tracer NAME]
+                                  [--device NAME] [--bounces N]
+    benchmarks/measure_shadows.py --write FILE
+
+A floor and a wall of boxes stand under lamps, with panes of coloured glass between them. The scene is rendered with
+each setting in turn, in an order that changes from round to round. Prints Markdown, a row as soon as it is measured:
+the device time of the passes that send shadow rays (lighting and the shading of hits), and the ratio to the default in
+the same round.
+
+--write writes the other scene of docs/shadows.md instead: a candle in a holder of blue glass.
+"""
+import argparse
+import json
+import math
+import pathlib
+import random
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "examples"))
+from scene_parts import Buffer, write_scene  # noqa: E402
+
+SETTINGS = ("alpha", "opaque", "glass")
+DEFAULT = "alpha"
+
+
+def mesh(buffer, material, positions, normals, indices):
+    columns = [positions[axis::3] for axis in range(3)]
+    attributes = {"POSITION": buffer.add(positions, 3, min=[min(c) for c in columns], max=[max(c) for c in columns]),
+                  "NORMAL": buffer.add(normals, 3)}
+    return {"primitives": [{"attributes": attributes, "indices": buffer.add_indices(indices), "material": material}]}
+
+
+def quad(buffer, material, corner, right, up):
+    """Returns a mesh: a parallelogram whose front looks along right x up."""
+    corners = [corner, [c + r for c, r in zip(corner, right)],
+               [c + r + u for c, r, u in zip(corner, right, up)], [c + u for c, u in zip(corner, up)]]
+    normal = [right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2],
+              right[0] * up[1] - right[1] * up[0]]
+    length = math.sqrt(sum(n * n for n in normal))
+    return mesh(buffer, material, [c for point in corners for c in point], [n / length for n in normal] * 4,
+                [0, 1, 2, 0, 2, 3])
+
+
+def turned(buffer, material, profile, segments=96):
+    """Returns a mesh: a profile of (radius, height), turned about the y axis. A profile that rises faces outwards."""
+    positions, normals, indices = [], [], []
+    for (r0, y0), (r1, y1) in zip(profile, profile[1:]):
+        first = len(positions) // 3
+        length = math.hypot(r1 - r0, y1 - y0)
+        out, up = (y1 - y0) / length, -(r1 - r0) / length
+        for segment in range(segments + 1):
+            angle = 2 * math.pi * segment / segments
+            x, z = math.cos(angle), -math.sin(angle)
+            positions += [r0 * x, y0, r0 * z, r1 * x, y1, r1 * z]
+            normals += [out * x, up, out * z] * 2
+        for segment in range(segments):
+            a = first + 2 * segment
+            indices += [a, a + 2, a + 1, a + 1, a + 2, a + 3]
+    return mesh(buffer, material, positions, normals, indices)
+
+
+def glass(color, **volume):
+    extensions = {"KHR_materials_transmission": {"transmissionFactor": 1}}
+    if volume:
+        extensions["KHR_materials_volume"] = volume
+    return {"pbrMetallicRoughness": {"baseColorFactor": [*color, 1], "metallicFactor": 0, "roughnessFactor": 0},
+            "extensions": extensions}
+
+
+def matte(*color):
+    return {"pbrMetallicRoughness": {"baseColorFactor": [*color, 1], "metallicFactor": 0, "roughnessFactor": 0.8}}
+
+
+def point_lights(lamps):
+    """Returns nodes and the extension of lamps at [x, y, z] with candela."""
+    nodes = [{"translation": place, "extensions": {"KHR_lights_punctual": {"light": number}}}
+             for number, (place, _) in enumerate(lamps)]
+    lights = [{"type": "point", "intensity": candela} for _, candela in lamps]
+    return nodes, {"KHR_lights_punctual": {"lights": lights}}
+
+
+USED = ["KHR_materials_transmission", "KHR_materials_volume", "KHR_lights_punctual"]
+
+
+def camera(yfov, place, pitch):
+    return ({"camera": 0, "translation": place, "rotation": [math.sin(-pitch / 2), 0, 0, math.cos(pitch / 2)]},
+            [{"type": "perspective", "perspective": {"yfov": yfov, "aspectRatio": 16 / 9, "znear": 0.01}}])
+
+
+def write_panes(path, panes):
+    """Writes a floor with columns under four lamps, and `panes` sheets of glass between them."""
+    buffer = Buffer()
+    materials = [matte(0.7, 0.7, 0.7), matte(0.6, 0.5, 0.4)] + [glass((0.95, 0.8, 0.6)), glass((0.7, 0.9, 0.95))]
+    meshes = [quad(buffer, 0, [-8, 0, 6], [16, 0, 0], [0, 0, -16])]
+    meshes += [turned(buffer, 1, [(0.3, 0), (0.3, 1.4), (0, 1.4)], 24)]
+    # The panes are above the view.
+    meshes += [quad(buffer, 2 + number % 2, [-9, 3.0 + 0.1 * number, 8], [18, 0, 0], [0, 0, -20])
+               for number in range(panes)]
+    nodes = [{"mesh": 0}] + [{"mesh": 1, "translation": [x, 0, z]} for x in (-3, -1, 1, 3) for z in (-6, -3, 0)]
+    nodes += [{"mesh": 2 + number} for number in range(panes)]
+    view, cameras = camera(0.7, [0, 2.2, 5.5], 0.3)
+    lamps, lights = point_lights([([x, 5.5, z], 30) for x in (-3, 3) for z in (-5, 1)])
+    write_scene(path, USED, nodes + [view] + lamps, buffer, meshes=meshes, materials=materials, cameras=cameras,
+                extensions=lights)
+
+
+def write_candle(path):
+    """Writes a white candle in a holder of blue glass, beside one that stands free."""
+    buffer = Buffer()
+    blue = glass((1, 1, 1), thicknessFactor=0.1, attenuationColor=[0.25, 0.5, 0.95], attenuationDistance=0.15)
+    materials = [matte(0.6, 0.6, 0.6), matte(0.85, 0.82, 0.75), blue]
+    candle = [(0.22, 0), (0.22, 0.75), (0, 0.75)]
+    # Outside upwards, over the rim, inside downwards, across the ground inside, and back below.
+    holder = [(0.0, 0.001), (0.5, 0.001), (0.62, 0.5), (0.5, 1.2), (0.42, 1.2), (0.54, 0.5), (0.42, 0.05), (0.0, 0.05)]
+    meshes = [quad(buffer, 0, [-5, 0, 4], [10, 0, 0], [0, 0, -8]), turned(buffer, 1, candle),
+              turned(buffer, 2, holder)]
+    nodes = [{"mesh": 0}, {"mesh": 1, "translation": [-0.7, 0.06, 0]}, {"mesh": 2, "translation": [-0.7, 0, 0]},
+             {"mesh": 1, "translation": [0.7, 0, 0]}]
+    view, cameras = camera(0.6, [0, 1.5, 3.6], 0.28)
+    lamps, lights = point_lights([([2.0, 2.5, 2.5], 30), ([-3.0, 3.0, 1.0], 15)])
+    write_scene(path, USED, nodes + [view] + lamps, buffer, meshes=meshes, materials=materials, cameras=cameras,
+                extensions=lights)
+
+
+def device_time(arguments, scene, folder, setting):
+    """Renders once; returns the milliseconds of the passes that send shadow rays."""
+    stats = folder / "stats.json"
+    command = [arguments.glint, "render", scene, "-o", folder / "picture.png", "--size", arguments.size, "--spp", "2",
+               "--strategy", "uber", "--tracer", arguments.tracer, "--effects", "shadow,reflection", "--max-roughness",
+               "1", "--bounces", str(arguments.bounces), "--shadow-through", setting, "--json", stats]
+    if arguments.device:
+        command += ["--device", arguments.device]
+    subprocess.run(command, check=True, capture_output=True)
+    passes = json.loads(stats.read_text())["passes"]
+    return sum(entry["milliseconds"] for entry in passes if entry["name"] in ("lighting", "uber"))
+
+
+def spread(values):
+    return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", help="default build/release/bin/glint")
+    parser.add_argument("--panes", default="0,1,2,4,8", help="default 0,1,2,4,8")
+    parser.add_argument("--size", default="640x360", help="default 640x360")
+    parser.add_argument("--rounds", type=int, default=5, help="default 5")
+    parser.add_argument("--tracer", default="auto", help="auto, ray-query or ray-pipeline; default auto")
+    parser.add_argument("--device", help="part of the device's name; default the first that will do")
+    parser.add_argument("--bounces", type=int, default=1, help="default 1")
+    parser.add_argument("--write", type=pathlib.Path, help="write the scene of the candle to this file, and end")
+    arguments = parser.parse_args()
+    if arguments.write:
+        write_candle(arguments.write)
+        return
+    chance = random.Random(1)
+    with tempfile.TemporaryDirectory(prefix="glint-shadows-") as name:
+        folder = pathlib.Path(name)
+        others = [setting for setting in SETTINGS if setting != DEFAULT]
+        print(f"{arguments.size}, {arguments.rounds} rounds, {arguments.bounces} bounces, ms of a sample\n")
+        print(f"| panes | {DEFAULT}, ms | " + " | ".join(f"{setting} / {DEFAULT}" for setting in others) + " |")
+        print("|---|---|" + "---|" * len(others), flush=True)
+        for count in [int(count) for count in arguments.panes.split(",")]:
+            scene = folder / f"panes{count}.gltf"
+            write_panes(scene, count)
+            times = {setting: [] for setting in SETTINGS}
+            for _ in range(arguments.rounds):
+                for setting in chance.sample(SETTINGS, len(SETTINGS)):
+                    times[setting].append(device_time(arguments, scene, folder, setting))
+            ratios = [[now / then for now, then in zip(times[setting], times[DEFAULT])] for setting in others]
+            print(f"| {count} | {spread(times[DEFAULT])} | " + " | ".join(spread(ratio) for ratio in ratios) + " |",
+                  flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,138 @@
+// What the light of a light keeps where its straight way meets a surface (--shadow-through). It neither bends nor
+// spreads, whatever the index and the roughness of the glass are: caustics are left out.
+#include "bsdf/features.glsl"
+#include "bsdf/fresnel.glsl"
+#include "hit/alpha.glsl"
+#include "hit/constants.glsl"
+#include "hit/light_passage.glsl"
+#include "host/geometry.glsl"
+#include "host/material.glsl"
+
+// What a traversal says about a candidate.
+struct PassageCandidate {
+    vec3 origin;     // of the ray
+    vec3 direction;  // of the ray, unit vector
+    uint geometry;
+    uint primitive;
+    vec2 barycentrics;
+    float distance;  // metres along the ray
+};
+
+#if GLINT_SHADOW_GLASS
+
+// The light that arrives over a distance. A volume that is left but was never entered holds the surface, and one that
+// is entered but never left holds the light. A light that is infinitely far away is in none: such a volume is no closed
+// mesh, and absorbs nothing.
+vec3 lightAfter(LightPassage passage, float distance) {
+    vec3 behind = distance < kFarDistance ? max(passage.open, vec3(0.0)) * distance : vec3(0.0);
+    return passage.share * exp(-max(passage.depth + behind, vec3(0.0)));
+}
+
+// The surface's colour with its coverage: base colour, texture and vertices.
+vec4 pointColor(HostGeometry geometry, SurfacePoint point, PassageCandidate candidate, Features features) {
+    vec4 color = GLINT_MATERIAL_BASE_COLOR_FACTOR(point);
+    if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
+        color *= samplePoint(point, kBaseColorTexture, features);
+    }
+    if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
+        vec2 b = candidate.barycentrics;
+        color *= (1.0 - b.x - b.y) * hostColor(geometry, hostVertex(geometry, 3u * candidate.primitive)) +
+                 b.x * hostColor(geometry, hostVertex(geometry, 3u * candidate.primitive + 1u)) +
+                 b.y * hostColor(geometry, hostVertex(geometry, 3u * candidate.primitive + 2u));
+    }
+    return color;
+}
+
+// The share that the surface covers: glTF 2.0, section 3.9.4. Of BLEND it is the mean of what rays choose at random.
+float coverageOf(HostGeometry geometry, SurfacePoint point, Features features, float alpha) {
+#if GLINT_ALPHA_TESTED
+    if ((geometry.flags & kGeometryAlphaTested) != 0u) {
+        runMaskOpacity(point, features, alpha);
+#if GLINT_BLENDED
+        if ((geometry.flags & kGeometryBlended) != 0u) {
+            return clamp(alpha, 0.0, 1.0);
+        }
+#endif
+        return alpha >= GLINT_MATERIAL_ALPHA_CUTOFF(point) ? 1.0 : 0.0;
+    }
+#endif
+    return 1.0;
+}
+
+// The share that the interface lets straight through: as surfaces do that are seen (hit/material.glsl), with the
+// mesh's own normal, and without coats and films. `cosine` is that between the normal and the ray.
+vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float cosine) {
+    float transmission = GLINT_MATERIAL_TRANSMISSION_FACTOR(point);
+    if (inputOfKey(features, GLINT_TRANSMISSION_TEXTURE)) {
+        transmission *= samplePoint(point, kTransmissionTexture, features).r;
+    }
+    bool glossy = lobeOfKey(features, GLINT_SPECULAR_GLOSSINESS);
+    float metallic = glossy ? 0.0 : GLINT_MATERIAL_METALLIC_FACTOR(point);
+    vec3 f0 = glossy ? GLINT_MATERIAL_GLOSSY_SPECULAR_FACTOR(point) : vec3(0.04);
+    float f90 = 1.0;
+    if (inputOfKey(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
+        vec4 texel = samplePoint(point, kMetallicRoughnessTexture, features);
+        metallic *= texel.b;
+        f0 *= glossy ? texel.rgb : vec3(1.0);
+    }
+    if (lobeOfKey(features, GLINT_IOR)) {
+        f0 = vec3(dielectricF0(GLINT_MATERIAL_IOR(point)));
+    }
+    if (lobeOfKey(features, GLINT_SPECULAR)) {
+        float specular = GLINT_MATERIAL_SPECULAR_FACTOR(point);
+        vec3 specularColor = GLINT_MATERIAL_SPECULAR_COLOR_FACTOR(point);
+        if (inputOfKey(features, GLINT_SPECULAR_TEXTURE)) {
+            specular *= samplePoint(point, kSpecularTexture, features).a;
+        }
+        if (inputOfKey(features, GLINT_SPECULAR_COLOR_TEXTURE)) {
+            specularColor *= samplePoint(point, kSpecularColorTexture, features).rgb;
+        }
+        f0 = min(f0 * specularColor, vec3(1.0)) * specular;
+        f90 = specular;
+    }
+    return color * ((1.0 - metallic) * transmission * schlickPassed(f0, f90, cosine));
+}
+
+// Returns whether the light ends at the candidate. If it goes on, `passage` loses what the candidate takes.
+bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
+    HostGeometry geometry = hostGeometry(candidate.geometry);
+    Features features = Features(GLINT_ALPHA_ALWAYS_LOBES, GLINT_ALPHA_ALWAYS_INPUTS, GLINT_ALPHA_SOMETIMES_LOBES,
+                                 GLINT_ALPHA_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
+    SurfacePoint point = surfacePoint(geometry, candidate.primitive, candidate.barycentrics, features);
+    runMaskCoordinates(point, features);
+    vec4 color = pointColor(geometry, point, candidate, features);
+    float coverage = coverageOf(geometry, point, features, color.a);
+    vec3 share = vec3(1.0 - coverage);
+    if (coverage > 0.0 && (geometry.flags & kGeometryPassesLight) != 0u && lobeOfKey(features, GLINT_TRANSMISSION)) {
+        vec3 corner = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive));
+        vec3 edge1 = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive + 1u)) - corner;
+        vec3 edge2 = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive + 2u)) - corner;
+        vec3 front = directionOr(transformNormal(hostInstance(geometry).normalToWorld, cross(edge1, edge2)),
+                                 -candidate.direction);
+        float cosine = dot(front, candidate.direction);
+        share += coverage * sharePastInterface(point, features, color.rgb, abs(cosine));
+        if (lobeOfKey(features, GLINT_ATTENUATION)) {
+            vec3 absorption = GLINT_MATERIAL_ABSORPTION(point);
+            vec3 entered = cosine < 0.0 ? absorption : -absorption;
+            passage.depth -= entered * candidate.distance;
+            passage.open += entered;
+        }
+    }
+    passage.share *= share;
+    return !(passage.share.x + passage.share.y + passage.share.z > 0.0);
+}
+
+#elif GLINT_SHADOW_OPAQUE
+
+vec3 lightAfter(LightPassage passage, float distance) {
+    return passage.share;
+}
+
+// BLEND covers all of the surface.
+bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
+    return (hostGeometry(candidate.geometry).flags & kGeometryBlended) != 0u ||
+           passesAlphaTest(candidate.origin, candidate.direction, candidate.geometry, candidate.primitive,
+                           candidate.barycentrics);
+}
+
+#endif

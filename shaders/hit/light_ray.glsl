@@ -1,0 +1,80 @@
+// Rays from a surface to a light: what of the light arrives.
+#include "hit/light_candidate.glsl"
+#include "hit/trace.glsl"
+
+#if GLINT_TRACER != 1 && !GLINT_RAY_GENERATION
+
+// The module traces no ray.
+
+#elif !GLINT_SHADOW_GLASS && !GLINT_SHADOW_OPAQUE
+
+// Returns whether any light arrives; `light` then loses what it meets on its way: here nothing. Both sides of a surface
+// cast shadows.
+bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
+    return isVisible(origin, direction, distance);
+}
+
+#elif GLINT_TRACER == 1
+
+bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, GLINT_TLAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipAABBEXT,
+                          GLINT_RAY_MASK, origin, 0.0, direction, distance);
+    LightPassage passage = wholePassage();
+    while (rayQueryProceedEXT(query)) {
+        uint geometry = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, false),
+                                      rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
+                                      rayQueryGetIntersectionGeometryIndexEXT(query, false));
+        PassageCandidate candidate = PassageCandidate(
+            origin, direction, geometry, uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false)),
+            rayQueryGetIntersectionBarycentricsEXT(query, false), rayQueryGetIntersectionTEXT(query, false));
+        if (endsLight(candidate, passage)) {
+            rayQueryConfirmIntersectionEXT(query);
+        }
+    }
+    light *= lightAfter(passage, distance);
+    return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
+}
+
+#else
+
+// The any-hit shader sees by the flags and by the payload that the ray goes to a light.
+bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
+    const uint kFlags = gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
+#ifdef GLINT_LIGHT_IN_HIT_PAYLOAD
+    // The payload of rays in the list is free by now, and its miss shader sets a negative distance.
+    shaded.radiance = vec3(1.0);
+    shaded.direct = vec3(0.0);
+    shaded.shadowOrigin = vec3(0.0);
+    shaded.shadowDistance = 0.0;
+    traceRayEXT(GLINT_TLAS, kFlags, GLINT_RAY_MASK, 0u, 0u, 0u, origin, 0.0, direction, distance, 0);
+    light *= lightAfter(LightPassage(shaded.radiance, shaded.direct, shaded.shadowOrigin), distance);
+    return shaded.shadowDistance < 0.0;
+#else
+    traced.geometry = kLightRay;
+    traced.passage = wholePassage();
+    traceRayEXT(GLINT_TLAS, kFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0, direction, distance,
+                GLINT_TRACE_LOCATION);
+    light *= lightAfter(traced.passage, distance);
+    return traced.geometry == kMissGeometry;
+#endif
+}
+
+#endif
+
+#if GLINT_TRACER == 1 || GLINT_RAY_GENERATION
+// The same for what `sees` other surfaces (kShadow*): rays to emissive triangles take glass for opaque, because rays of
+// lobes bring the light that passes it.
+bool lightArrivesTo(uint sees, vec3 origin, vec3 direction, float distance, inout vec3 light) {
+#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE
+    if (sees == kShadowOfLight) {
+        return lightArrives(origin, direction, distance, light);
+    }
+#endif
+    return isVisibleTo(sees, origin, direction, distance);
+#else
+    return lightArrives(origin, direction, distance, light);
+#endif
+}
+#endif
