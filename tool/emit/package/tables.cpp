@@ -281,7 +281,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Cases, cases);
     writer.add(SectionKind::Attributes, attributes);
     writer.add(SectionKind::Effects, effects);
-    if (emissive) {
+    if (settings.emissiveLights == EmissiveLights::On) {
         writer.add(SectionKind::Emission, std::vector{emissionOf(layout)});
     }
 
