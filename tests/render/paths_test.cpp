@@ -350,12 +350,12 @@ double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F) {
     glass["attenuationColor"] = color;
     // With its corners exchanged the box faces outwards. It is behind the camera.
     addBox(scene, addMaterial(scene, glass), {5, 5, 2}, {-5, -5, 1}, scaling(1, 1, 1));
-    const LoadedScene loaded(scene, pathSettings(8), noLights);
+    const LoadedScene loaded(scene, pathSettings(32), noLights);
     EXPECT_TRUE(loaded.ok());
     RenderSetup setup = pathSetup(scene, 16, 16, 64);
     setup.frame.sky = uniformSky(1.0F);
     FrameCounters counters;
-    const double mean = meanOf(loaded.render(pathOptions(8), setup, &counters));
+    const double mean = meanOf(loaded.render(pathOptions(32), setup, &counters));
     EXPECT_GT(counters.raysOfBounces.at(2), 100U) << "the glass sends no rays";
     return mean;
 }

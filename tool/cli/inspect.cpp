@@ -198,7 +198,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
         {"settings",
          {{"hitLobes", manifest.hitLobes},
           {"lights", package.lightSamples() == 0 ? base::Json("all") : base::Json(package.lightSamples())},
-          {"emissiveLights", package.emission() != nullptr ? "on" : "off"},
+          {"emissiveLights", package.emission() != nullptr},
           {"energyCompensation", manifest.energyCompensation},
           {"textureLod", manifest.textureLod},
           {"precision", package::bitsOf(package.precision())},

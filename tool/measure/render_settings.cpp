@@ -73,6 +73,10 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     facts.rayEffects = rayEffects(compile.effects);
     compile.effects.maxReflectionRoughness = 1.0F;
     facts.effectsOfAnyRoughness = namesOfChosen(planEffects(scenes, compile));
+    facts.emits = compiler::countEmitters(scene) > 0;
+    compiler::CompileSettings emissive = compileSettings(settings, plan, package::kAllTracers, scene);
+    emissive.emissiveLights = compiler::EmissiveLights::On;
+    facts.lightsMayEmit = compiler::emissiveLightsOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
     facts.lights = static_cast<std::size_t>(std::ranges::count_if(
         data.lights, [](const LightView& light) { return light.type != LightView::Type::Directional; }));

@@ -17,9 +17,11 @@ using Configuration = std::map<std::string, std::string, std::less<>>;
 
 // The facts about scene and device on which the values worth trying depend.
 struct BenchFacts {
-    bool masks = false;         // some materials have the alpha mode MASK or BLEND
-    bool passesLight = false;   // some materials are glass, or have the alpha mode BLEND
-    bool furtherLobes = false;  // hits of some materials lose a lobe with --hit-lobes base
+    bool masks = false;          // some materials have the alpha mode MASK or BLEND
+    bool passesLight = false;    // some materials are glass, or have the alpha mode BLEND
+    bool emits = false;          // some triangles emit light
+    bool lightsMayEmit = false;  // and packages with the default's effects can have them as lights
+    bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     std::size_t lights = 0;    // with a position, of which a hierarchy chooses
     bool manyLights = false;   // more than --lights auto takes whole

@@ -49,6 +49,13 @@ std::string withoutChoice(std::string_view value, const BenchFacts& facts, const
                : fmt::format("the scene has no more lights with a position: {}", facts.lights);
 }
 
+std::string withoutEmission(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {
+    if (!facts.emits) {
+        return "no material emits light";
+    }
+    return value == "on" && !facts.lightsMayEmit ? "the default has no shadow rays" : "";
+}
+
 // Returns the default's effects, those of a reference of all transport, and values that leave out one effect
 // each.
 std::vector<std::string> effectsToTry(const BenchFacts& facts, const std::string& base, bool /*quick*/) {
@@ -279,7 +286,12 @@ constexpr Descriptor kRows[] = {
      .group = kShaders,
      .what = "whether triangles that emit light are lights, with multiple importance sampling",
      .values = enumerator<&Settings::compile, &CompileSettings::emissiveLights>(),
-     .bench = kNoPicture,
+     .bench = {.use = BenchUse::Swept,
+               .exact = "on",
+               .isTransport = true,
+               .tried = "off on",
+               .against = withoutEmission,
+               .exactFor = [](const BenchFacts& facts) { return std::string(facts.emits ? "on" : ""); }},
      .document = "lights.md#emissive-triangles",
      .recorded = true},
     {.name = "energy-compensation",

@@ -43,6 +43,9 @@ Bound boundOf(const Comparison& c) {
                    : Bound{0.005, "fits of albedos"};
     }
     if (c.compensation) {
+        if (mentions(c, "thin glass")) {
+            return {0.02, "fits of albedos, twice in light that passes at later bounces"};
+        }
         return anisotropic ? Bound{0.025, "the fit of an anisotropic lobe's albedo, twice in diffuse light"}
                            : Bound{0.017, "fits of albedos, twice in diffuse light"};
     }

@@ -237,6 +237,19 @@ Vec3 Bsdf::transmitted(const Vec3& l) const {
     return lobe * m_.baseColor * absorbed() * ((1.0 - m_.metallic) * m_.transmission * -l.z * layersAbove(l));
 }
 
+// Kulla and Conty's lobe on the far side of a thin wall: of what single scattering loses, what later bounces
+// do not reflect passes in the end.
+Vec3 Bsdf::multipleTransmitted(const Vec3& l) const {
+    if (!choices_.compensation || l.z >= 0.0 || m_.volume) {
+        return Vec3(0.0);
+    }
+    const double lost = microfacets_->at(view_).lost * microfacets_->at(mirrored(l)).lost /
+                        std::max(microfacets_->mean().lost, 1e-15);
+    const double passes =
+        smallest(Vec3(1.0) - laterFresnel(dielectric_)) * (1.0 - m_.metallic) * m_.transmission;
+    return m_.baseColor * (passes * lost / kPi * -l.z * layersAbove(l));
+}
+
 Vec3 Bsdf::sheen(const Vec3& l) const {
     if (sheenAlbedo_ == nullptr || l.z <= 0.0) {
         return Vec3(0.0);
@@ -269,7 +282,8 @@ Vec3 Bsdf::coat(const Vec3& l) const {
 }
 
 Vec3 Bsdf::base(const Vec3& l) const {
-    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) + sheen(l);
+    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) +
+           multipleTransmitted(l) + sheen(l);
 }
 
 // KHR_materials_clearcoat, "Emission".

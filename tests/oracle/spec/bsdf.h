@@ -42,7 +42,8 @@ public:
     Vec3 multiple(const Vec3& l) const;  // later bounces; 0 without compensation
     Vec3 diffuse(const Vec3& l) const;
     Vec3 diffuseTransmitted(const Vec3& l) const;
-    Vec3 transmitted(const Vec3& l) const;  // through microfacets
+    Vec3 transmitted(const Vec3& l) const;          // through microfacets
+    Vec3 multipleTransmitted(const Vec3& l) const;  // thin walls: at later bounces; 0 without compensation
     Vec3 sheen(const Vec3& l) const;
     Vec3 coat(const Vec3& l) const;
     Vec3 base(const Vec3& l) const;  // all but the coat

@@ -25,6 +25,8 @@ compiler::Configuration usual() {
             {"energy-compensation", "on"},
             {"texture-lod", "cones"},
             {"alpha", "opaque"},
+            {"shadow-through", "alpha"},
+            {"emissive-lights", "off"},
             {"precision", "32"},
             {"hit-record", "full"},
             {"strategy", "visibility"},
@@ -39,6 +41,7 @@ compiler::Configuration usual() {
 compiler::BenchFacts rich() {
     compiler::BenchFacts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.manyLights = facts.sizedLights = true;
+    facts.passesLight = facts.emits = facts.lightsMayEmit = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.effectsOfAnyRoughness = facts.effects;

@@ -105,6 +105,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"effect-missing", kError, "The runtime was asked for the rays of an effect that the package lacks."},
     {"effect-unknown", kError, "`--effects` names an effect that neither Glint nor a pack has."},
     {"effect-unused", kWarning, "An effect is asked for that the scene can't use."},
+    {"emissive-lights", kError,
+     "`--emissive-lights on` in a package that has no shadow rays, or whose lights or geometry are a host's own."},
     {"engine-scene", kError,
      "A scene of a host's own (`EngineScene`) has a number out of range, or lacks something that the package "
      "reads."},
