@@ -18,46 +18,16 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-base::Double3 directionOf(const base::Double3& v) {
-    const double length = std::sqrt(base::dot(v, v));
-    return {v[0] / length, v[1] / length, v[2] / length};
+glm::dvec3 blend(const std::array<gltf::Float3, 3>& corners, const gltf::Float2& barycentrics) {
+    return base::toVector(corners[0]) * (1.0 - double{barycentrics[0]} - double{barycentrics[1]}) +
+           base::toVector(corners[1]) * double{barycentrics[0]} +
+           base::toVector(corners[2]) * double{barycentrics[1]};
 }
 
-base::Double3 blend(const std::array<gltf::Float3, 3>& corners, const gltf::Float2& barycentrics) {
-    const double weights[] = {1.0 - double{barycentrics[0]} - double{barycentrics[1]}, barycentrics[0],
-                              barycentrics[1]};
-    base::Double3 sum{};
-    for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            sum[axis] += weights[k] * corners[k][axis];
-        }
-    }
-    return sum;
-}
-
-base::Double3 rowOf(const std::array<float, 12>& rows, std::size_t row) {
-    return {rows[4 * row], rows[4 * row + 1], rows[4 * row + 2]};
-}
-
-// Transforms a normal by the inverse transpose, times the determinant's magnitude.
-base::Double3 transformNormal(const std::array<float, 12>& rows, const base::Double3& n) {
-    base::Double3 result{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = base::dot(base::cross(rowOf(rows, (row + 1) % 3), rowOf(rows, (row + 2) % 3)), n);
-    }
-    const double determinant = base::dot(rowOf(rows, 0), base::cross(rowOf(rows, 1), rowOf(rows, 2)));
-    for (double& value : result) {
-        value = determinant < 0.0 ? -value : value;
-    }
-    return directionOf(result);
-}
-
-base::Double3 transformPoint(const std::array<float, 12>& rows, const base::Double3& p) {
-    base::Double3 result{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = base::dot(rowOf(rows, row), p) + rows[4 * row + 3];
-    }
-    return result;
+// Transforms a normal by the inverse transpose.
+glm::dvec3 transformNormal(const std::array<float, 12>& rows, const glm::dvec3& n) {
+    const glm::dmat3 transposed(glm::make_mat3x4(rows.data()));
+    return glm::normalize(glm::inverse(transposed) * n);
 }
 
 constexpr std::array<gltf::Float3, 3> kPositions{
@@ -89,8 +59,8 @@ gltf::Scene triangleScene(const std::vector<gltf::Matrix4>& placements) {
 }
 
 // Returns a column-major matrix from the rows of the linear part and a translation.
-gltf::Matrix4 matrix(const std::array<base::Double3, 3>& linear, const base::Double3& translation,
-                     double scale) {
+gltf::Matrix4 matrix(const std::array<std::array<double, 3>, 3>& linear,
+                     const std::array<double, 3>& translation, double scale) {
     gltf::Matrix4 result{};
     for (std::size_t row = 0; row < 3; ++row) {
         for (std::size_t column = 0; column < 3; ++column) {
@@ -102,20 +72,22 @@ gltf::Matrix4 matrix(const std::array<base::Double3, 3>& linear, const base::Dou
     return result;
 }
 
-constexpr std::array<base::Double3, 3> kRotated{{{0.8, -0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
-constexpr std::array<base::Double3, 3> kMirrored{{{-0.8, 0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
-constexpr std::array<base::Double3, 3> kSheared{{{1.0, 7.0, 0.0}, {0.0, 1.0, 3.0}, {0.5, 0.0, -1.0}}};
-constexpr std::array<base::Double3, 3> kStretched{
+constexpr std::array<std::array<double, 3>, 3> kRotated{
+    {{0.8, -0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
+constexpr std::array<std::array<double, 3>, 3> kMirrored{
+    {{-0.8, 0.6, 0.0}, {0.48, 0.64, -0.6}, {0.36, 0.48, 0.8}}};
+constexpr std::array<std::array<double, 3>, 3> kSheared{{{1.0, 7.0, 0.0}, {0.0, 1.0, 3.0}, {0.5, 0.0, -1.0}}};
+constexpr std::array<std::array<double, 3>, 3> kStretched{
     {{100.0, 0.0, 0.0}, {0.0, 0.8e-3, -0.6}, {0.0, 0.6e-3, 0.8}}};
 
 // The rounding in and after the sums of a normal is a few units in the last place, and more where a shear
 // cancels.
 constexpr double kNormalError = 4e-6;
 
-void expectSameDirection(const gltf::Float3& got, const base::Double3& expected, const std::string& where) {
-    EXPECT_NEAR(base::dot(base::toDouble3(got), base::toDouble3(got)), 1.0, 1e-6) << where;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        EXPECT_NEAR(got[axis], expected[axis], kNormalError) << where << ", axis " << axis;
+void expectSameDirection(const gltf::Float3& got, const glm::dvec3& expected, const std::string& where) {
+    EXPECT_NEAR(glm::dot(base::toVector(got), base::toVector(got)), 1.0, 1e-6) << where;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(base::toVector(got)[axis], expected[axis], kNormalError) << where << ", axis " << axis;
     }
 }
 
@@ -138,16 +110,15 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
     }
     const std::vector<Values> values = ask(scene, queries);
     ASSERT_EQ(values.size(), queries.size());
-    const base::Double3 winding =
-        base::cross(base::difference(base::toDouble3(kPositions[1]), base::toDouble3(kPositions[0])),
-                    base::difference(base::toDouble3(kPositions[2]), base::toDouble3(kPositions[0])));
+    const glm::dvec3 winding = glm::cross(base::toVector(kPositions[1]) - base::toVector(kPositions[0]),
+                                          (base::toVector(kPositions[2]) - base::toVector(kPositions[0])));
     for (std::size_t i = 0; i < queries.size(); ++i) {
         const Query& query = queries[i];
         const std::string where =
             "placement " + std::to_string(query.geometry) + ", query " + std::to_string(i);
         const auto& rows = data.instances[query.geometry].objectToWorld;
-        const base::Double3 front = transformNormal(rows, winding);
-        const double facing = -base::dot(front, base::toDouble3(query.direction));
+        const glm::dvec3 front = transformNormal(rows, winding);
+        const double facing = -glm::dot(front, base::toVector(query.direction));
         ASSERT_GT(std::abs(facing), 1e-3) << where << ": rounding decides the side";
         EXPECT_EQ(values[i].frontFace, facing >= 0.0 ? 1.0F : 0.0F) << where;
         const double side = facing >= 0.0 ? 1.0 : -1.0;
@@ -155,9 +126,9 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
                             where);
         expectSameDirection(values[i].normal, transformNormal(rows, blend(kNormals, query.barycentrics)),
                             where);
-        const base::Double3 off = base::difference(
-            base::toDouble3(values[i].position), transformPoint(rows, blend(kPositions, query.barycentrics)));
-        EXPECT_LE(std::abs(base::dot(off, front)), double{values[i].clearance}) << where;
+        const glm::dvec3 off = (base::toVector(values[i].position) -
+                                (base::transformed(rows, blend(kPositions, query.barycentrics))));
+        EXPECT_LE(std::abs(glm::dot(off, front)), double{values[i].clearance}) << where;
         EXPECT_GT(values[i].clearance, 0.0F) << where;
     }
 }
@@ -172,7 +143,7 @@ TEST(HitValues, AttributesAtVerticesAreThoseOfTheVertices) {
         EXPECT_EQ(values[k].texCoord, kTexCoords[k]) << "vertex " << k;
         EXPECT_EQ(values[k].color, (gltf::Float3{kColors[k][0], kColors[k][1], kColors[k][2]}))
             << "vertex " << k;
-        expectSameDirection(values[k].normal, directionOf(base::toDouble3(kNormals[k])),
+        expectSameDirection(values[k].normal, glm::normalize(base::toVector(kNormals[k])),
                             "vertex " + std::to_string(k));
     }
 }
@@ -226,11 +197,11 @@ TEST(HitValues, DegenerateTrianglesGiveFiniteHits) {
     ASSERT_EQ(values.size(), 4U);
     for (std::size_t i = 0; i < values.size(); ++i) {
         for (const gltf::Float3& vector : {values[i].geometricNormal, values[i].normal}) {
-            EXPECT_NEAR(base::dot(base::toDouble3(vector), base::toDouble3(vector)), 1.0, 1e-6)
+            EXPECT_NEAR(glm::dot(base::toVector(vector), base::toVector(vector)), 1.0, 1e-6)
                 << "triangle " << i;
         }
         EXPECT_TRUE(std::isfinite(values[i].clearance) && hasFiniteGradients(values[i])) << "triangle " << i;
-        EXPECT_TRUE(std::isfinite(base::dot(base::toDouble3(values[i].position), {1, 1, 1})))
+        EXPECT_TRUE(std::isfinite(glm::dot(base::toVector(values[i].position), glm::dvec3{1, 1, 1})))
             << "triangle " << i;
     }
     EXPECT_NEAR(values[0].normal[2], 0.64F, 1e-6F) << "without a side, it faces the viewer";

@@ -1,5 +1,10 @@
-// Three-dimensional vectors of the host, in double precision, and affine transforms of them.
+// What lies between glm, with which the host calculates, and the arrays of scenes and public structures.
 #pragma once
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,57 +13,38 @@
 
 namespace glint::base {
 
-using Double3 = std::array<double, 3>;
-
-inline double dot(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-inline Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-inline Double3 sum(const Double3& a, const Double3& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-
-inline Double3 difference(const Double3& a, const Double3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-inline Double3 scaled(const Double3& a, double factor) {
-    return {a[0] * factor, a[1] * factor, a[2] * factor};
-}
-
-inline double length(const Double3& a) {
-    return std::hypot(a[0], a[1], a[2]);
-}
-
-inline Double3 toDouble3(const std::array<float, 3>& a) {
+template <typename Number>
+glm::dvec3 toVector(const std::array<Number, 3>& a) {
     return {a[0], a[1], a[2]};
 }
 
-inline std::array<float, 3> toFloat3(const Double3& a) {
-    return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};
+inline std::array<double, 3> toArray(const glm::dvec3& a) {
+    return {a.x, a.y, a.z};
 }
 
-// Applies a column-major 4 x 4 matrix whose last row is (0, 0, 0, 1).
-inline Double3 transformed(const std::array<double, 16>& matrix, const Double3& point) {
-    Double3 result{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = matrix[row] * point[0] + matrix[4 + row] * point[1] + matrix[8 + row] * point[2] +
-                      matrix[12 + row];
-    }
+inline std::array<float, 3> toFloat3(const glm::dvec3& a) {
+    return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
+}
+
+// Both are column-major.
+inline glm::dmat4 toMatrix(const std::array<double, 16>& matrix) {
+    return glm::make_mat4(matrix.data());
+}
+
+inline std::array<double, 16> toArray(const glm::dmat4& matrix) {
+    std::array<double, 16> result{};
+    std::copy_n(glm::value_ptr(matrix), result.size(), result.begin());
     return result;
 }
 
 // Applies the first three rows of a 4 x 4 matrix, which is row-major here.
-inline Double3 transformed(const std::array<float, 12>& rows, const Double3& point) {
-    Double3 result{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = dot({rows[4 * row], rows[4 * row + 1], rows[4 * row + 2]}, point) + rows[4 * row + 3];
-    }
-    return result;
+inline glm::dvec3 transformed(const std::array<float, 12>& rows, const glm::dvec3& point) {
+    return glm::transpose(glm::dmat3x4(glm::make_mat3x4(rows.data()))) * glm::dvec4(point, 1.0);
+}
+
+// Applies a column-major matrix whose last row is (0, 0, 0, 1).
+inline glm::dvec3 transformed(const std::array<double, 16>& matrix, const glm::dvec3& point) {
+    return toMatrix(matrix) * glm::dvec4(point, 1.0);
 }
 
 template <typename Number, std::size_t N>

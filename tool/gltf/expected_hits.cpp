@@ -11,41 +11,31 @@ namespace glint::gltf {
 
 namespace {
 
-using Vector = base::Double3;
-
-Vector column(const Matrix4& matrix, std::size_t index) {
+glm::dvec3 column(const Matrix4& matrix, std::size_t index) {
     return {matrix[4 * index], matrix[4 * index + 1], matrix[4 * index + 2]};
 }
 
 // The columns of the cofactors of the upper 3 x 3 matrix, which transform area vectors to the world.
-using Cofactors = std::array<Vector, 3>;
+using Cofactors = glm::dmat3;
 
 Cofactors cofactorsOf(const Matrix4& matrix) {
-    const Vector x = column(matrix, 0);
-    const Vector y = column(matrix, 1);
-    const Vector z = column(matrix, 2);
-    return {base::cross(y, z), base::cross(z, x), base::cross(x, y)};
+    const glm::dvec3 x = column(matrix, 0);
+    const glm::dvec3 y = column(matrix, 1);
+    const glm::dvec3 z = column(matrix, 2);
+    return {glm::cross(y, z), glm::cross(z, x), glm::cross(x, y)};
 }
 
-Vector edge(const Primitive& primitive, std::uint32_t from, std::uint32_t to) {
-    const Float3& a = primitive.positions[from];
-    const Float3& b = primitive.positions[to];
-    return {double{b[0]} - a[0], double{b[1]} - a[1], double{b[2]} - a[2]};
+glm::dvec3 edge(const Primitive& primitive, std::uint32_t from, std::uint32_t to) {
+    return base::toVector(primitive.positions[to]) - base::toVector(primitive.positions[from]);
 }
 
 double areaOf(const Primitive& primitive, const Cofactors& cofactors) {
     double sum = 0.0;
     for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
         const std::uint32_t corner = primitive.indices[i];
-        const Vector local = base::cross(edge(primitive, corner, primitive.indices[i + 1]),
-                                         edge(primitive, corner, primitive.indices[i + 2]));
-        Vector world{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            for (std::size_t part = 0; part < 3; ++part) {
-                world[axis] += cofactors[part][axis] * local[part];
-            }
-        }
-        sum += 0.5 * std::sqrt(base::dot(world, world));
+        const glm::dvec3 local = glm::cross(edge(primitive, corner, primitive.indices[i + 1]),
+                                            edge(primitive, corner, primitive.indices[i + 2]));
+        sum += 0.5 * glm::length(cofactors * local);
     }
     return std::isfinite(sum) ? sum : 0.0;
 }
@@ -79,10 +69,10 @@ void addPlaces(const Scene& scene, const Node& node, std::vector<Place>& places)
 double uniformAreaScale(const Cofactors& cofactors) {
     // Single precision makes the columns of a rotation differ by less than this.
     constexpr double kTolerance = 1e-5;
-    const double scale = base::dot(cofactors[0], cofactors[0]);
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double off = base::dot(cofactors[i], cofactors[(i + 1) % 3]);
-        if (std::abs(base::dot(cofactors[i], cofactors[i]) - scale) > kTolerance * scale ||
+    const double scale = glm::dot(cofactors[0], cofactors[0]);
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const double off = glm::dot(cofactors[i], cofactors[(i + 1) % 3]);
+        if (std::abs(glm::dot(cofactors[i], cofactors[i]) - scale) > kTolerance * scale ||
             std::abs(off) > kTolerance * scale) {
             return -1.0;
         }
@@ -93,8 +83,7 @@ double uniformAreaScale(const Cofactors& cofactors) {
 // Returns the area at each place of a mesh. One pass over the triangles serves all places with a uniform
 // scale.
 std::vector<double> areasOf(const Primitive& primitive, const std::vector<Place>& places) {
-    constexpr Cofactors kIdentity{Vector{1, 0, 0}, Vector{0, 1, 0}, Vector{0, 0, 1}};
-    const double local = places.empty() ? 0.0 : areaOf(primitive, kIdentity);
+    const double local = places.empty() ? 0.0 : areaOf(primitive, Cofactors(1.0));
     std::vector<double> areas;
     areas.reserve(places.size());
     for (const Place& place : places) {

@@ -17,30 +17,29 @@ namespace glint::scene_view {
 namespace {
 
 // Returns nothing if the length is 0 or not finite.
-std::optional<base::Double3> normalized(const base::Double3& a) {
-    const double metres = base::length(a);
+std::optional<glm::dvec3> normalized(const glm::dvec3& a) {
+    const double metres = glm::length(a);
     if (!(metres > 0.0) || !std::isfinite(metres)) {
         return std::nullopt;
     }
-    return base::scaled(a, 1.0 / metres);
+    return a * (1.0 / metres);
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Bounds kNothing{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
 
-void extend(Bounds& bounds, const base::Double3& point) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        bounds.min[i] = std::min(bounds.min[i], point[i]);
-        bounds.max[i] = std::max(bounds.max[i], point[i]);
-    }
+void extend(Bounds& bounds, const glm::dvec3& point) {
+    bounds.min = base::toArray(glm::min(base::toVector(bounds.min), point));
+    bounds.max = base::toArray(glm::max(base::toVector(bounds.max), point));
 }
 
-base::Double3 corner(const Bounds& bounds, unsigned number) {
-    base::Double3 point{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        point[i] = ((number >> i) & 1U) != 0 ? bounds.max[i] : bounds.min[i];
-    }
-    return point;
+glm::dvec3 corner(const Bounds& bounds, unsigned number) {
+    return glm::mix(base::toVector(bounds.min), base::toVector(bounds.max),
+                    glm::bvec3((number & 1U) != 0, (number & 2U) != 0, (number & 4U) != 0));
+}
+
+glm::dvec3 centreOf(const Bounds& bounds) {
+    return 0.5 * (base::toVector(bounds.min) + base::toVector(bounds.max));
 }
 
 // Returns the bounds of each mesh in its own space, by mesh number.
@@ -49,7 +48,7 @@ std::vector<Bounds> meshBounds(const SceneViewData& scene) {
     for (const PrimitiveView& primitive : scene.primitives) {
         bounds.resize(std::max<std::size_t>(bounds.size(), primitive.mesh + std::size_t{1}), kNothing);
         for (const gltf::Float3& position : primitive.positions) {
-            extend(bounds[primitive.mesh], base::toDouble3(position));
+            extend(bounds[primitive.mesh], base::toVector(position));
         }
     }
     return bounds;
@@ -73,15 +72,16 @@ Bounds withExtent(const Bounds& bounds) {
     if (box.min != box.max) {
         return box;
     }
-    return {base::sum(box.min, {-0.5, -0.5, -0.5}), base::sum(box.min, {0.5, 0.5, 0.5})};
+    const glm::dvec3 point = base::toVector(box.min);
+    return {base::toArray(point - 0.5), base::toArray(point + 0.5)};
 }
 
 // Returns the direction to the viewer of a box with this extent: in front, on +Z (glTF 2.0, section 3.4), a
 // little above and to the right. A flat object, such as a board or a floor, shows its face. An object is flat
 // if it is thinner than kFlat times its next larger extent.
-base::Double3 directionToViewer(const base::Double3& extent) {
+glm::dvec3 directionToViewer(const glm::dvec3& extent) {
     constexpr double kFlat = 0.25;
-    const auto thin = [&](std::size_t axis) {
+    const auto thin = [&](glm::length_t axis) {
         return extent[axis] < kFlat * std::min(extent[(axis + 1) % 3], extent[(axis + 2) % 3]);
     };
     if (thin(0)) {
@@ -103,15 +103,15 @@ struct Fit {
     double distance;  // along backward
 };
 
-Fit fit(const Bounds& box, const base::Double3& axis, const base::Double3& backward, double slope) {
-    const base::Double3 centre = base::scaled(base::sum(box.min, box.max), 0.5);
+Fit fit(const Bounds& box, const glm::dvec3& axis, const glm::dvec3& backward, double slope) {
+    const glm::dvec3 centre = centreOf(box);
     double low = -kInfinity;
     double high = -kInfinity;
     for (unsigned number = 0; number < 8; ++number) {
-        const base::Double3 point = base::difference(corner(box, number), centre);
+        const glm::dvec3 point = corner(box, number) - centre;
         // A point is inside if |point·axis - offset| <= slope (distance - point·backward).
-        low = std::max(low, slope * base::dot(point, backward) - base::dot(point, axis));
-        high = std::max(high, slope * base::dot(point, backward) + base::dot(point, axis));
+        low = std::max(low, slope * glm::dot(point, backward) - glm::dot(point, axis));
+        high = std::max(high, slope * glm::dot(point, backward) + glm::dot(point, axis));
     }
     return {0.5 * (high - low), 0.5 * (high + low) / slope};
 }
@@ -164,8 +164,8 @@ Bounds worldBounds(const SceneViewData& scene) {
         }
         const Bounds placed = transformedBox(mesh, instance.objectToWorld);
         if (isFiniteBox(placed)) {
-            extend(bounds, placed.min);
-            extend(bounds, placed.max);
+            extend(bounds, base::toVector(placed.min));
+            extend(bounds, base::toVector(placed.max));
         }
     }
     return bounds;
@@ -175,8 +175,8 @@ Bounds united(const Bounds& a, const Bounds& b) {
     Bounds both = kNothing;
     for (const Bounds& bounds : {a, b}) {
         if (!bounds.empty()) {
-            extend(both, bounds.min);
-            extend(both, bounds.max);
+            extend(both, base::toVector(bounds.min));
+            extend(both, base::toVector(bounds.max));
         }
     }
     return both;
@@ -201,8 +201,8 @@ Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view) {
                                     : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
         Bounds own = kNothing;
         for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            for (const base::Double3& point : deformedPositions(primitive, node.weights, joints)) {
-                extend(own, point);
+            for (const std::array<double, 3>& point : deformedPositions(primitive, node.weights, joints)) {
+                extend(own, base::toVector(point));
             }
         }
         // Skinned vertices are already in world space.
@@ -217,27 +217,26 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
     constexpr double kHalfHeight = 0.26794919243112270;  // tan(30° / 2)
     constexpr double kMargin = 1.05;
     const Bounds box = withExtent(bounds);
-    const base::Double3 centre = base::scaled(base::sum(box.min, box.max), 0.5);
-    const base::Double3 extent = base::difference(box.max, box.min);
-    const base::Double3 backward = directionToViewer(extent);
-    const base::Double3 right = *normalized(base::cross({0.0, 1.0, 0.0}, backward));
-    const base::Double3 up = base::cross(backward, right);
+    const glm::dvec3 centre = centreOf(box);
+    const glm::dvec3 extent = base::toVector(box.max) - base::toVector(box.min);
+    const glm::dvec3 backward = directionToViewer(extent);
+    const glm::dvec3 right = *normalized(glm::cross(glm::dvec3{0.0, 1.0, 0.0}, backward));
+    const glm::dvec3 up = glm::cross(backward, right);
 
     const Fit across = fit(box, right, backward, kHalfHeight * aspect / kMargin);
     const Fit upright = fit(box, up, backward, kHalfHeight / kMargin);
     double nearest = -kInfinity;
     for (unsigned number = 0; number < 8; ++number) {
-        nearest = std::max(nearest, base::dot(base::difference(corner(box, number), centre), backward));
+        nearest = std::max(nearest, glm::dot(corner(box, number) - centre, backward));
     }
     // Seen from the viewer, a box may be no more than a line. It is then viewed from a hundredth of its size.
-    const double clearance = 0.01 * base::length(extent);
+    const double clearance = 0.01 * glm::length(extent);
     const double distance = std::max({across.distance, upright.distance, nearest + clearance});
 
     CameraView view;
-    view.position = base::toFloat3(
-        base::sum(base::sum(centre, base::scaled(backward, distance)),
-                  base::sum(base::scaled(right, across.offset), base::scaled(up, upright.offset))));
-    view.forward = base::toFloat3(base::scaled(backward, -1.0));
+    view.position =
+        base::toFloat3(centre + backward * distance + (right * across.offset + up * upright.offset));
+    view.forward = base::toFloat3(-backward);
     view.up = base::toFloat3(up);
     view.halfHeight = static_cast<float>(kHalfHeight);
     view.halfWidth = static_cast<float>(kHalfHeight * aspect);
@@ -249,11 +248,10 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
 Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, double aspect) {
     const gltf::Camera& camera = scene.cameras[index];
     const gltf::Matrix4& m = camera.world;
-    const std::optional<base::Double3> forward = normalized({-m[8], -m[9], -m[10]});
-    const base::Double3 upward{m[4], m[5], m[6]};
-    const std::optional<base::Double3> up =
-        forward ? normalized(base::sum(upward, base::scaled(*forward, -base::dot(upward, *forward))))
-                : std::nullopt;
+    const std::optional<glm::dvec3> forward = normalized({-m[8], -m[9], -m[10]});
+    const glm::dvec3 upward{m[4], m[5], m[6]};
+    const std::optional<glm::dvec3> up =
+        forward ? normalized(upward - *forward * glm::dot(upward, *forward)) : std::nullopt;
     if (!up) {
         return makeError("camera-matrix", scene.path,
                          "the node of camera " + cameraName(scene, index) + " has a scale of 0",

@@ -60,43 +60,27 @@ double interpolate(const gltf::AnimationSampler& sampler, const Segment& at, std
     return (1.0 - at.amount) * from + at.amount * valueAt(sampler, at.to, number);
 }
 
-double quaternionDot(const Quaternion& a, const Quaternion& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
-}
-
-Quaternion normalized(const Quaternion& q) {
-    const double length = std::sqrt(quaternionDot(q, q));
-    if (!(length > 0.0)) {
-        return {0.0, 0.0, 0.0, 1.0};
-    }
-    return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
-}
-
-Quaternion weighted(const Quaternion& a, double weightA, const Quaternion& b, double weightB) {
-    Quaternion sum{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        sum[i] = weightA * a[i] + weightB * b[i];
-    }
-    return sum;
+// Quaternions of glm have w first, those of glTF have it last.
+template <typename NumberAt>
+Quaternion quaternionOf(const NumberAt& numberAt) {
+    return glm::normalize(Quaternion(numberAt(3), numberAt(0), numberAt(1), numberAt(2)));
 }
 
 }  // namespace
 
-Quaternion slerp(const Quaternion& from, Quaternion to, double amount) {
-    if (quaternionDot(from, to) < 0.0) {
-        to = {-to[0], -to[1], -to[2], -to[3]};
-    }
-    // The angle is computed from its chord, because the arc cosine of a number near 1 has half the digits.
-    const Quaternion chord = weighted(from, -1.0, to, 1.0);
-    const double angle = 2.0 * std::asin(std::min(1.0, 0.5 * std::sqrt(quaternionDot(chord, chord))));
+// glm::slerp() takes the angle from its cosine, and the arc cosine of a number near 1 has half the digits. So
+// this takes it from the chord.
+Quaternion slerp(const Quaternion& from, const Quaternion& to, double amount) {
+    const Quaternion end = glm::dot(from, to) < 0.0 ? -to : to;
+    const double angle = 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(end - from)));
     const double sine = std::sin(angle);
     // Below this, the arc and its chord are equal to the last digit of a double.
     constexpr double kStraight = 1e-8;
     if (sine < kStraight) {
-        return normalized(weighted(from, 1.0 - amount, to, amount));
+        return glm::normalize(from * (1.0 - amount) + end * amount);
     }
-    return normalized(
-        weighted(from, std::sin((1.0 - amount) * angle) / sine, to, std::sin(amount * angle) / sine));
+    return glm::normalize(from * (std::sin((1.0 - amount) * angle) / sine) +
+                          end * (std::sin(amount * angle) / sine));
 }
 
 std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double time) {
@@ -111,11 +95,7 @@ std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double 
 Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time) {
     const Segment at = findSegment(sampler.times, time);
     const auto rotationAt = [&](std::size_t keyframe) {
-        Quaternion rotation{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            rotation[i] = valueAt(sampler, keyframe, i);
-        }
-        return normalized(rotation);
+        return quaternionOf([&](std::size_t number) { return valueAt(sampler, keyframe, number); });
     };
     if (at.from == at.to || sampler.interpolation == gltf::Interpolation::Step) {
         return rotationAt(at.from);
@@ -123,11 +103,7 @@ Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time) {
     if (sampler.interpolation == gltf::Interpolation::Linear) {
         return slerp(rotationAt(at.from), rotationAt(at.to), at.amount);
     }
-    Quaternion rotation{};
-    for (std::size_t i = 0; i < 4; ++i) {
-        rotation[i] = cubic(sampler, at, i);
-    }
-    return normalized(rotation);
+    return quaternionOf([&](std::size_t number) { return cubic(sampler, at, number); });
 }
 
 }  // namespace glint::scene_view

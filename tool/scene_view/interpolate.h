@@ -3,16 +3,17 @@
 
 #include "gltf/animation.h"
 
-#include <array>
+#include <glm/gtc/quaternion.hpp>
+
 #include <vector>
 
 namespace glint::scene_view {
 
-using Quaternion = std::array<double, 4>;  // x, y, z, w
+using Quaternion = glm::dquat;
 
 // Interpolates unit quaternions spherically along the shorter arc, with `amount` in [0, 1] (glTF 2.0,
 // appendix C.4). Opposite quaternions are the same rotation.
-Quaternion slerp(const Quaternion& from, Quaternion to, double amount);
+Quaternion slerp(const Quaternion& from, const Quaternion& to, double amount);
 
 // Returns the values at `time` (seconds), sampler.width of them. Before the first keyframe they are those of
 // the first, and after the last those of the last. Numbers are interpolated one by one (glTF 2.0, appendix

@@ -38,7 +38,8 @@ void applyChannel(const gltf::Animation& animation, const gltf::AnimationChannel
     const gltf::AnimationSampler& sampler = animation.samplers[static_cast<std::size_t>(channel.sampler)];
     const auto target = static_cast<std::size_t>(channel.target);
     if (channel.path == gltf::AnimationPath::Rotation) {
-        locals.transforms[target].rotation = sampleRotation(sampler, time);
+        const Quaternion rotation = sampleRotation(sampler, time);
+        locals.transforms[target].rotation = {rotation.x, rotation.y, rotation.z, rotation.w};
         return;
     }
     const std::vector<double> numbers = sampleNumbers(sampler, time);
@@ -80,8 +81,7 @@ Pose poseOf(const gltf::Scene& scene, Locals locals) {
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         const gltf::Node& node = scene.nodes[i];
         const gltf::Transform& local = locals.transforms[i];
-        const gltf::Matrix4 matrix =
-            node.matrix ? *node.matrix : gltf::compose(local.translation, local.rotation, local.scale);
+        const gltf::Matrix4 matrix = node.matrix ? *node.matrix : gltf::compose(local);
         pose.worlds.push_back(
             node.parent < 0 ? matrix
                             : gltf::multiply(pose.worlds[static_cast<std::size_t>(node.parent)], matrix));
@@ -102,22 +102,19 @@ void placeLight(const gltf::Matrix4& world, gltf::Light& light) {
     if (light.type == gltf::LightType::Point) {
         return;
     }
-    if (const std::optional<base::Double3> axis = gltf::normalized({-world[8], -world[9], -world[10]})) {
+    if (const std::optional<glm::dvec3> axis = gltf::normalized({-world[8], -world[9], -world[10]})) {
         light.direction = base::toFloat3(*axis);
     }
 }
 
-base::Double3 skinned(const gltf::SkinInfluences& influences, std::size_t vertex, const base::Double3& point,
-                      std::span<const gltf::Matrix4> joints) {
-    base::Double3 sum{};
+glm::dvec3 skinned(const gltf::SkinInfluences& influences, std::size_t vertex, const glm::dvec3& point,
+                   std::span<const gltf::Matrix4> joints) {
+    glm::dvec3 sum{};
     for (std::size_t i = vertex * influences.count; i < (vertex + 1) * influences.count; ++i) {
         if (influences.weights[i] == 0.0F) {
             continue;
         }
-        const base::Double3 moved = base::transformed(joints[influences.joints[i]], point);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            sum[axis] += influences.weights[i] * moved[axis];
-        }
+        sum += double{influences.weights[i]} * base::transformed(joints[influences.joints[i]], point);
     }
     return sum;
 }
@@ -172,23 +169,23 @@ std::vector<gltf::Matrix4> jointMatrices(const gltf::Scene& scene, const gltf::S
     return matrices;
 }
 
-std::vector<base::Double3> deformedPositions(const gltf::Primitive& primitive,
-                                             std::span<const double> weights,
-                                             std::span<const gltf::Matrix4> joints) {
-    std::vector<base::Double3> positions;
+std::vector<std::array<double, 3>> deformedPositions(const gltf::Primitive& primitive,
+                                                     std::span<const double> weights,
+                                                     std::span<const gltf::Matrix4> joints) {
+    std::vector<std::array<double, 3>> positions;
     positions.reserve(primitive.positions.size());
     const std::size_t targets = std::min(primitive.targets.size(), weights.size());
     const bool follows = primitive.influences.count > 0 && !joints.empty();
     for (std::size_t vertex = 0; vertex < primitive.positions.size(); ++vertex) {
-        const gltf::Float3& base = primitive.positions[vertex];
-        base::Double3 point{base[0], base[1], base[2]};
+        glm::dvec3 point = base::toVector(primitive.positions[vertex]);
         for (std::size_t target = 0; target < targets; ++target) {
             const std::vector<gltf::Float3>& differences = primitive.targets[target].positions;
-            for (std::size_t axis = 0; axis < 3 && !differences.empty(); ++axis) {
-                point[axis] += weights[target] * differences[vertex][axis];
+            if (!differences.empty()) {
+                point += weights[target] * base::toVector(differences[vertex]);
             }
         }
-        positions.push_back(follows ? skinned(primitive.influences, vertex, point, joints) : point);
+        positions.push_back(
+            base::toArray(follows ? skinned(primitive.influences, vertex, point, joints) : point));
     }
     return positions;
 }

@@ -86,7 +86,7 @@ std::vector<bool> placedMeshes(const gltf::Scene& scene) {
 
 // Returns the determinant of the linear part.
 double determinantOf(const gltf::Matrix4& m) {
-    return base::dot({m[0], m[1], m[2]}, base::cross({m[4], m[5], m[6]}, {m[8], m[9], m[10]}));
+    return glm::determinant(glm::dmat3(base::toMatrix(m)));
 }
 
 // Returns whether the node's mesh follows its skin. The node's own transform then has no effect (glTF 2.0,
@@ -148,12 +148,9 @@ MotionView SceneViewData::motion() const {
 }
 
 std::array<float, 12> toRows(const gltf::Matrix4& matrix) {
+    const glm::mat4x4 transposed(glm::transpose(base::toMatrix(matrix)));
     std::array<float, 12> rows{};
-    for (std::size_t row = 0; row < 3; ++row) {
-        for (std::size_t column = 0; column < 4; ++column) {
-            rows[4 * row + column] = static_cast<float>(matrix[4 * column + row]);
-        }
-    }
+    std::copy_n(glm::value_ptr(transposed), rows.size(), rows.begin());
     return rows;
 }
 

@@ -15,42 +15,44 @@ namespace glint::scene_view {
 
 namespace {
 
-using Corners = std::array<base::Double3, 3>;
+using Corners = std::array<glm::dvec3, 3>;
 
 // Returns 1, or -1 if the transform mirrors, which swaps the sides of a triangle.
 double handedness(const std::array<float, 12>& rows) {
-    const base::Double3 x{rows[0], rows[1], rows[2]};
-    const base::Double3 y{rows[4], rows[5], rows[6]};
-    const base::Double3 z{rows[8], rows[9], rows[10]};
-    return base::dot(base::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
+    const glm::dvec3 x{rows[0], rows[1], rows[2]};
+    const glm::dvec3 y{rows[4], rows[5], rows[6]};
+    const glm::dvec3 z{rows[8], rows[9], rows[10]};
+    return glm::dot(glm::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
 }
 
 // Returns the positions of a primitive of an instance in world space.
-std::vector<base::Double3> worldPositions(const gltf::Scene& scene, const gltf::Node& node,
-                                          const InstanceView& instance, const gltf::Primitive& primitive) {
-    std::vector<base::Double3> positions;
+std::vector<glm::dvec3> worldPositions(const gltf::Scene& scene, const gltf::Node& node,
+                                       const InstanceView& instance, const gltf::Primitive& primitive) {
+    std::vector<glm::dvec3> positions;
     const bool skinned = !instance.joints.empty();
     if (compiler::isDeformed(scene, node)) {
         const std::vector<gltf::Matrix4> joints =
             skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
                     : std::vector<gltf::Matrix4>();
-        positions = deformedPositions(primitive, node.weights, joints);
+        for (const std::array<double, 3>& position : deformedPositions(primitive, node.weights, joints)) {
+            positions.push_back(base::toVector(position));
+        }
     } else {
         positions.reserve(primitive.positions.size());
         for (const gltf::Float3& position : primitive.positions) {
-            positions.push_back(base::toDouble3(position));
+            positions.push_back(base::toVector(position));
         }
     }
     // Skinned vertices are in the world already.
-    for (base::Double3& position : positions) {
+    for (glm::dvec3& position : positions) {
         position = skinned ? position : base::transformed(instance.objectToWorld, position);
     }
     return positions;
 }
 
 // Returns a vector along the normal of the triangle's front; its length is twice the area.
-base::Double3 areaVector(const Corners& corners) {
-    return base::cross(base::difference(corners[1], corners[0]), base::difference(corners[2], corners[0]));
+glm::dvec3 areaVector(const Corners& corners) {
+    return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
 
 // Calls `visit` for each triangle of all visible instances that has an area, in a fixed order. The corners
@@ -65,15 +67,15 @@ void visitTriangles(const gltf::Scene& scene, const SceneViewData& view,
         const gltf::Node& node = scene.nodes[view.sources[i].node];
         const bool mirrored = handedness(instance.objectToWorld) < 0.0;
         for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            const std::vector<base::Double3> positions = worldPositions(scene, node, instance, primitive);
+            const std::vector<glm::dvec3> positions = worldPositions(scene, node, instance, primitive);
             for (std::size_t first = 0; first + 2 < primitive.indices.size(); first += 3) {
                 Corners corners{positions[primitive.indices[first]], positions[primitive.indices[first + 1]],
                                 positions[primitive.indices[first + 2]]};
                 if (mirrored) {
                     std::swap(corners[1], corners[2]);
                 }
-                const base::Double3 twice = areaVector(corners);
-                const double area = 0.5 * base::length(twice);
+                const glm::dvec3 twice = areaVector(corners);
+                const double area = 0.5 * glm::length(twice);
                 if (std::isfinite(area) && area > 0.0) {
                     visit(corners, area);
                 }
@@ -85,27 +87,20 @@ void visitTriangles(const gltf::Scene& scene, const SceneViewData& view,
 // Returns the middle of a triangle.
 SurfacePoint centreOf(const Corners& corners) {
     SurfacePoint point;
-    for (std::size_t i = 0; i < 3; ++i) {
-        point.position[i] = (corners[0][i] + corners[1][i] + corners[2][i]) / 3.0;
-    }
-    const base::Double3 normal = areaVector(corners);
-    point.normal = base::scaled(normal, 1.0 / base::length(normal));
+    point.position = base::toArray((corners[0] + corners[1] + corners[2]) / 3.0);
+    point.normal = base::toArray(glm::normalize(areaVector(corners)));
     return point;
 }
 
-base::Double3 between(const base::Double3& a, const base::Double3& b) {
-    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
-}
-
 // Returns whether a light is so near that its illuminance varies over the triangle.
-bool varies(const Corners& corners, const base::Double3& centre, std::span<const LightView> lights) {
+bool varies(const Corners& corners, const glm::dvec3& centre, std::span<const LightView> lights) {
     double radius = 0.0;
-    for (const base::Double3& corner : corners) {
-        radius = std::max(radius, base::length(base::difference(corner, centre)));
+    for (const glm::dvec3& corner : corners) {
+        radius = std::max(radius, glm::distance(corner, centre));
     }
     return std::ranges::any_of(lights, [&](const LightView& light) {
         return light.type != LightView::Type::Directional &&
-               base::length(base::difference(base::toDouble3(light.position), centre)) < 4.0 * radius;
+               glm::distance(base::toVector(light.position), centre) < 4.0 * radius;
     });
 }
 
@@ -116,10 +111,10 @@ void addPatches(const Corners& corners, double area, std::span<const LightView> 
     // This bounds the evaluations of lights if there are many lights.
     constexpr std::size_t kMostEvaluations = 1U << 20U;
     if (divisions > 0 && patches.size() * lights.size() < kMostEvaluations &&
-        varies(corners, centre.position, lights)) {
-        const base::Double3 ab = between(corners[0], corners[1]);
-        const base::Double3 bc = between(corners[1], corners[2]);
-        const base::Double3 ca = between(corners[2], corners[0]);
+        varies(corners, base::toVector(centre.position), lights)) {
+        const glm::dvec3 ab = 0.5 * (corners[0] + corners[1]);
+        const glm::dvec3 bc = 0.5 * (corners[1] + corners[2]);
+        const glm::dvec3 ca = 0.5 * (corners[2] + corners[0]);
         for (const Corners& quarter : {Corners{corners[0], ab, ca}, Corners{ab, corners[1], bc},
                                        Corners{ca, bc, corners[2]}, Corners{ab, bc, ca}}) {
             addPatches(quarter, 0.25 * area, lights, divisions - 1, patches);
@@ -169,20 +164,20 @@ std::vector<LitPatch> litPatches(const gltf::Scene& scene, const SceneViewData& 
 
 double illuminanceAt(const LightView& light, const SurfacePoint& point) {
     const double intensity = luminanceOf(light.intensity);
-    const base::Double3 way = base::toDouble3(light.direction);
+    const glm::dvec3 way = base::toVector(light.direction);
+    const glm::dvec3 normal = base::toVector(point.normal);
     if (light.type == LightView::Type::Directional) {
-        return intensity * std::max(-base::dot(way, point.normal), 0.0);
+        return intensity * std::max(-glm::dot(way, normal), 0.0);
     }
     constexpr double kLeastSquaredDistance = 1e-6;
-    const base::Double3 toLight = base::difference(base::toDouble3(light.position), point.position);
-    const double squared = base::dot(toLight, toLight);
+    const glm::dvec3 toLight = base::toVector(light.position) - base::toVector(point.position);
+    const double squared = glm::dot(toLight, toLight);
     if (!(squared > 0.0)) {
         return 0.0;
     }
     const double distance = std::sqrt(squared);
-    const base::Double3 direction = base::scaled(toLight, 1.0 / distance);
-    double share =
-        std::max(base::dot(direction, point.normal), 0.0) / std::max(squared, kLeastSquaredDistance);
+    const glm::dvec3 direction = toLight * (1.0 / distance);
+    double share = std::max(glm::dot(direction, normal), 0.0) / std::max(squared, kLeastSquaredDistance);
     if (light.range > 0.0F) {
         const double ratio = distance / light.range;
         share *= std::clamp(1.0 - ratio * ratio * ratio * ratio, 0.0, 1.0);
@@ -190,7 +185,7 @@ double illuminanceAt(const LightView& light, const SurfacePoint& point) {
     if (light.type == LightView::Type::Spot) {
         const double outer = std::cos(light.outerConeAngle);
         const double width = std::max(0.001, std::cos(light.innerConeAngle) - outer);
-        const double cone = std::clamp((-base::dot(way, direction) - outer) / width, 0.0, 1.0);
+        const double cone = std::clamp((-glm::dot(way, direction) - outer) / width, 0.0, 1.0);
         share *= cone * cone;
     }
     return intensity * share;

@@ -1,5 +1,10 @@
 #include "renderer/camera.h"
 
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,62 +13,59 @@
 namespace glint {
 namespace {
 
-using Float3 = std::array<float, 3>;
-
-Float3 cross(const Float3& a, const Float3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+glm::vec3 toVector(const std::array<float, 3>& v) {
+    return {v[0], v[1], v[2]};
 }
 
-float dot(const Float3& a, const Float3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+gpu::vec3 toRecord(const glm::vec3& v) {
+    return {v.x, v.y, v.z};
 }
 
-gpu::vec3 scaled(const Float3& v, float factor) {
-    return {v[0] * factor, v[1] * factor, v[2] * factor};
+gpu::vec4 toRecord(const glm::vec4& v) {
+    return {v.x, v.y, v.z, v.w};
 }
 
 // Returns the row that takes a point to dot(axis, point - position) * factor.
-gpu::vec4 rowAlong(const Float3& axis, const Float3& position, float factor) {
-    return {axis[0] * factor, axis[1] * factor, axis[2] * factor, -dot(axis, position) * factor};
+glm::vec4 rowAlong(const glm::vec3& axis, const glm::vec3& position, float factor) {
+    return glm::vec4(axis, -glm::dot(axis, position)) * factor;
 }
 
-gpu::vec4 add(const gpu::vec4& a, const gpu::vec4& b, float factor) {
-    return {a.x + b.x * factor, a.y + b.y * factor, a.z + b.z * factor, a.w + b.w * factor};
-}
-
-bool isUnit(const Float3& v) {
+bool isUnit(const glm::vec3& v) {
     // Four digits are enough for a view, and the tolerance is above what normalising in single precision
     // loses.
-    return std::abs(dot(v, v) - 1.0F) < 1e-3F;
+    return std::abs(glm::dot(v, v) - 1.0F) < 1e-3F;
+}
+
+bool isFinite(const glm::vec3& v) {
+    return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v));
 }
 
 // Returns the row of clip z, given the row of the distance along the view. z / w is 1 at the near plane and 0
 // at the far one.
-gpu::vec4 depthRow(const CameraView& camera, const gpu::vec4& distance) {
+glm::vec4 depthRow(const CameraView& camera, const glm::vec4& distance) {
     const float range = camera.far - camera.near;
+    const glm::vec4 one(0.0F, 0.0F, 0.0F, 1.0F);
     if (camera.orthographic) {
-        return add({0.0F, 0.0F, 0.0F, camera.far / range}, distance, -1.0F / range);
+        return one * (camera.far / range) - distance / range;
     }
     if (camera.far == 0.0F) {
-        return {0.0F, 0.0F, 0.0F, camera.near};
+        return one * camera.near;
     }
-    const gpu::vec4 constant{0.0F, 0.0F, 0.0F, camera.near * camera.far / range};
-    return add(constant, distance, -camera.near / range);
+    return one * (camera.near * camera.far / range) - distance * (camera.near / range);
 }
 
 }  // namespace
 
 Status checkCamera(const CameraView& camera) {
-    const auto finite = [](const Float3& v) {
-        return std::ranges::all_of(v, [](float value) { return std::isfinite(value); });
-    };
     const char* hint = "see CameraView for what its members must be";
-    if (!finite(camera.position) || !finite(camera.forward) || !finite(camera.up) ||
+    const glm::vec3 forward = toVector(camera.forward);
+    const glm::vec3 up = toVector(camera.up);
+    if (!isFinite(toVector(camera.position)) || !isFinite(forward) || !isFinite(up) ||
         !std::isfinite(camera.halfWidth) || !std::isfinite(camera.halfHeight) ||
         !std::isfinite(camera.near) || !std::isfinite(camera.far)) {
         return makeError("camera", "", "the camera has a value that is not finite", hint);
     }
-    if (!isUnit(camera.forward) || !isUnit(camera.up) || std::abs(dot(camera.forward, camera.up)) > 1e-3F) {
+    if (!isUnit(forward) || !isUnit(up) || std::abs(glm::dot(forward, up)) > 1e-3F) {
         return makeError("camera", "", "the camera's forward and up are not unit and orthogonal", hint);
     }
     if (!(camera.halfWidth > 0.0F) || !(camera.halfHeight > 0.0F)) {
@@ -114,29 +116,31 @@ float sampleConeScale(std::uint32_t averagedSamples) {
 
 void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,
                 gpu::FrameConstants& constants) {
-    const Float3 right = cross(camera.forward, camera.up);
-    constants.cameraPosition = scaled(camera.position, 1.0F);
+    const glm::vec3 position = toVector(camera.position);
+    const glm::vec3 forward = toVector(camera.forward);
+    const glm::vec3 up = toVector(camera.up);
+    const glm::vec3 right = glm::cross(forward, up);
+    constants.cameraPosition = toRecord(position);
     constants.width = width;
-    constants.cameraForward = scaled(camera.forward, 1.0F);
+    constants.cameraForward = toRecord(forward);
     constants.height = height;
-    constants.cameraRight = scaled(right, camera.halfWidth);
-    constants.cameraUp = scaled(camera.up, camera.halfHeight);
+    constants.cameraRight = toRecord(right * camera.halfWidth);
+    constants.cameraUp = toRecord(up * camera.halfHeight);
     constants.orthographic = camera.orthographic ? 1 : 0;
     const float pixel = 2.0F * camera.halfHeight / static_cast<float>(height);
     constants.pixelSpread = camera.orthographic ? 0.0F : pixel;
     constants.pixelWidth = camera.orthographic ? pixel : 0.0F;
     constants.jitter = jitter;
 
-    const gpu::vec4 distance = rowAlong(camera.forward, camera.position, 1.0F);
-    const gpu::vec4 one{0.0F, 0.0F, 0.0F, 1.0F};
-    const gpu::vec4 w = camera.orthographic ? one : distance;
-    const gpu::vec4 x = rowAlong(right, camera.position, 1.0F / camera.halfWidth);
-    const gpu::vec4 y = rowAlong(camera.up, camera.position, -1.0F / camera.halfHeight);
+    const glm::vec4 distance = rowAlong(forward, position, 1.0F);
+    const glm::vec4 w = camera.orthographic ? glm::vec4(0.0F, 0.0F, 0.0F, 1.0F) : distance;
+    const glm::vec4 x = rowAlong(right, position, 1.0F / camera.halfWidth);
+    const glm::vec4 y = rowAlong(up, position, -1.0F / camera.halfHeight);
     // The raster pass samples pixel centres, so the picture is shifted against the jitter.
-    constants.worldToClip[0] = add(x, w, -2.0F * jitter.x / static_cast<float>(width));
-    constants.worldToClip[1] = add(y, w, -2.0F * jitter.y / static_cast<float>(height));
-    constants.worldToClip[2] = depthRow(camera, distance);
-    constants.worldToClip[3] = w;
+    constants.worldToClip[0] = toRecord(x - w * (2.0F * jitter.x / static_cast<float>(width)));
+    constants.worldToClip[1] = toRecord(y - w * (2.0F * jitter.y / static_cast<float>(height)));
+    constants.worldToClip[2] = toRecord(depthRow(camera, distance));
+    constants.worldToClip[3] = toRecord(w);
 }
 
 }  // namespace glint

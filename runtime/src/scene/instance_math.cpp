@@ -1,5 +1,9 @@
 #include "scene/instance_math.h"
 
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/mat3x3.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,26 +11,9 @@
 namespace glint {
 namespace {
 
-using Double3 = std::array<double, 3>;
-
-Double3 column(const Rows& rows, std::size_t index) {
-    return {rows[index], rows[4 + index], rows[8 + index]};
-}
-
-Double3 row(const Rows& rows, std::size_t index) {
-    return {rows[4 * index], rows[4 * index + 1], rows[4 * index + 2]};
-}
-
-Double3 cross(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-double determinant(const Rows& rows) {
-    return dot(row(rows, 0), cross(row(rows, 1), row(rows, 2)));
+// The linear part. Columns of the matrix are the rows of the transform.
+glm::dmat3 linearRows(const Rows& rows) {
+    return glm::dmat3(glm::make_mat3x4(rows.data()));
 }
 
 }  // namespace
@@ -35,11 +22,11 @@ bool isInvertible(const Rows& objectToWorld) {
     if (!std::ranges::all_of(objectToWorld, [](float value) { return std::isfinite(value); })) {
         return false;
     }
-    const double volume = std::abs(determinant(objectToWorld));
+    const glm::dmat3 linear = glm::transpose(linearRows(objectToWorld));
+    const double volume = std::abs(glm::determinant(linear));
     double box = 1.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Double3 axis = column(objectToWorld, i);
-        const double length = std::sqrt(dot(axis, axis));
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const double length = glm::length(linear[i]);
         // This bounds the inverse of a plain scale: a factor of 1e-30 has the inverse 1e30.
         if (length < 1e-30) {
             return false;
@@ -53,23 +40,23 @@ bool isInvertible(const Rows& objectToWorld) {
 
 gpu::InstanceRecord makeInstanceRecord(const Rows& objectToWorld) {
     gpu::InstanceRecord record{};
-    std::array<Double3, 3> cofactors{};
+    const glm::dmat3 rows = linearRows(objectToWorld);
+    glm::dmat3 cofactors{};
     double largest = 0.0;
-    const double sign = determinant(objectToWorld) < 0.0 ? -1.0 : 1.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        record.objectToWorld[i] = {objectToWorld[4 * i], objectToWorld[4 * i + 1], objectToWorld[4 * i + 2],
-                                   objectToWorld[4 * i + 3]};
-        cofactors[i] = cross(row(objectToWorld, (i + 1) % 3), row(objectToWorld, (i + 2) % 3));
-        for (const double value : cofactors[i]) {
-            largest = std::max(largest, std::abs(value));
-        }
+    const double sign = glm::determinant(rows) < 0.0 ? -1.0 : 1.0;
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const auto row = 4 * static_cast<std::size_t>(i);
+        record.objectToWorld[i] = {objectToWorld[row], objectToWorld[row + 1], objectToWorld[row + 2],
+                                   objectToWorld[row + 3]};
+        cofactors[i] = glm::cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
+        const glm::dvec3 size = glm::abs(cofactors[i]);
+        largest = std::max({largest, size.x, size.y, size.z});
     }
     // Only the direction matters. A power of two brings the largest component to [1, 2) without rounding.
     const double scale = largest > 0.0 ? std::exp2(-std::floor(std::log2(largest))) : 1.0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        record.normalToWorld[i] = {static_cast<float>(sign * scale * cofactors[i][0]),
-                                   static_cast<float>(sign * scale * cofactors[i][1]),
-                                   static_cast<float>(sign * scale * cofactors[i][2])};
+    for (glm::length_t i = 0; i < 3; ++i) {
+        const glm::vec3 normal(sign * scale * cofactors[i]);
+        record.normalToWorld[i] = {normal.x, normal.y, normal.z};
     }
     record.flags = sign < 0.0 ? gpu::kInstanceMirrored : 0;
     return record;

@@ -24,23 +24,21 @@ struct Extents {
 // Returns the box's corners in the image, whose edges are at -1 and 1. The result is infinite if a corner is
 // behind the camera.
 Extents project(const CameraView& camera, const scene_view::Bounds& box) {
-    const base::Double3 forward = base::toDouble3(camera.forward);
-    const base::Double3 up = base::toDouble3(camera.up);
-    const base::Double3 right{forward[1] * up[2] - forward[2] * up[1],
-                              forward[2] * up[0] - forward[0] * up[2],
-                              forward[0] * up[1] - forward[1] * up[0]};
+    const glm::dvec3 forward = base::toVector(camera.forward);
+    const glm::dvec3 up = base::toVector(camera.up);
+    const glm::dvec3 right = glm::cross(forward, up);
     Extents extents;
     for (unsigned number = 0; number < 8; ++number) {
-        base::Double3 offset{};
+        std::array<double, 3> offset{};
         for (std::size_t i = 0; i < 3; ++i) {
             offset[i] = (((number >> i) & 1U) != 0 ? box.max[i] : box.min[i]) - camera.position[i];
         }
-        const double depth = base::dot(offset, forward);
+        const double depth = glm::dot(base::toVector(offset), forward);
         if (depth <= camera.near) {
             return {-INFINITY, INFINITY, -INFINITY, INFINITY};
         }
-        const double x = base::dot(offset, right) / depth / camera.halfWidth;
-        const double y = base::dot(offset, up) / depth / camera.halfHeight;
+        const double x = glm::dot(base::toVector(offset), right) / depth / camera.halfWidth;
+        const double y = glm::dot(base::toVector(offset), up) / depth / camera.halfHeight;
         extents = {std::min(extents.left, x), std::max(extents.right, x), std::min(extents.bottom, y),
                    std::max(extents.top, y)};
     }
@@ -48,11 +46,11 @@ Extents project(const CameraView& camera, const scene_view::Bounds& box) {
 }
 
 void expectFrame(const CameraView& camera) {
-    const base::Double3 forward = base::toDouble3(camera.forward);
-    const base::Double3 up = base::toDouble3(camera.up);
-    EXPECT_NEAR(base::dot(forward, forward), 1.0, 1e-5);
-    EXPECT_NEAR(base::dot(up, up), 1.0, 1e-5);
-    EXPECT_NEAR(base::dot(forward, up), 0.0, 1e-5);
+    const glm::dvec3 forward = base::toVector(camera.forward);
+    const glm::dvec3 up = base::toVector(camera.up);
+    EXPECT_NEAR(glm::dot(forward, forward), 1.0, 1e-5);
+    EXPECT_NEAR(glm::dot(up, up), 1.0, 1e-5);
+    EXPECT_NEAR(glm::dot(forward, up), 0.0, 1e-5);
     EXPECT_GT(camera.near, 0.0F);
 }
 
@@ -80,8 +78,8 @@ TEST(FramingCamera, FillsTheImageWithTheBox) {
 }
 
 TEST(FramingCamera, LooksFromTheFrontAndAtTheFaceOfWhatIsFlat) {
-    const auto towards = [](const base::Double3& extent) {
-        return base::toDouble3(framingCamera({{0, 0, 0}, extent}, 1.5).forward);
+    const auto towards = [](const std::array<double, 3>& extent) {
+        return base::toVector(framingCamera({{0, 0, 0}, extent}, 1.5).forward);
     };
     EXPECT_LT(towards({1, 1, 1})[2], -0.8);
     EXPECT_LT(towards({1, 1, 1})[1], -0.1);
@@ -117,8 +115,8 @@ TEST(WorldBounds, CoverEveryInstance) {
     infinite.world[12] = INFINITY;
     scene.nodes = {plain, moved, infinite};
     const scene_view::Bounds bounds = worldBounds(makeSceneView(scene));
-    EXPECT_EQ(bounds.min, (base::Double3{0, 0, 0}));
-    EXPECT_EQ(bounds.max, (base::Double3{10, 2, 5}));
+    EXPECT_EQ(bounds.min, (std::array<double, 3>{0, 0, 0}));
+    EXPECT_EQ(bounds.max, (std::array<double, 3>{10, 2, 5}));
     EXPECT_TRUE(worldBounds({}).empty());
 }
 

@@ -14,26 +14,18 @@ namespace {
 
 constexpr const char* kRepairHint = "repair the mesh, or export it again";
 
-base::Double3 widen(const Float3& v) {
-    return {v[0], v[1], v[2]};
-}
-
-base::Double3 subtract(const Float3& a, const Float3& b) {
-    return {static_cast<double>(a[0]) - b[0], static_cast<double>(a[1]) - b[1],
-            static_cast<double>(a[2]) - b[2]};
+glm::dvec3 subtract(const Float3& a, const Float3& b) {
+    return base::toVector(a) - base::toVector(b);
 }
 
 // Returns a vector of unit length, or nothing if the vector is zero or not finite. Doubles can hold the
 // squares of all floats. Products of two squared floats underflow only far below what a float can hold.
-std::optional<Float3> unitVector(const base::Double3& v) {
+std::optional<Float3> unitVector(const glm::dvec3& v) {
     const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
     if (!std::isfinite(largest) || largest == 0.0) {
         return std::nullopt;
     }
-    const base::Double3 scaled{v[0] / largest, v[1] / largest, v[2] / largest};
-    const double length = std::hypot(scaled[0], scaled[1], scaled[2]);
-    const Float3 unit{static_cast<float>(scaled[0] / length), static_cast<float>(scaled[1] / length),
-                      static_cast<float>(scaled[2] / length)};
+    const Float3 unit = base::toFloat3(glm::normalize(v / largest));
     return base::isFinite(unit) ? std::optional(unit) : std::nullopt;
 }
 
@@ -74,8 +66,8 @@ std::vector<Float3> adjacentNormals(const Primitive& primitive, const std::vecto
     const auto& indices = primitive.indices;
     for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
         const Float3& origin = primitive.positions[indices[i]];
-        const auto normal = unitVector(base::cross(subtract(primitive.positions[indices[i + 1]], origin),
-                                                   subtract(primitive.positions[indices[i + 2]], origin)));
+        const auto normal = unitVector(glm::cross(subtract(primitive.positions[indices[i + 1]], origin),
+                                                  subtract(primitive.positions[indices[i + 2]], origin)));
         for (std::size_t corner = i; normal && corner < i + 3; ++corner) {
             const std::uint32_t vertex = indices[corner];
             if (wanted[vertex] && !found[vertex]) {
@@ -91,7 +83,7 @@ void repairNormals(Document& document, Primitive& primitive) {
     std::vector<bool> broken(primitive.normals.size());
     std::size_t count = 0;
     for (std::size_t i = 0; i < primitive.normals.size(); ++i) {
-        const auto unit = unitVector(widen(primitive.normals[i]));
+        const auto unit = unitVector(base::toVector(primitive.normals[i]));
         broken[i] = !unit;
         count += unit ? 0 : 1;
         primitive.normals[i] = unit.value_or(Float3{});
@@ -112,10 +104,9 @@ void repairNormals(Document& document, Primitive& primitive) {
 
 // Returns a unit vector at right angles to `normal`.
 Float3 anyTangent(const Float3& normal) {
-    const base::Double3 n = widen(normal);
-    const base::Double3 axis =
-        std::abs(n[0]) < 0.5 ? base::Double3{1.0, 0.0, 0.0} : base::Double3{0.0, 1.0, 0.0};
-    return unitVector(base::cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
+    const glm::dvec3 n = base::toVector(normal);
+    const glm::dvec3 axis = std::abs(n[0]) < 0.5 ? glm::dvec3{1.0, 0.0, 0.0} : glm::dvec3{0.0, 1.0, 0.0};
+    return unitVector(glm::cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
 }
 
 void repairTangents(Document& document, Primitive& primitive) {

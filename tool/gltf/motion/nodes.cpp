@@ -147,12 +147,12 @@ Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
     }
     const auto triple = [&](const char* name, double fallback) {
         const std::vector<double> values = numbersMember(json, name);
-        return values.size() == 3 ? base::Double3{values[0], values[1], values[2]}
-                                  : base::Double3{fallback, fallback, fallback};
+        return values.size() == 3 ? std::array{values[0], values[1], values[2]}
+                                  : std::array{fallback, fallback, fallback};
     };
     placed.rest = {triple("translation", 0.0),
                    readRotation(document, numbersMember(json, "rotation"), pointer), triple("scale", 1.0)};
-    return compose(placed.rest.translation, placed.rest.rotation, placed.rest.scale);
+    return compose(placed.rest);
 }
 
 Status placeCamera(Document& document, int camera, Node& node, Scene& scene) {

@@ -162,7 +162,7 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
             document.warn("pose-degenerate", pointer, "its node's scale leaves no direction; -Z is used",
                           "give the node a scale that is not zero");
         }
-        const base::Double3 direction = axis.value_or(base::Double3{0.0, 0.0, -1.0});
+        const glm::dvec3 direction = axis.value_or(glm::dvec3{0.0, 0.0, -1.0});
         light.direction = {static_cast<float>(direction[0]), static_cast<float>(direction[1]),
                            static_cast<float>(direction[2])};
     }

@@ -1,63 +1,35 @@
 #include "gltf/motion/transform.h"
 
+#include <glm/gtc/quaternion.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace glint::gltf {
 
-Matrix4 identity() {
-    return {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-}
-
-Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
-    Matrix4 product{};
-    for (std::size_t column = 0; column < 4; ++column) {
-        for (std::size_t row = 0; row < 4; ++row) {
-            for (std::size_t k = 0; k < 4; ++k) {
-                product[4 * column + row] += a[4 * k + row] * b[4 * column + k];
-            }
-        }
+Matrix4 compose(const Transform& transform) {
+    const auto [x, y, z, w] = transform.rotation;
+    glm::dmat4 matrix = glm::mat4_cast(glm::dquat(w, x, y, z));
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        matrix[axis] *= transform.scale[static_cast<std::size_t>(axis)];
     }
-    return product;
-}
-
-Matrix4 compose(const base::Double3& translation, const std::array<double, 4>& rotation,
-                const base::Double3& scale) {
-    const auto [x, y, z, w] = rotation;
-    const auto [sx, sy, sz] = scale;
-    return {(1 - 2 * (y * y + z * z)) * sx,
-            2 * (x * y + w * z) * sx,
-            2 * (x * z - w * y) * sx,
-            0,
-            2 * (x * y - w * z) * sy,
-            (1 - 2 * (x * x + z * z)) * sy,
-            2 * (y * z + w * x) * sy,
-            0,
-            2 * (x * z + w * y) * sz,
-            2 * (y * z - w * x) * sz,
-            (1 - 2 * (x * x + y * y)) * sz,
-            0,
-            translation[0],
-            translation[1],
-            translation[2],
-            1};
+    matrix[3] = glm::dvec4(base::toVector(transform.translation), 1.0);
+    return base::toArray(matrix);
 }
 
 Matrix4 instanceTransform(const Instancing& instancing, std::size_t index) {
-    base::Double3 translation{};
-    std::array<double, 4> rotation{0.0, 0.0, 0.0, 1.0};
-    base::Double3 scale{1.0, 1.0, 1.0};
+    Transform transform;
     if (!instancing.translations.empty()) {
-        std::copy_n(instancing.translations[index].begin(), 3, translation.begin());
+        std::ranges::copy(instancing.translations[index], transform.translation.begin());
     }
     if (!instancing.rotations.empty()) {
-        std::copy_n(instancing.rotations[index].begin(), 4, rotation.begin());
+        std::ranges::copy(instancing.rotations[index], transform.rotation.begin());
     }
     if (!instancing.scales.empty()) {
-        std::copy_n(instancing.scales[index].begin(), 3, scale.begin());
+        std::ranges::copy(instancing.scales[index], transform.scale.begin());
     }
-    return compose(translation, rotation, scale);
+    return compose(transform);
 }
 
 std::vector<Matrix4> placesOf(const Scene& scene, const Node& node) {
@@ -82,34 +54,31 @@ bool fitsFloat(const Matrix4& matrix) {
                        [](double element) { return std::abs(element) <= kLargest; });
 }
 
-std::optional<base::Double3> normalized(const base::Double3& v) {
-    const double length = std::hypot(v[0], v[1], v[2]);
+std::optional<glm::dvec3> normalized(const glm::dvec3& v) {
+    const double length = glm::length(v);
     // A shorter vector has fewer digits as a float, or none at all.
     constexpr double kShortest = std::numeric_limits<float>::min();
     if (!(length >= kShortest) || !std::isfinite(length)) {
         return std::nullopt;
     }
-    return base::Double3{v[0] / length, v[1] / length, v[2] / length};
+    return v / length;
 }
 
-std::optional<Matrix4> rigidPart(const Matrix4& m) {
-    const auto z = normalized({m[8], m[9], m[10]});
-    const base::Double3 up{m[4], m[5], m[6]};
-    const auto upDirection = normalized(up);
-    if (!z || !upDirection) {
+std::optional<Matrix4> rigidPart(const Matrix4& matrix) {
+    glm::dmat4 m = base::toMatrix(matrix);
+    const auto z = normalized(glm::dvec3(m[2]));
+    const auto up = normalized(glm::dvec3(m[1]));
+    if (!z || !up) {
         return std::nullopt;
     }
-    const double along =
-        (*upDirection)[0] * (*z)[0] + (*upDirection)[1] * (*z)[1] + (*upDirection)[2] * (*z)[2];
-    const auto y = normalized({(*upDirection)[0] - along * (*z)[0], (*upDirection)[1] - along * (*z)[1],
-                               (*upDirection)[2] - along * (*z)[2]});
+    const auto y = normalized(*up - *z * glm::dot(*up, *z));
     if (!y) {
         return std::nullopt;
     }
-    const base::Double3 x{(*y)[1] * (*z)[2] - (*y)[2] * (*z)[1], (*y)[2] * (*z)[0] - (*y)[0] * (*z)[2],
-                          (*y)[0] * (*z)[1] - (*y)[1] * (*z)[0]};
-    return Matrix4{x[0],    x[1],    x[2],    0, (*y)[0], (*y)[1], (*y)[2], 0,
-                   (*z)[0], (*z)[1], (*z)[2], 0, m[12],   m[13],   m[14],   1};
+    m[0] = glm::dvec4(glm::cross(*y, *z), 0.0);
+    m[1] = glm::dvec4(*y, 0.0);
+    m[2] = glm::dvec4(*z, 0.0);
+    return base::toArray(m);
 }
 
 }  // namespace glint::gltf

@@ -10,11 +10,14 @@
 
 namespace glint::gltf {
 
-Matrix4 identity();
-Matrix4 multiply(const Matrix4& a, const Matrix4& b);
-// Returns T * R * S. `rotation` is a unit quaternion (x, y, z, w).
-Matrix4 compose(const base::Double3& translation, const std::array<double, 4>& rotation,
-                const base::Double3& scale);
+inline Matrix4 identity() {
+    return base::toArray(glm::dmat4(1.0));
+}
+inline Matrix4 multiply(const Matrix4& a, const Matrix4& b) {
+    return base::toArray(base::toMatrix(a) * base::toMatrix(b));
+}
+// Returns T * R * S.
+Matrix4 compose(const Transform& transform);
 // Returns the transform of one placement of a mesh relative to its node. `index` is less than the count.
 Matrix4 instanceTransform(const Instancing& instancing, std::size_t index);
 // Returns the world transforms at which the node draws its mesh, one for each placement. There are none if
@@ -24,7 +27,7 @@ std::vector<Matrix4> placesOf(const Scene& scene, const Node& node);
 bool fitsFloat(const Matrix4& matrix);
 
 // Returns nothing if the vector is shorter than the least normal float or not finite.
-std::optional<base::Double3> normalized(const base::Double3& v);
+std::optional<glm::dvec3> normalized(const glm::dvec3& v);
 
 // Returns the transform's position and directions without scale, shear or mirroring. Z stays, Y is turned to
 // a right angle with it, and X follows. Returns nothing if Y and Z don't span a plane.
