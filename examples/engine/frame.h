@@ -48,8 +48,9 @@ public:
     // Rays of the last frame, which must be complete.
     std::uint32_t rays();
 
-private:
     struct State;
+
+private:
     std::unique_ptr<State> state_;
 };
 
