@@ -134,7 +134,7 @@ def device_time(arguments, scene, folder, setting):
     stats = folder / "stats.json"
     command = [arguments.glint, "render", scene, "-o", folder / "picture.png", "--size", arguments.size, "--spp", "2",
                "--strategy", "uber", "--tracer", arguments.tracer, "--effects", "shadow,reflection", "--max-roughness",
-               "1", "--bounces", str(arguments.bounces), "--shadow-through", setting, "--json", stats]
+               "1", "--bounces", str(arguments.bounces), "--shadow-through", setting, "--stats", stats]
     if arguments.device:
         command += ["--device", arguments.device]
     subprocess.run(command, check=True, capture_output=True)
