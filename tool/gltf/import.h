@@ -15,6 +15,9 @@ namespace glint::gltf {
 struct ImportOptions {
     // Whether to decode images. The compiler needs none of them, and the renderer needs all.
     bool decodeImages = false;
+    // Whether to look at every texel, so that planning knows what textures hold (Image::content). Textures
+    // must then not be replaced at run time by others that hold more.
+    bool trustTextures = false;
     // These limits keep hostile files from using up the machine's memory.
     std::uint64_t maxVertices = 1ULL << 28;  // over all accessors
     std::uint64_t maxFileBytes = 1ULL << 32;

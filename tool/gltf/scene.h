@@ -165,6 +165,10 @@ struct Image {
     // There are byteCount() bytes. Levels start with the largest, and rows with the top one. Values stay as
     // they are stored and are not linearised.
     std::vector<std::uint8_t> pixels;
+    // What the texels hold, by channel, as they are stored: all of [0, 1] without
+    // ImportOptions::trustTextures.
+    std::array<materials::ValueInterval, 4> content{materials::kUnitInterval, materials::kUnitInterval,
+                                                    materials::kUnitInterval, materials::kUnitInterval};
 };
 
 constexpr std::uint64_t pixelCount(const Image& image, int level) {

@@ -107,6 +107,7 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         const auto& settings = json.at("settings");
         manifest.hitLobes = settings.at("hitLobes").get<std::vector<std::string>>();
         manifest.energyCompensation = settings.at("energyCompensation").get<bool>();
+        manifest.trustTextures = settings.at("trustTextures").get<bool>();
         manifest.textureLod = settings.at("textureLod").get<std::string>();
         manifest.host = json.value("host", std::vector<std::string>());
         manifest.packs = json.value("packs", std::vector<std::string>());

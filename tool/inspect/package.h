@@ -24,6 +24,7 @@ struct Manifest {
     std::vector<std::string> variants;  // by scene; empty: none
     std::vector<std::string> hitLobes;
     bool energyCompensation = true;
+    bool trustTextures = false;
     std::string textureLod;
     std::vector<std::string> host;      // files that --host replaced
     std::vector<std::string> packs;     // declarations of packs

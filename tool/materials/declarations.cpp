@@ -50,7 +50,9 @@ MaterialModel ModelBuilder::build() {
     }
     for (Parameter& parameter : model_.parameters) {
         if (parameter.aliasOf >= 0) {
-            parameter.scaledBy = model_.parameters[static_cast<std::size_t>(parameter.aliasOf)].scaledBy;
+            const Parameter& own = model_.parameters[static_cast<std::size_t>(parameter.aliasOf)];
+            parameter.scaledBy = own.scaledBy;
+            parameter.scaledByChannels = own.scaledByChannels;
         }
     }
     keepPlacesOfUnlit();

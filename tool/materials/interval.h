@@ -22,6 +22,7 @@ struct ValueInterval {
 };
 
 inline constexpr ValueInterval kAnything{-kUnlimited, kUnlimited};
+inline constexpr ValueInterval kUnitInterval{0.0, 1.0};
 
 // What is known of a condition: it holds for all values, for none, or for some.
 enum class Certainty : std::uint8_t { False, True, Unknown };

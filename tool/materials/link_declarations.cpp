@@ -70,6 +70,10 @@ std::optional<Symbol> ModelBuilder::resolve(std::string_view function,
         const int index = model_.findTexture(names[0]);
         return condition(index, model_.symbolOfTexture(index));
     }
+    if (function == "texel" && names.size() == 1) {
+        const int index = model_.findTexture(names[0]);
+        return index < 0 ? std::nullopt : std::optional(Symbol{model_.symbolOfTexel(index), false, 4});
+    }
     if (function == "attribute" && names.size() == 1) {
         const int index = model_.findAttribute(names[0]);
         return condition(index, model_.symbolOfAttribute(index));
@@ -169,12 +173,31 @@ void ModelBuilder::linkAliases(const File& file) {
 }
 
 void ModelBuilder::linkScales(const Members& members, int slot) {
-    for (const std::string& name : members.texts("scales")) {
-        const int parameter = model_.findParameter(name);
-        if (parameter < 0) {
+    for (const std::string& scaled : members.texts("scales")) {
+        const std::string name = scaled.substr(0, scaled.find('.'));
+        const int index = model_.findParameter(name);
+        if (index < 0) {
             failAt(members.at("scales"), fmt::format("there is no parameter \"{}\"", name));
         }
-        model_.parameters[static_cast<std::size_t>(parameter)].scaledBy = slot;
+        Parameter& parameter = model_.parameters[static_cast<std::size_t>(index)];
+        parameter.scaledBy = slot;
+        const std::string_view channels = std::string_view(scaled).substr(name.size());
+        if (channels.empty()) {
+            continue;
+        }
+        if (channels.size() != static_cast<std::size_t>(parameter.channels) + 1) {
+            failAt(members.at("scales"),
+                   fmt::format("\"{}\" must name {} of the texture's channels", scaled, parameter.channels));
+        }
+        for (int i = 0; i < parameter.channels; ++i) {
+            const std::size_t channel =
+                std::string_view("rgba").find(channels[static_cast<std::size_t>(i) + 1]);
+            if (channel == std::string_view::npos) {
+                failAt(members.at("scales"),
+                       fmt::format("\"{}\" names a channel that is not r, g, b or a", scaled));
+            }
+            parameter.scaledByChannels[static_cast<std::size_t>(i)] = static_cast<int>(channel);
+        }
     }
 }
 

@@ -118,17 +118,32 @@ Channels MaterialFacts::number(int symbol) const {
         const bool varies = primitive_.colors == ColorContent::Varying;
         return {{ValueInterval{varies ? 0.0 : 1.0, 1.0}}, 1};
     }
-    const Parameter& parameter = model.parameters[static_cast<std::size_t>(symbol)];
-    const bool scaled = textures_ == Textures::Scale && parameter.scaledBy >= 0 &&
-                        isReadable(material_, primitive_, parameter.scaledBy);
     Channels number;
+    if (symbol >= model.symbolOfTexel(0)) {
+        const int texture = symbol - model.symbolOfTexel(0);
+        number.count = 4;
+        number.of.fill({1.0, 1.0});
+        if (isReadable(material_, primitive_, texture)) {
+            number.of = material_.textures[static_cast<std::size_t>(texture)].content;
+        }
+        return number;
+    }
+    const Parameter& parameter = model.parameters[static_cast<std::size_t>(symbol)];
+    const bool scaled = textures_ != Textures::Ignored && parameter.scaledBy >= 0 &&
+                        isReadable(material_, primitive_, parameter.scaledBy);
     number.count = parameter.channels;
     for (int i = 0; i < parameter.channels; ++i) {
         const auto place = static_cast<std::size_t>(parameter.first + i);
         ValueInterval& target = number.of[static_cast<std::size_t>(i)];
         target = material_.ranges.empty() ? ValueInterval{material_.values[place], material_.values[place]}
                                           : material_.ranges[place];
-        target = scaled ? multiply(target, {0.0, 1.0}) : target;
+        const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
+        if (scaled && textures_ == Textures::Scale && channel >= 0) {
+            const TextureInfo& info = material_.textures[static_cast<std::size_t>(parameter.scaledBy)];
+            target = multiply(target, info.content[static_cast<std::size_t>(channel)]);
+        } else if (scaled) {
+            target = multiply(target, kUnitInterval);
+        }
     }
     return number;
 }

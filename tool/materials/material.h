@@ -34,6 +34,8 @@ struct TextureInfo {
     TextureTransform transform;
     bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
     bool moves = false;         // An animation changes the transform.
+    // What its texels hold, by channel, as shading reads them: all numbers in [0, 1] where nobody has looked.
+    std::array<ValueInterval, 4> content{kUnitInterval, kUnitInterval, kUnitInterval, kUnitInterval};
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -163,10 +165,11 @@ struct KeyOptions {
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture);
 
 // What is known of a material on a primitive. A parameter that a readable texture scales has the interval of
-// all products with numbers in [0, 1]. The objects that it refers to must outlive it.
+// all products with numbers that the texture may hold. The objects that it refers to must outlive it.
 class MaterialFacts final : public Facts {
 public:
-    enum class Textures : std::uint8_t { Scale, Ignored };
+    // Scale: by what the texture holds. Unknown: by any number in [0, 1]. Ignored: not at all.
+    enum class Textures : std::uint8_t { Scale, Unknown, Ignored };
 
     // `key` holds the features that are known to be in the key.
     MaterialFacts(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,

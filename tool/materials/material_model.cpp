@@ -123,8 +123,12 @@ int MaterialModel::symbolOfTexture(int texture) const {
     return symbolOfFeature(static_cast<int>(features.size())) + texture;
 }
 
+int MaterialModel::symbolOfTexel(int texture) const {
+    return symbolOfTexture(static_cast<int>(textures.size())) + texture;
+}
+
 int MaterialModel::symbolOfAttribute(int attribute) const {
-    return symbolOfTexture(static_cast<int>(textures.size())) + attribute;
+    return symbolOfTexel(static_cast<int>(textures.size())) + attribute;
 }
 
 int MaterialModel::symbolOfPair(int pair) const {

@@ -77,7 +77,10 @@ struct Parameter {
     bool isAngle = false;          // in radians; reduced to one turn
     int aliasOf = -1;              // the parameter whose numbers it sets, or -1
     int scaledBy = -1;             // the texture that multiplies it by numbers in [0, 1], or -1
-    int feature = -1;              // Records have the parameter if a key has this feature; -1: always.
+    // The texture's channel that multiplies each of its own, if that is all that the texture does to it; -1:
+    // not known.
+    std::array<int, 4> scaledByChannels{-1, -1, -1, -1};
+    int feature = -1;  // Records have the parameter if a key has this feature; -1: always.
     bool inRecord = true;
 
     bool isValid(double value) const;
@@ -281,6 +284,7 @@ public:
     int symbolOf(Fact fact) const;
     int symbolOfFeature(int feature) const;      // has(feature)
     int symbolOfTexture(int texture) const;      // readable(texture)
+    int symbolOfTexel(int texture) const;        // texel(texture)
     int symbolOfAttribute(int attribute) const;  // attribute(name)
     int symbolOfPair(int pair) const;            // same(texture, texture)
 };

@@ -30,7 +30,8 @@ public:
           material_(material),
           primitive_(primitive),
           kept_(~model_.lobes | options.keptLobes | model_.baseModels()),
-          facts_(material, primitive, options, key_) {}
+          facts_(material, primitive, options, key_),
+          blind_(material, primitive, options, key_, materials::MaterialFacts::Textures::Unknown) {}
 
     materials::FeatureMask make(Drops* dropped) {
         for (const int index : model_.order) {
@@ -98,8 +99,15 @@ private:
         for (const materials::NeutralReason& reason : feature.neutral) {
             const bool counts = (reason.onlyWith < 0 || has(reason.onlyWith)) &&
                                 (reason.onlyWithout < 0 || !has(reason.onlyWithout));
-            if (counts && reason.when.holds(facts_) == materials::Certainty::True) {
+            if (!counts) {
+                continue;
+            }
+            if (reason.when.holds(blind_) == materials::Certainty::True) {
                 return reason.because;
+            }
+            // A texture whose product is known has to be read all the same: it makes the product.
+            if (feature.texture < 0 && reason.when.holds(facts_) == materials::Certainty::True) {
+                return fmt::format("{} {}", reason.because, whatTexturesHold(reason.when));
             }
         }
         const auto index = static_cast<int>(&feature - model_.features.data());
@@ -124,12 +132,42 @@ private:
         return std::nullopt;
     }
 
+    // Returns what the textures hold that scale the parameters of a condition: "(by clearcoatTexture, whose r
+    // is 0)".
+    std::string whatTexturesHold(const materials::Expression& when) const {
+        std::string text;
+        for (const int symbol : when.symbols()) {
+            if (symbol < 0 || symbol >= static_cast<int>(model_.parameters.size())) {
+                continue;
+            }
+            const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(symbol)];
+            if (parameter.scaledBy < 0 || !isReadable(material_, primitive_, parameter.scaledBy)) {
+                continue;
+            }
+            const auto texture = static_cast<std::size_t>(parameter.scaledBy);
+            for (int i = 0; i < parameter.channels; ++i) {
+                const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
+                if (channel >= 0) {
+                    const materials::ValueInterval held =
+                        material_.textures[texture].content[static_cast<std::size_t>(channel)];
+                    text +=
+                        fmt::format("{}{}.{} is {}", text.empty() ? "" : ", ", model_.textures[texture].name,
+                                    "rgba"[channel],
+                                    held.isExact() ? fmt::format("{:.3g}", held.low)
+                                                   : fmt::format("{:.3g} to {:.3g}", held.low, held.high));
+                }
+            }
+        }
+        return fmt::format("(by what textures hold: {})", text);
+    }
+
     const materials::MaterialModel& model_;
     const materials::Material& material_;
     const materials::PrimitiveInputs& primitive_;
     materials::FeatureMask kept_;
     materials::FeatureMask key_ = 0;
     materials::MaterialFacts facts_;
+    materials::MaterialFacts blind_;  // to what textures hold
 };
 
 }  // namespace

@@ -64,6 +64,8 @@ struct CompileSettings {
     EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
+    // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures).
+    bool trustTextures = false;
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
     int jobs = 0;               // threads; 0 means one for each core
     bool emitHeader = true;     // glint_tables.h

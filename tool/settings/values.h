@@ -486,6 +486,10 @@ inline constexpr SettingValues kBounces{
     .type = "N|unlimited"};
 
 inline constexpr Named<bool> kEnergyNames[] = {{true, "on"}, {false, "off"}};
+inline constexpr Named<bool> kTrustNames[] = {
+    {false, "off", "textures may hold anything"},
+    {true, "on", "textures hold what their images hold now"},
+};
 inline constexpr Named<bool> kFalloffNames[] = {
     {false, "none", "all count alike"},
     {true, "linear", "surfaces occlude less the farther away they are; needs --ao-radius"}};

@@ -1,10 +1,12 @@
 // Tests image formats: PNG of every kind, WebP, and which source of a texture is used. ktx2_test.cpp tests
 // KTX2.
+#include "gltf/image_content.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -134,6 +136,56 @@ TEST(GltfImages, NamesForeignFormats) {
         ASSERT_FALSE(scene.ok());
         EXPECT_NE(scene.error().message.find(name), std::string::npos) << scene.error().message;
     }
+}
+
+const gltf::ImportOptions kTrust{.trustTextures = true};
+
+// Returns what the only image of a scene holds.
+std::array<materials::ValueInterval, 4> contentOf(const PngSpec& spec) {
+    const Result<gltf::Scene> scene = import(sceneWithImage(makePng(spec)), kTrust);
+    if (!scene || scene->images.empty()) {
+        ADD_FAILURE() << (scene ? "no image" : toString(scene.error()));
+        return {};
+    }
+    EXPECT_TRUE(scene->images[0].pixels.empty());
+    return scene->images[0].content;
+}
+
+TEST(ImageContent, IsTheLeastAndGreatestOfEachChannel) {
+    const auto content =
+        contentOf({3, 1, 8, PngColor::Rgba, {}, {0, 51, 255, 102, 255, 51, 255, 204, 51, 51, 255, 153}});
+    EXPECT_EQ(content[0], (materials::ValueInterval{0.0, 1.0}));
+    EXPECT_EQ(content[1], (materials::ValueInterval{0.2, 0.2}));
+    EXPECT_EQ(content[2], (materials::ValueInterval{1.0, 1.0}));
+    EXPECT_EQ(content[3], (materials::ValueInterval{0.4, 0.8}));
+    // Nobody has looked.
+    const Result<gltf::Scene> unread = import(sceneWithImage(makePng({})));
+    ASSERT_TRUE(unread.ok());
+    EXPECT_EQ(unread->images[0].content[0], materials::kUnitInterval);
+}
+
+// Devices that cannot filter 16 bits keep 8, which may round to either side.
+TEST(ImageContent, OfSixteenBitsHoldsThatOfEight) {
+    const auto content = contentOf({1, 1, 16, PngColor::Gray, {}, {0x4D, 0x00}});
+    EXPECT_EQ(content[0], (materials::ValueInterval{77.0 * 256.0 / 65535.0, 77.0 / 255.0}));
+}
+
+TEST(ImageContent, IsReadAsColourWhereItIsOne) {
+    std::array<materials::ValueInterval, 4> stored{};
+    stored.fill({0.5, 0.5});
+    const auto color = gltf::contentAsRead(stored, true);
+    EXPECT_LT(color[0].low, 0.21404);
+    EXPECT_GT(color[0].high, 0.21405);
+    EXPECT_NEAR(color[0].low, 0.214, 0.003);
+    EXPECT_NEAR(color[3].high, 0.5, 1e-4);
+    EXPECT_NEAR(gltf::contentAsRead(stored, false)[0].low, 0.5, 1e-4);
+    // The ends are exact.
+    stored.fill({0.0, 0.0});
+    EXPECT_EQ(gltf::contentAsRead(stored, true)[1], (materials::ValueInterval{0.0, 0.0}));
+    stored.fill({1.0, 1.0});
+    EXPECT_EQ(gltf::contentAsRead(stored, true)[1], (materials::ValueInterval{1.0, 1.0}));
+    stored.fill({0.0, 1.0});
+    EXPECT_EQ(gltf::contentAsRead(stored, true)[1], (materials::ValueInterval{0.0, 1.0}));
 }
 
 }  // namespace

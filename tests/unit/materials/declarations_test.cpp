@@ -128,6 +128,21 @@ TEST(Declarations, SayWhatIsWrongAndWhere) {
                           {"name": "wetTexture", "scales": ["damp"]}]})")
                   .find("there is no parameter \"damp\""),
               std::string::npos);
+    const auto withScales = [&](const std::string& scales) {
+        return refusal(R"({"name": "wet", "stage": "surface",
+            "parameters": [{"name": "wetness", "type": "color", "default": [0, 0, 0], "range": [0, 1]}],
+            "textures": [{"name": "wetTexture", "scales": [")" +
+                       scales + R"("]}]})");
+    };
+    EXPECT_NE(withScales("wetness.rg").find("\"wetness.rg\" must name 3 of the texture's channels"),
+              std::string::npos);
+    EXPECT_NE(withScales("wetness.rgx").find("a channel that is not r, g, b or a"), std::string::npos);
+    EXPECT_TRUE(modelWith(R"({"name": "wet", "stage": "surface",
+            "parameters": [{"name": "wetness", "type": "color", "default": [0, 0, 0], "range": [0, 1]}],
+            "textures": [{"name": "wetTexture", "scales": ["wetness.bga"]}]})")
+                    .ok());
+    EXPECT_NE(withReason("texel(dampTexture).r == 1").find("there is no \"texel(dampTexture)\""),
+              std::string::npos);
     EXPECT_NE(refusal(std::string(2000, '[')).find("nests too deep"), std::string::npos);
 }
 

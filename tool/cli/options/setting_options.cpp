@@ -209,6 +209,7 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, bo
     }
     gltf::ImportOptions options;
     options.decodeImages = decodeImages;
+    options.trustTextures = settings.compile.trustTextures;
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;
     options.materialModel = *model;

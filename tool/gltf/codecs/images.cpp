@@ -4,6 +4,7 @@
 #include "gltf/codecs/codecs.h"
 #include "gltf/codecs/ktx2.h"
 #include "gltf/document/uri.h"
+#include "gltf/image_content.h"
 
 #include <fmt/format.h>
 
@@ -160,7 +161,8 @@ Result<Image> importImage(Document& document, int index) {
                                       : "has neither a \"uri\" nor a \"bufferView\"",
                               "export the scene again");
     }
-    if (!document.options().decodeImages) {
+    const ImportOptions& options = document.options();
+    if (!options.decodeImages && !options.trustTextures) {
         return image;
     }
     base::Bytes storage;
@@ -170,6 +172,12 @@ Result<Image> importImage(Document& document, int index) {
     }
     if (Status status = decode(document, *bytes, image); !status) {
         return status.error();
+    }
+    if (options.trustTextures) {
+        image.content = storedContent(image);
+    }
+    if (!options.decodeImages) {
+        image.pixels = {};
     }
     return image;
 }

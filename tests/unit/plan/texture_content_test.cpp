@@ -1,0 +1,120 @@
+// Tests what planning concludes from what textures hold.
+#include "plan/effects.h"
+#include "support/effect_bits.h"
+#include "support/features.h"
+#include "unit/plan/full_material.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+using Content = std::array<materials::ValueInterval, 4>;
+
+constexpr Content kOnes{{{1.0, 1.0}, {1.0, 1.0}, {1.0, 1.0}, {1.0, 1.0}}};
+constexpr Content kZeros{};
+
+materials::Material fullOf(const char* texture, const Content& content) {
+    materials::Material material = fullMaterial();
+    material.texture(texture).content = content;
+    return material;
+}
+
+// Returns what differs from the key of a material whose textures may hold anything.
+std::vector<std::string_view> lostBy(const char* texture, const Content& content,
+                                     Dropped* dropped = nullptr) {
+    const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, nullptr);
+    const materials::FeatureMask key =
+        compiler::makeKey(fullOf(texture, content), fullPrimitive(), kTested, dropped);
+    EXPECT_EQ(key & ~whole, 0U) << texture;
+    return materials::builtinMaterialModel().names(whole & ~key);
+}
+
+TEST(TextureContent, OfOnesIsNotRead) {
+    for (const materials::MaterialTexture& texture : materials::builtinMaterialModel().textures) {
+        const std::string& name = texture.name;
+        const bool hasDirections =
+            name == "normalTexture" || name == "clearcoatNormalTexture" || name == "anisotropyTexture";
+        const std::vector<std::string_view> lost = lostBy(name.c_str(), kOnes);
+        EXPECT_EQ(std::ranges::find(lost, name) != lost.end(), !hasDirections) << name;
+    }
+    // One channel that is not 1 is enough to read it, if it is one that is read.
+    Content almost = kOnes;
+    almost[1].low = 0.999;
+    EXPECT_TRUE(lostBy("metallicRoughnessTexture", almost).empty());
+    almost = kOnes;
+    almost[0].low = 0.0;
+    EXPECT_EQ(lostBy("metallicRoughnessTexture", almost),
+              (std::vector<std::string_view>{"metallicRoughnessTexture"}));
+}
+
+TEST(TextureContent, OfZerosTakesTheLobeWithIt) {
+    const struct {
+        const char* texture;
+        const char* feature;
+    } kRows[] = {
+        {"clearcoatTexture", "clearcoat"},       {"sheenColorTexture", "sheen"},
+        {"transmissionTexture", "transmission"}, {"diffuseTransmissionTexture", "diffuseTransmission"},
+        {"iridescenceTexture", "iridescence"},   {"anisotropyTexture", "anisotropy"}};
+    for (const auto& row : kRows) {
+        Dropped dropped;
+        const std::vector<std::string_view> lost = lostBy(row.texture, kZeros, &dropped);
+        EXPECT_NE(std::ranges::find(lost, row.feature), lost.end()) << row.texture;
+        const std::string reason = reasonFor(dropped, row.feature);
+        EXPECT_NE(reason.find("(by what textures hold: " + std::string(row.texture) + "."), std::string::npos)
+            << reason;
+    }
+}
+
+// The record keeps the factor, so a texture that makes a product 0 has to be read where the product still
+// counts.
+TEST(TextureContent, OfZerosIsReadWhereItsProductCounts) {
+    for (const char* const texture :
+         {"baseColorTexture", "metallicRoughnessTexture", "emissiveTexture", "specularTexture",
+          "specularColorTexture", "sheenRoughnessTexture", "clearcoatRoughnessTexture", "thicknessTexture"}) {
+        const std::vector<std::string_view> lost = lostBy(texture, kZeros);
+        EXPECT_EQ(std::ranges::find(lost, texture), lost.end()) << texture;
+    }
+}
+
+TEST(TextureContent, OfAlphaMakesAMaskOpaque) {
+    Content alpha{materials::kUnitInterval, materials::kUnitInterval, materials::kUnitInterval,
+                  materials::ValueInterval{0.5, 1.0}};
+    materials::PrimitiveInputs primitive = fullPrimitive();
+    primitive.colors = materials::ColorContent::None;
+    const auto isMasked = [&] {
+        const materials::Material material = fullOf("baseColorTexture", alpha);
+        return (compiler::makeKey(material, primitive, kTested, nullptr) & bit("alphaMask")) != 0;
+    };
+    EXPECT_FALSE(isMasked());  // The cut-off is 0.5.
+    alpha[3].low = 0.4999;
+    EXPECT_TRUE(isMasked());
+}
+
+TEST(TextureContent, OfRoughnessDecidesAboutReflections) {
+    materials::Material material;
+    material.texture("metallicRoughnessTexture").texture = 0;
+    materials::PrimitiveInputs primitive;
+    primitive.hasTexCoords0 = true;
+    const materials::EffectDeclaration& reflection = materials::builtinMaterialModel().effects[2];
+    ASSERT_EQ(reflection.name, "reflection");
+    EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
+    material.texture("metallicRoughnessTexture").content[1] = {0.31, 1.0};
+    EXPECT_FALSE(compiler::sendsRays(reflection, material, primitive, 0.3F));
+    material.texture("metallicRoughnessTexture").content[1] = {0.29, 1.0};
+    EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
+    // Another channel says nothing about roughness.
+    material.texture("metallicRoughnessTexture").content = {};
+    material.texture("metallicRoughnessTexture").content[1] = materials::kUnitInterval;
+    EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
+}
+
+}  // namespace
