@@ -4,7 +4,7 @@
 #extension GL_EXT_ray_tracing : require
 #include "hit/alpha.glsl"
 #include "hit/geometry_index.glsl"
-#include "hit/light_candidate.glsl"
+#include "light/candidate.glsl"
 #include "hit/payload.glsl"
 
 hitAttributeEXT vec2 hitBarycentrics;

@@ -1,7 +1,7 @@
 // Chooses the next ray of a path at a lit surface.
 #include "bsdf/sample.glsl"
 #include "hit/hit.glsl"
-#include "hit/receiver.glsl"
+#include "light/receiver.glsl"
 #include "hit/samples.glsl"
 #include "hit/surface.glsl"
 #include "host/material.glsl"

@@ -1,6 +1,6 @@
 // The payloads of rays in a ray tracing pipeline.
 #include "generated/scene.glsl"
-#include "hit/light_passage.glsl"
+#include "light/passage.glsl"
 
 // The payload of rays that are shaded elsewhere, 20 bytes. A shadow ray reads only the first member, and in packages
 // that have it the last one: then the payload has 56 bytes.

@@ -4,7 +4,7 @@
 #include "hit/list.glsl"
 #include "hit/record.glsl"
 #include "generated/shade.glsl"
-#include "hit/shadow.glsl"
+#include "light/shadow.glsl"
 
 Hit loadHit(HitRecord record, vec3 direction, HostGeometry geometry, Features features) {
     vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);

@@ -2,9 +2,9 @@
 #include "effects/ambient.glsl"
 #include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
-#include "hit/emitter.glsl"
+#include "light/emitter.glsl"
 #include "hit/material.glsl"
-#include "hit/receiver.glsl"
+#include "light/receiver.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
 #if GLINT_PATHS

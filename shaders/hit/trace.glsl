@@ -63,7 +63,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
 }
 
 // Returns whether nothing stands in the way, seen from either side. What light keeps on its way from a light is for
-// lightArrives() (hit/light_ray.glsl).
+// lightArrives() (light/ray.glsl).
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,

@@ -5,14 +5,14 @@
 // A host with many lights may return few: each stands for those that it was chosen from, at random, and its irradiance
 // is divided by the probability with which it was chosen. Then the mean of the sum is right, and so is the picture's.
 #include "host/resources.glsl"
-#include "hit/punctual.glsl"
-#include "hit/light_tree.glsl"
+#include "light/punctual.glsl"
+#include "light/tree.glsl"
 
 // A light. Glint only hands it back to the functions below.
 #if GLINT_EMISSIVE_LIGHTS
 struct SceneLight {
     LightRecord punctual;
-    uint emitter;  // or an emissive triangle (hit/emitter.glsl)
+    uint emitter;  // or an emissive triangle (light/emitter.glsl)
     float chance;  // of that: how often one of the surface's samples is expected to fall on it
 };
 #define HostLight SceneLight

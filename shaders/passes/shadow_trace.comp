@@ -1,7 +1,7 @@
 #version 460
 // Traces the deferred shadow rays of hits. Light that nothing blocks is added to the results of their samples.
 #include "hit/count.glsl"
-#include "hit/light_ray.glsl"
+#include "light/ray.glsl"
 #include "hit/list.glsl"
 
 GLINT_RAY_WORKGROUP

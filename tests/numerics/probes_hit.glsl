@@ -4,7 +4,7 @@
 #include "hit/accumulate.glsl"
 #include "order/direction_bin.glsl"
 #include "hit/lod.glsl"
-#include "hit/punctual.glsl"
+#include "light/punctual.glsl"
 #include "hit/random.glsl"
 #include "hit/sequence.glsl"
 #include "effects/screen_ray.glsl"
@@ -124,7 +124,7 @@ PROBE(ConeGradients) {
     o[4] = max(max(abs(g.x), abs(g.y)), max(abs(g.z), abs(g.w)));
 }
 
-// hit/punctual.glsl
+// light/punctual.glsl
 
 PROBE(SampleLight) {
     LightSample light =

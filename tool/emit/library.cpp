@@ -48,8 +48,8 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     // Nothing of the library asks for samples in memory.
     sources->add("hit/samples.glsl", "");
     // The host has the lights.
-    sources->add("hit/emitter.glsl", "");
-    sources->add("hit/receiver.glsl", "");
+    sources->add("light/emitter.glsl", "");
+    sources->add("light/receiver.glsl", "");
     return sources;
 }
 

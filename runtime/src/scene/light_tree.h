@@ -1,4 +1,4 @@
-// A hierarchy over the lights of a scene, by which shaders choose one (hit/light_tree.glsl).
+// A hierarchy over the lights of a scene, by which shaders choose one (light/tree.glsl).
 #pragma once
 
 #include "interop/lights.h"

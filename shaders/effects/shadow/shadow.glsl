@@ -2,7 +2,7 @@
 // (hit/shade.glsl).
 #include "hit/count.glsl"
 #include "hit/hit.glsl"
-#include "hit/light_ray.glsl"
+#include "light/ray.glsl"
 #include "hit/sequence.glsl"
 #include "host/lights.glsl"
 

@@ -2,8 +2,8 @@
 // For points (origin) and random numbers (direction): the light that the tree chooses, how probable that is, the sum of
 // the probabilities of all lights, and what is wrong.
 #include "hit/bindings.glsl"
-#include "hit/punctual.glsl"
-#include "hit/light_tree.glsl"
+#include "light/punctual.glsl"
+#include "light/tree.glsl"
 
 layout(local_size_x = kRayGroupSize) in;
 

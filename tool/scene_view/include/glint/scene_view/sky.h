@@ -24,7 +24,7 @@ struct SurfacePoint {
 // Returns the illuminance that a light gives a surface without shadows, in lux. It is the luminance (Rec.
 // 709) of the light's colour, times the formulas of KHR_lights_punctual (inverse square law, window of the
 // range, cone), times the cosine. A light that is nearer than 1 mm counts as 1 mm away, as in
-// shaders/hit/punctual.glsl.
+// shaders/light/punctual.glsl.
 double illuminanceAt(const LightView& light, const SurfacePoint& point);
 
 // A piece of a surface on which the illuminance hardly varies, except at the edges of cones.

@@ -1,5 +1,5 @@
 // Rays from a surface to a light: what of the light arrives.
-#include "hit/light_candidate.glsl"
+#include "light/candidate.glsl"
 #include "hit/trace.glsl"
 
 #if GLINT_TRACER != 1 && !GLINT_RAY_GENERATION

@@ -1,7 +1,7 @@
 // A surface that chooses lights.
 #include "bsdf/features.glsl"
 #include "hit/hit.glsl"
-#include "hit/light_tree.glsl"
+#include "light/tree.glsl"
 
 // The normal of LightReceiver in 32 bits. Surfaces that let light through take lights of both sides.
 uint receiverNormal(Hit hit, Features features) {

@@ -1,7 +1,7 @@
 // Shadow rays of hits, which are traced at once or put on a list.
 #include "hit/bindings.glsl"
 #include "hit/count.glsl"
-#include "hit/light_ray.glsl"
+#include "light/ray.glsl"
 
 struct ShadowRay {
     vec3 origin;

@@ -4,7 +4,7 @@
 #include "bsdf/fresnel.glsl"
 #include "hit/alpha.glsl"
 #include "hit/constants.glsl"
-#include "hit/light_passage.glsl"
+#include "light/passage.glsl"
 #include "host/geometry.glsl"
 #include "host/material.glsl"
 

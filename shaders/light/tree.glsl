@@ -3,7 +3,7 @@
 // proportion to its importance, so the probability of a light is the product over its way. Every expression that
 // decides is `precise`, because all strategies choose the same light.
 #include "hit/bindings.glsl"
-#include "hit/punctual.glsl"
+#include "light/punctual.glsl"
 
 // The least factor for the angle under which a node is seen. It keeps lights at the edge of their cone reachable.
 const float kMinLightFacing = 0.05;
