@@ -265,16 +265,27 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     return lobe * passed;
 }
 
+// What a volume's facets pass from outside in all, over what they pass at the first bounce if none blocks another.
+GLINT_RELAXED float passedShare(Bsdf b) {
+    // The mean of (1 - v·h)^5 over visible facets: over those whose reflection leaves it is the bias, and those whose
+    // reflection is blocked have about this cosine.
+    float alpha = sqrt(b.alpha.x * b.alpha.y);
+    vec2 blocked = vec2(0.65 * alpha / (1.0 + 0.62 * alpha * alpha), (0.64 - 0.38 * alpha) * b.view.z);
+    float rest = 1.0 - min(sqrt(dot(blocked, blocked)), 1.0);
+    float mean = b.viewBias + b.viewLoss * rest * rest * rest * rest * rest;
+    GLINT_RELAXED float reflected = mix(largest(b.f0), b.f90, mean);
+    return max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0) / max(1.0 - reflected, 1e-3);
+}
+
 // The density with which visible facets bend the view to l, for the index of one channel, times what they let through.
-// l may be on either side. From outside it is what the microfacets do not reflect in all: the reflection knows only its
-// own albedo.
+// l may be on either side.
 float bentLight(Bsdf b, vec3 l, float eta) {
     RefractingFacet facet;
     if (!refractionHalfVector(b.view, l, eta, facet)) {
         return 0.0;
     }
     float passed = eta < 1.0 ? schlickPassed(b.f0, b.f90, facet.cosineL)
-                             : max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
+                             : schlickPassed(b.f0, b.f90, facet.cosineV) * passedShare(b);
     return passed * visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
 }
 

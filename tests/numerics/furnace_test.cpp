@@ -261,8 +261,12 @@ TEST(Furnace, GlassReflectsAndTransmitsEverything) {
                 material.bsdf.f0 = glm::dvec3(glsl::dielectricF0(thin ? 1.5 : eta));
                 material.bsdf.transmitted = glm::dvec3(1.0);
                 const double whole = meanWeight(material.seenFrom(direction(cosine, 0.4)));
-                // From outside, the reflection is as exact as the fits of its albedo.
-                EXPECT_NEAR(whole, 1.0, !thin && eta < 1.0 ? 1e-3 : 7e-3)
+                // From outside, the sum is as exact as the fits of the reflection's albedo, and for a volume
+                // as the estimate of what its visible facets pass.
+                EXPECT_NEAR(whole, 1.0,
+                            thin        ? 7e-3
+                            : eta < 1.0 ? 1e-3
+                                        : 1.1e-2)
                     << "roughness " << roughness << ", cosine " << cosine << ", eta " << eta;
             }
         }

@@ -27,10 +27,10 @@ std::pair<std::size_t, double> placeOf(double cosine) {
 MicrofacetAlbedo::Value integrate(const Vec3& v, const Vec2& alpha, Masking masking) {
     // Anisotropic lobes have nine times as many views.
     const int points = alpha.x == alpha.y ? 64 : 32;
-    const Vec2 sums = midpoints(points, 2 * points, Vec2(0.0), [&](const Vec2& point) {
+    const Vec3 sums = midpoints(points, 2 * points, Vec3(0.0), [&](const Vec2& point) {
         const Direction d = reflectedDirection(v, alpha, point);
         if (d.solidAngle <= 0.0) {
-            return Vec2(0.0);
+            return Vec3(0.0);
         }
         const Vec3 h = glm::normalize(v + d.l);
         // What the facets that are visible would reflect if nothing hid them from the light.
@@ -38,9 +38,10 @@ MicrofacetAlbedo::Value integrate(const Vec3& v, const Vec2& alpha, Masking mask
         const double lobe =
             d.l.z > 0.0 ? distribution(h, alpha) * visibility(d.l, v, alpha, masking) * d.l.z * d.solidAngle
                         : 0.0;
-        return Vec2(seen - lobe, lobe * schlickWeight(glm::dot(v, h)));
+        const double weight = schlickWeight(glm::dot(v, h));
+        return Vec3(seen - lobe, lobe * weight, seen * weight);
     });
-    return {sums.x, sums.y};
+    return {sums.x, sums.y, sums.z};
 }
 
 }  // namespace
@@ -74,7 +75,8 @@ MicrofacetAlbedo::Value MicrofacetAlbedo::at(const Vec3& v) const {
     const auto [node, share] = placeOf(v.z);
     const auto between = [&, node = node, share = share](const std::vector<Value>& row) {
         return Value{std::lerp(row[node].lost, row[node + 1].lost, share),
-                     std::lerp(row[node].weighted, row[node + 1].weighted, share)};
+                     std::lerp(row[node].weighted, row[node + 1].weighted, share),
+                     std::lerp(row[node].seen, row[node + 1].seen, share)};
     };
     if (table_.size() == 1) {
         return between(table_[0]);
@@ -84,7 +86,8 @@ MicrofacetAlbedo::Value MicrofacetAlbedo::at(const Vec3& v) const {
     const double next = azimuth - static_cast<double>(row);
     const Value a = between(table_[row]);
     const Value b = between(table_[row + 1]);
-    return {std::lerp(a.lost, b.lost, next), std::lerp(a.weighted, b.weighted, next)};
+    return {std::lerp(a.lost, b.lost, next), std::lerp(a.weighted, b.weighted, next),
+            std::lerp(a.seen, b.seen, next)};
 }
 
 SheenAlbedo::SheenAlbedo(double alpha) {

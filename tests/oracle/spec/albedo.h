@@ -19,6 +19,7 @@ public:
     struct Value {
         double lost = 0.0;      // 1 - E, where E is the albedo with a reflectance of 1
         double weighted = 0.0;  // y: with a reflectance of (1 - v·h)⁵
+        double seen = 0.0;      // the mean of (1 - v·h)⁵ over visible facets; not of the mean over views
         double whole() const {
             return 1.0 - lost;
         }

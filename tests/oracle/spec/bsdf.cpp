@@ -1,5 +1,7 @@
 #include "oracle/spec/bsdf.h"
 
+#include "oracle/spec/directions.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -224,17 +226,48 @@ double Bsdf::transmittedChannel(const Vec3& l, double eta) const {
     return lobe * (1.0 - largest(fresnel(dielectric_, eta >= 1.0 ? viewCosine : -lightCosine)));
 }
 
-Vec3 Bsdf::transmitted(const Vec3& l) const {
+Vec3 Bsdf::throughMicrofacets(const Vec3& l, double (Bsdf::*channel)(const Vec3&, double) const) const {
     if (l.z >= 0.0 || m_.transmission <= 0.0 || straight()) {
         return Vec3(0.0);
     }
     const Vec3 indices = iors();
-    Vec3 lobe(transmittedChannel(l, indices.y));
+    Vec3 lobe((this->*channel)(l, indices.y));
     if (m_.dispersion > 0.0) {
-        lobe.x = transmittedChannel(l, indices.x);
-        lobe.z = transmittedChannel(l, indices.z);
+        lobe.x = (this->*channel)(l, indices.x);
+        lobe.z = (this->*channel)(l, indices.z);
     }
     return lobe * m_.baseColor * absorbed() * ((1.0 - m_.metallic) * m_.transmission * -l.z * layersAbove(l));
+}
+
+Vec3 Bsdf::transmitted(const Vec3& l) const {
+    return throughMicrofacets(l, &Bsdf::transmittedChannel);
+}
+
+// The density of the directions to which visible facets bend the view (Heitz 2018, with the Jacobian of
+// Walter et al. 2007), times what they pass, for l on either side.
+double Bsdf::bentLight(const Vec3& l, double eta) const {
+    Vec3 h = -glm::normalize(view_ + eta * l);
+    h = h.z < 0.0 ? -h : h;
+    const double viewCosine = glm::dot(view_, h);
+    const double lightCosine = glm::dot(l, h);
+    if (viewCosine <= 0.0 || lightCosine >= 0.0) {
+        return 0.0;
+    }
+    return visibleNormalDensity(view_, h, alpha_) * eta * eta * -lightCosine /
+           squared(viewCosine + eta * lightCosine) * (1.0 - largest(fresnel(dielectric_, viewCosine)));
+}
+
+// What facets of a volume block leaves where they send it, mirrored at the plane if that is on the other
+// side. All passes that the facets do not reflect.
+double Bsdf::wholeChannel(const Vec3& l, double eta) const {
+    const MicrofacetAlbedo::Value value = microfacets_->at(view_);
+    const double once = 1.0 - largest(dielectric_.f0 + (Vec3(dielectric_.f90) - dielectric_.f0) * value.seen);
+    return leftBelow(value) / once * (bentLight(l, eta) + bentLight(mirrored(l), eta)) / -l.z;
+}
+
+Vec3 Bsdf::transmittedOfLights(const Vec3& l) const {
+    return choices_.compensation && m_.volume ? throughMicrofacets(l, &Bsdf::wholeChannel)
+                                              : transmitted(l) + multipleTransmitted(l);
 }
 
 // Kulla and Conty's lobe on the far side of a thin wall: of what single scattering loses, what later bounces
@@ -282,8 +315,7 @@ Vec3 Bsdf::coat(const Vec3& l) const {
 }
 
 Vec3 Bsdf::base(const Vec3& l) const {
-    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmitted(l) +
-           multipleTransmitted(l) + sheen(l);
+    return specular(l) + multiple(l) + diffuse(l) + diffuseTransmitted(l) + transmittedOfLights(l) + sheen(l);
 }
 
 // KHR_materials_clearcoat, "Emission".

@@ -44,6 +44,7 @@ public:
     Vec3 diffuseTransmitted(const Vec3& l) const;
     Vec3 transmitted(const Vec3& l) const;          // through microfacets
     Vec3 multipleTransmitted(const Vec3& l) const;  // thin walls: at later bounces; 0 without compensation
+    Vec3 transmittedOfLights(const Vec3& l) const;  // at all bounces that the choices count
     Vec3 sheen(const Vec3& l) const;
     Vec3 coat(const Vec3& l) const;
     Vec3 base(const Vec3& l) const;  // all but the coat
@@ -103,7 +104,11 @@ private:
     double diffuseShare(const Vec3& l, double facetCosine) const;
     double layersAbove(const Vec3& l) const;
     Vec3 absorbed() const;  // the share that passes the volume
+    // Returns what passes by a function of one channel: transmittedChannel() or wholeChannel().
+    Vec3 throughMicrofacets(const Vec3& l, double (Bsdf::*channel)(const Vec3&, double) const) const;
     double transmittedChannel(const Vec3& l, double eta) const;
+    double bentLight(const Vec3& l, double eta) const;
+    double wholeChannel(const Vec3& l, double eta) const;
     void setFilm(Base& base) const;
 
     const Material& m_;
