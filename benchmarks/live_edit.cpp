@@ -48,6 +48,7 @@ struct Arguments {
     std::uint32_t width = 320;
     std::uint32_t height = 180;
     int rounds = 5;
+    bool noFallback = false;
 };
 
 // `glint compile --watch`, which writes its lines to a file.
@@ -56,9 +57,12 @@ public:
     Compiler(const Arguments& arguments, const fs::path& package, const std::string& tracer)
         : out_(package.string() + ".lines") {
         std::vector<std::string> words{
-            arguments.glint, "compile",          arguments.scene, "-o",           package,
-            "--strategy",    arguments.strategy, "--tracer",      tracer,         "--merge",
-            "none",          "--fallback",       "--materials",   arguments.pack, "--watch"};
+            arguments.glint, "compile",          arguments.scene, "-o",     package,
+            "--strategy",    arguments.strategy, "--tracer",      tracer,   "--merge",
+            "none",          "--materials",      arguments.pack,  "--watch"};
+        if (!arguments.noFallback) {
+            words.emplace_back("--fallback");
+        }
         child_ = fork();
         if (child_ == 0) {
             constexpr int kMode = 0600;
@@ -113,7 +117,7 @@ constexpr std::array kParts{"notice", "read",    "plan",      "compile",     "wr
                             "load",   "replace", "pipelines", "first frame", "sum"};
 using Times = std::array<double, kParts.size()>;
 
-// The means on the way of one edit, milliseconds.
+// The parts of one edit's way, in the order of kParts, milliseconds.
 Result<Times> follow(const Compiler& compiler, PackageWatch& packages, Renderer& renderer,
                      const FrameOptions& frame, const fs::path& file, const std::string& text,
                      std::size_t run, PackageReplacement& replaced) {
@@ -169,7 +173,6 @@ Result<Times> follow(const Compiler& compiler, PackageWatch& packages, Renderer&
     }
     const double sum = base::millisecondsSince(start);
     const std::string line = compiler.line(run);
-    const double all = numberAfter(line, "kept; ");
     Times times{};
     times[1] = numberAfter(line, "read ");
     times[2] = numberAfter(line, "plan ");
@@ -181,7 +184,7 @@ Result<Times> follow(const Compiler& compiler, PackageWatch& packages, Renderer&
     times[7] = readyMs;
     times[9] = sum;
     times[8] = sum - stampMs - loadMs - replaceMs - readyMs;
-    fmt::print("<!-- {} (all {:.0f}) -->\n", line, all);
+    fmt::print("<!-- {} -->\n", line);
     return times;
 }
 
@@ -207,7 +210,7 @@ Status measure(const Arguments& arguments) {
     options.strategy = package::findStrategy(arguments.strategy)->strategy;
     options.width = arguments.width;
     options.height = arguments.height;
-    options.backgroundPipelines = true;
+    options.backgroundPipelines = !arguments.noFallback;
     const bool queries = ((*context)->handles().tracers & package::kTracerRayQuery) != 0;
     const Compiler compiler(arguments, package, queries ? "ray-query" : "ray-pipeline");
     fmt::print("<!-- {} -->\n", compiler.line(1));
@@ -292,6 +295,8 @@ int main(int count, char** words) {
     app.add_option("--width", arguments.width, "pixels")->capture_default_str();
     app.add_option("--height", arguments.height, "pixels")->capture_default_str();
     app.add_option("--rounds", arguments.rounds, "edits")->capture_default_str();
+    app.add_flag("--no-fallback", arguments.noFallback,
+                 "compile no fallback, and make pipelines in replacePackage()");
     CLI11_PARSE(app, count, words);
     try {
         if (const glint::Status status = glint::measure(arguments); !status) {

@@ -20,6 +20,7 @@
 #include <iterator>
 #include <optional>
 #include <set>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -113,6 +114,15 @@ std::vector<std::string> sceneFolders(const CompileArguments& arguments) {
     return folders;
 }
 
+// A folder only says that some file came or went.
+std::vector<std::string> withoutFolders(std::vector<std::string> changed) {
+    std::vector<std::string> files;
+    std::error_code error;
+    std::ranges::copy_if(changed, std::back_inserter(files),
+                         [&](const std::string& path) { return !fs::is_directory(path, error); });
+    return files.empty() ? changed : files;
+}
+
 std::string namesOf(const std::vector<std::string>& changed) {
     std::string text;
     for (std::size_t i = 0; i < std::min(changed.size(), kNamed); ++i) {
@@ -138,7 +148,7 @@ public:
             }
             if (!changed.empty() && interrupted == 0) {
                 takeSettings(changed);
-                compile(namesOf(changed));
+                compile(namesOf(withoutFolders(std::move(changed))));
             }
         }
     }
