@@ -230,6 +230,26 @@ TEST_F(Watching, ScenesAndSettingsFilesAreInputs) {
     EXPECT_EQ(watch.interrupt(), 0);
 }
 
+// The folder may be replaced once more while it is read, so a package that can't be loaded is tried again.
+TEST_F(Watching, APackageThatCannotBeLoadedIsAnErrorAfterSomeTries) {
+    writeText(path("package.stamp"), "6 0000000000000000\n");
+    PackageWatch packages(path("package/"));
+    EXPECT_EQ(packages.counter(), 6U);
+    writeText(path("package.stamp"), "7 0000000000000000\n");
+    for (int i = 1; i < PackageWatch::kTries; ++i) {
+        const Result<std::shared_ptr<const Package>> polled = packages.poll();
+        ASSERT_TRUE(polled) << i;
+        EXPECT_EQ(*polled, nullptr);
+    }
+    const Result<std::shared_ptr<const Package>> polled = packages.poll();
+    ASSERT_FALSE(polled);
+    EXPECT_EQ(polled.error().id, "package-missing");
+    EXPECT_TRUE(packages.poll()) << "it is said once";
+    writeText(path("package.stamp"), "no stamp");
+    EXPECT_TRUE(packages.poll());
+    EXPECT_EQ(packages.counter(), 7U);
+}
+
 TEST_F(Watching, NeedsAFolderAndPrintsNoJson) {
     EXPECT_EQ(run({"compile", "scene.gltf", "--watch", "--embed", "package.cpp"}).exit, 2);
     EXPECT_EQ(run({"compile", "scene.gltf", "--watch", "-o", "package", "--json"}).exit, 2);

@@ -3,9 +3,9 @@
 
 #include <vulkan/vulkan_core.h>
 
-#include <compare>
 #include <cstdint>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace glint {
@@ -18,7 +18,9 @@ struct PipelineIdentity {
     std::uint64_t low = 0;
     std::uint64_t high = 0;
 
-    friend auto operator<=>(const PipelineIdentity&, const PipelineIdentity&) = default;
+    friend bool operator<(const PipelineIdentity& a, const PipelineIdentity& b) {
+        return std::tie(a.low, a.high) < std::tie(b.low, b.high);
+    }
 };
 
 // `stages` are the words of each stage in its order; `number` tells pipelines with the same stages apart.

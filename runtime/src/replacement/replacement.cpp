@@ -64,6 +64,7 @@ void addCases(const PlannedPipeline& planned, std::vector<std::uint32_t>& cases)
 Status makeNow(std::vector<PlannedPipeline> missing, const PipelineMaking& making,
                VkPipelineCreateFlags flags, NextPackage& next) {
     std::vector<PipelineJob> jobs;
+    jobs.reserve(missing.size());
     for (const PlannedPipeline& planned : missing) {
         jobs.push_back(planned.job);
     }
