@@ -75,7 +75,8 @@ int runCommandLine(int argc, const char* const* argv) {
     CLI::App app;
     Action chosen;
     describe(app);
-    addCompile(app, chosen);
+    const Arguments arguments = Arguments(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
+    addCompile(app, chosen, arguments);
     addCompileModule(app, chosen);
     addExplain(app, chosen);
     addInspect(app, chosen);
@@ -91,7 +92,6 @@ int runCommandLine(int argc, const char* const* argv) {
     }
     addCompletion(app, chosen);
 
-    const Arguments arguments = Arguments(argv, static_cast<std::size_t>(argc)).subspan(argc > 0 ? 1 : 0);
     const std::optional<Slip> slip = findSlip(app, arguments);
     if (slip) {
         return refuse(*slip);

@@ -5,9 +5,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include <span>
+
 namespace glint::cli {
 
-void addCompile(CLI::App& app, Action& chosen);
+// `line` has the words of the command line, without the program.
+void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line);
 void addCompileModule(CLI::App& app, Action& chosen);
 void addExplain(CLI::App& app, Action& chosen);
 void addInspect(CLI::App& app, Action& chosen);

@@ -11,6 +11,7 @@
 #include "cli/compile/ninja_plan.h"
 #include "cli/compile/outputs.h"
 #include "cli/compile/summary.h"
+#include "cli/compile/watch.h"
 #include "cli/options/effect_options.h"
 #include "cli/options/lock_option.h"
 #include "cli/report.h"
@@ -300,13 +301,12 @@ bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments
     return addFiles(run.outputs, embedded);
 }
 
-int compile(const Console& console, const CompileArguments& given) {
+// `watched` is null unless the run is one of a watch.
+int compileOnce(const Console& console, const CompileArguments& given, CompileCache& cache,
+                std::span<const std::filesystem::path> further, WatchedRun* watched) {
     const base::Clock::time_point start = base::Clock::now();
     CompileArguments arguments = given;
-    // The names of further inputs belong to the key: a new file in a pack is a new run.
-    const std::vector<std::filesystem::path> further = furtherInputs(arguments);
-    CompileCache cache(arguments.cache, arguments.options, further);
-    const std::optional<int> done = arguments.dryRun || !arguments.planOnly.empty()
+    const std::optional<int> done = watched != nullptr || arguments.dryRun || !arguments.planOnly.empty()
                                         ? std::nullopt
                                         : repeatEarlier(console, arguments, cache, start);
     if (done) {
@@ -373,17 +373,28 @@ int compile(const Console& console, const CompileArguments& given) {
         return planOnly(console, arguments, *scenes, plan->options, std::move(made), *lock, dependencies,
                         start);
     }
+    if (watched != nullptr) {
+        watched->inputs = dependencies;
+        watched->readMs = base::millisecondsSince(start);
+    }
     console.progress("compiling " + base::join(arguments.scenes));
-    const Result<compiler::CompiledPackage> package = compilePackage(
-        *scenes, settingsOf(arguments, std::move(plan->options)), cache.modules(), std::move(made));
+    const Result<compiler::CompiledPackage> package =
+        compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)), cache.modules(),
+                       std::move(made), watched != nullptr ? &watched->warm : nullptr);
     if (!package) {
         return fail(console, package.error());
     }
     console.progress("writing " + outputsOf(arguments));
+    const base::Clock::time_point compiled = base::Clock::now();
     const CompileOutputs outputs{arguments.output,  arguments.embed, arguments.lock, *lock,
                                  arguments.depfile, dependencies};
     if (Status written = writeOutputs(list, *package, outputs); !written) {
         return fail(console, written.error());
+    }
+    if (watched != nullptr) {
+        describeRun(*package, *watched);
+        watched->writeMs = package->tablesMs + base::millisecondsSince(compiled);
+        return kExitDone;
     }
     CompileSummary summary = summaryOf(Outcome{arguments, list, package->plan, &*package});
     // A run that changes its own input may report other things next time, so it is not kept.
@@ -396,10 +407,26 @@ int compile(const Console& console, const CompileArguments& given) {
     return kExitDone;
 }
 
+int compile(const Console& console, const CompileArguments& arguments) {
+    // The names of further inputs belong to the key: a new file in a pack is a new run.
+    const std::vector<std::filesystem::path> further = furtherInputs(arguments);
+    CompileCache cache(arguments.cache, arguments.options, further);
+    if (!arguments.watch) {
+        return compileOnce(console, arguments, cache, further, nullptr);
+    }
+    const int code = watchInputs(console, arguments,
+                                 [&](const Console& own, const CompileArguments& current, WatchedRun& run) {
+                                     return compileOnce(own, current, cache, furtherInputs(current), &run);
+                                 });
+    cache.close(console);
+    return code;
+}
+
 }  // namespace
 
-void addCompile(CLI::App& app, Action& chosen) {
+void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line) {
     auto arguments = std::make_shared<CompileArguments>();
+    arguments->line.assign(line.begin(), line.end());
     CLI::App& command = addCommand(app, "compile", "Compile a scene's materials into a package of shaders",
                                    "glint compile scene.gltf -o scene.glint --merge none --emit glsl,header");
     addCompileOptions(command, *arguments);

@@ -88,6 +88,10 @@ bool Console::isJson() const {
     return state_->options.json;
 }
 
+const ConsoleOptions& Console::options() const {
+    return state_->options;
+}
+
 const DiagnosticPolicy& Console::policy() const {
     return state_->options.policy;
 }

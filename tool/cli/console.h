@@ -46,6 +46,7 @@ public:
     bool isJson() const;
     bool isVerbose() const;
     const DiagnosticPolicy& policy() const;
+    const ConsoleOptions& options() const;
 
     // Prints a result as text, which must contain its own line breaks. Silent with --quiet.
     void print(std::string_view text) const;

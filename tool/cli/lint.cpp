@@ -26,7 +26,7 @@ base::Json findingsToJson(const std::vector<compiler::LintFinding>& findings, co
     for (const compiler::LintFinding& finding : findings) {
         Diagnostic diagnostic = inspect::toDiagnostic(finding, where);
         diagnostic.message = finding.message;
-        base::Json json = toJson(diagnostic);
+        base::Json json = cli::toJson(diagnostic);
         json["function"] = base::textOrNull(finding.place.function);
         json["source"] = base::textOrNull(finding.place.source);
         json["resultId"] = finding.place.id == 0 ? base::Json(nullptr) : base::Json(finding.place.id);

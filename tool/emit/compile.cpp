@@ -1,5 +1,6 @@
 #include "emit/compile.h"
 
+#include "base/clock.h"
 #include "emit/compile_modules.h"
 #include "emit/context.h"
 #include "emit/effects.h"
@@ -119,7 +120,8 @@ struct Prepared {
     std::vector<ModuleSource> modules;
 };
 
-Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& settings, std::optional<Plan> made) {
+Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& settings, std::optional<Plan> made,
+                         WarmModules* warm = nullptr) {
     if (Status valid = checkSettings(settings, scenes.path()); !valid) {
         return valid.error();
     }
@@ -133,7 +135,7 @@ Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& setting
     if (!sources) {
         return sources.error();
     }
-    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings);
+    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings, warm);
     if (!modules) {
         return modules.error();
     }
@@ -141,18 +143,21 @@ Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& setting
 }
 
 Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings settings, ModuleCache* cache,
-                                std::optional<Plan> made) {
-    Result<Prepared> prepared = prepare(scenes, settings, std::move(made));
+                                std::optional<Plan> made, WarmModules* warm) {
+    const base::Clock::time_point start = base::Clock::now();
+    Result<Prepared> prepared = prepare(scenes, settings, std::move(made), warm);
     if (!prepared) {
         return prepared.error();
     }
+    const base::Clock::time_point planned = base::Clock::now();
     Result<std::vector<CompiledModule>> compiled =
         settings.modules.empty()
-            ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache)
+            ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm)
             : takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules);
     if (!compiled) {
         return explainGlslError(compiled.error(), *prepared->plan.model, settings.host);
     }
+    const base::Clock::time_point haveSpirv = base::Clock::now();
     CompiledPackage package;
     package.plan = std::move(prepared->plan);
     package.modules = std::move(*compiled);
@@ -178,6 +183,9 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings s
     std::ranges::sort(package.files, {}, &PackageFile::name);
     package.files.push_back({package::kManifestFile, toBytes(makeManifest(scenes, package, settings))});
     std::ranges::sort(package.files, {}, &PackageFile::name);
+    package.planMs = base::millisecondsBetween(start, planned);
+    package.compileMs = base::millisecondsBetween(planned, haveSpirv);
+    package.tablesMs = base::millisecondsSince(haveSpirv);
     return package;
 }
 
@@ -262,13 +270,13 @@ Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const Compi
 }
 
 Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
-                                       ModuleCache* cache, std::optional<Plan> made) {
+                                       ModuleCache* cache, std::optional<Plan> made, WarmModules* warm) {
     return guarded<CompiledPackage>(scenes, [&]() -> Result<CompiledPackage> {
         Result<CompileSettings> complete = completed(scenes, settings);
         if (!complete) {
             return complete.error();
         }
-        return compile(gltf::SceneList(scenes), *complete, cache, std::move(made));
+        return compile(gltf::SceneList(scenes), *complete, cache, std::move(made), warm);
     });
 }
 

@@ -22,6 +22,7 @@
 namespace glint::compiler {
 
 class ModuleCache;
+class WarmModules;
 
 // Returns the names of the strategies, or tracers, in a set of bits.
 std::vector<std::string> strategyNames(std::uint32_t strategies);
@@ -50,6 +51,10 @@ struct CompiledPackage {
     std::vector<PackageFile> files;       // everything that writePackage() writes, sorted by name
     int uniqueSpirv = 0;
     std::uint64_t spirvBytes = 0;  // sum over the distinct modules
+    // Wall clock: planning and making GLSL, making SPIR-V of it, and all else.
+    double planMs = 0.0;
+    double compileMs = 0.0;
+    double tablesMs = 0.0;
 };
 
 // A text to compile. Several modules of a package may have the same text.
@@ -70,12 +75,14 @@ Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const Compi
                                 std::optional<Plan> made = {});
 
 // Compiles one package for `scenes` (at least one): they share the cases, and each has its own tables.
-// Modules that `cache` has are not compiled; others are compiled and added to it. `cache` may be null.
+// Modules that `cache` has are not compiled; others are compiled and added to it. `warm` keeps modules in
+// memory in the same way, and their GLSL. Both may be null.
 // Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
 // line (a defect of Glint itself); with settings.modules, also those of takeModules(). `made` is that of
 // planPackage().
 Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
-                                       ModuleCache* cache = nullptr, std::optional<Plan> made = {});
+                                       ModuleCache* cache = nullptr, std::optional<Plan> made = {},
+                                       WarmModules* warm = nullptr);
 inline Result<CompiledPackage> compilePackage(const gltf::Scene& scene, const CompileSettings& settings,
                                               ModuleCache* cache = nullptr) {
     return compilePackage(std::span(&scene, 1), settings, cache);

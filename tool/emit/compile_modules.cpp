@@ -27,9 +27,17 @@ struct CompiledText {
 };
 
 Result<CompiledText> compileText(const ModuleSource& source, const std::string& text, bool debugInfo,
-                                 ModuleCache* cache) {
+                                 ModuleCache* cache, WarmModules* warm) {
+    if (warm != nullptr) {
+        if (std::optional<CachedModule> found = warm->findModule(text)) {
+            return CompiledText{std::move(*found), false};
+        }
+    }
     if (cache != nullptr) {
         if (std::optional<CachedModule> found = cache->find(text)) {
+            if (warm != nullptr) {
+                warm->putModule(text, *found);
+            }
             return CompiledText{std::move(*found), false};
         }
     }
@@ -40,6 +48,9 @@ Result<CompiledText> compileText(const ModuleSource& source, const std::string& 
     }
     if (cache != nullptr) {
         cache->put(text, *module);
+    }
+    if (warm != nullptr) {
+        warm->putModule(text, *module);
     }
     return CompiledText{std::move(*module), true};
 }
@@ -182,10 +193,10 @@ std::string moduleCompiler() {
 }
 
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache) {
+                                                   bool debugInfo, ModuleCache* cache, WarmModules* warm) {
     const DistinctTexts distinct = findTexts(sources, debugInfo);
     return makeModules(sources, distinct, jobs, [&](std::size_t text) {
-        return compileText(sources[distinct.firsts[text]], *distinct.texts[text], debugInfo, cache);
+        return compileText(sources[distinct.firsts[text]], *distinct.texts[text], debugInfo, cache, warm);
     });
 }
 

@@ -19,11 +19,12 @@ Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCom
 std::string moduleCompiler();
 
 // Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, and texts that `cache`
-// has are not compiled; `cache` may be null. Neither the result nor the reported error depends on `jobs`: if
-// there are several errors, it is that of the first module. Modules with equal SPIR-V get the same `file`,
-// that of the first of them.
+// or `warm` has are not compiled; both may be null. Neither the result nor the reported error depends on
+// `jobs`: if there are several errors, it is that of the first module. Modules with equal SPIR-V get the same
+// `file`, that of the first of them.
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache = nullptr);
+                                                   bool debugInfo, ModuleCache* cache = nullptr,
+                                                   WarmModules* warm = nullptr);
 
 // Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
 // readCompiledModule(); if there are several, that of the first module is reported.

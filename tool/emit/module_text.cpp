@@ -66,7 +66,10 @@ std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
     }
     text += kLastLine;
     text += '\n';
-    return text + (debugInfo ? source.glsl.withPlaces() : essentialText(source.glsl.text()));
+    if (debugInfo) {
+        return text + source.glsl.withPlaces();
+    }
+    return text + (source.warm ? source.warm->essential : essentialText(source.glsl.text()));
 }
 
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name) {

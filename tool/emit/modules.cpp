@@ -174,10 +174,10 @@ void insertDefines(std::string& text, const std::string& defines) {
 Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
                                 std::string_view caseName, const SourceSet& sources, const SourceSet& own,
                                 const kainjow::mustache::data& context, const materials::MaterialModel& model,
-                                package::ShadingPrecision precision) {
+                                package::ShadingPrecision precision, WarmModules* warm) {
     const package::RoleInfo& info = *package::findRole(key.role);
     ModuleSource module{
-        key, stageOf(info, key.tracer), moduleName(source, info, key, caseName, model), {}, {}};
+        key, stageOf(info, key.tracer), moduleName(source, info, key, caseName, model), {}, {}, {}};
     std::string text;
     std::string origin(source);
     if (source.ends_with(kTemplateSuffix)) {
@@ -197,11 +197,29 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
         const std::optional<std::string_view> found = own.find(name);
         return found ? found : sources.find(name);
     };
-    const Result<GlslUnit> flattened = flatten(origin, text, lookup, FlattenSide::Glsl);
-    if (!flattened) {
-        return flattened.error();
+    if (warm == nullptr) {
+        const Result<GlslUnit> flattened = flatten(origin, text, lookup, FlattenSide::Glsl);
+        if (!flattened) {
+            return flattened.error();
+        }
+        module.glsl = dropUnused(*flattened);
+        return module;
     }
-    module.glsl = dropUnused(*flattened);
+    module.warm = warm->findGlsl(origin, text, lookup);
+    if (!module.warm) {
+        const SourceLookup plain = lookup;
+        WarmModules::Reader reader(plain);
+        const Result<GlslUnit> flattened = flatten(origin, text, reader.recording(), FlattenSide::Glsl);
+        if (!flattened) {
+            return flattened.error();
+        }
+        GlslUnit unit = dropUnused(*flattened);
+        std::string essential = essentialText(unit.text());
+        module.warm =
+            std::make_shared<const PreparedGlsl>(PreparedGlsl{std::move(unit), std::move(essential)});
+        warm->putGlsl(origin, text, reader, module.warm);
+    }
+    module.glsl = module.warm->unit;
     return module;
 }
 
@@ -246,8 +264,8 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
 }
 
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
-                                                    const SourceSet& sources,
-                                                    const CompileSettings& settings) {
+                                                    const SourceSet& sources, const CompileSettings& settings,
+                                                    WarmModules* warm) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     MaterialCodeOfCases codeOfCases(sources, *plan.model);
     // Every case evaluates what emissive lights emit.
@@ -286,9 +304,9 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, *plan.model, plan.effects.effects, key.index);
         }
-        Result<ModuleSource> module = makeModule(sourceOf(info, key, *plan.model), key,
-                                                 ofCase ? std::string_view(plan.cases[key.index].name) : "",
-                                                 sources, *own, context, *plan.model, settings.precision);
+        Result<ModuleSource> module = makeModule(
+            sourceOf(info, key, *plan.model), key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
+            sources, *own, context, *plan.model, settings.precision, warm);
         if (!module) {
             return module.error();
         }

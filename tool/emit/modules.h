@@ -4,8 +4,10 @@
 #include "emit/compile.h"
 #include "emit/glsl/unit.h"
 #include "emit/sources.h"
+#include "emit/warm_modules.h"
 #include "spirv/compiler.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,18 +17,19 @@ namespace glint::compiler {
 struct ModuleSource {
     package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
-    std::string name;                           // "uber.comp"
-    GlslUnit glsl;                              // without unused functions, constants and macros
-    std::vector<std::string> functionsApart{};  // as in ShaderSource
+    std::string name;                            // "uber.comp"
+    GlslUnit glsl;                               // without unused functions, constants and macros
+    std::vector<std::string> functionsApart{};   // as in ShaderSource
+    std::shared_ptr<const PreparedGlsl> warm{};  // the same GLSL, if an earlier run has made it
 };
 
 package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
                               const CompileSettings& settings);
 
-// Returns the modules that the settings call for, in order of their keys. Has the errors of renderTemplate()
-// and flatten().
+// Returns the modules that the settings call for, in order of their keys. `warm` may be null. Has the errors
+// of renderTemplate() and flatten().
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
-                                                    const SourceSet& sources,
-                                                    const CompileSettings& settings);
+                                                    const SourceSet& sources, const CompileSettings& settings,
+                                                    WarmModules* warm = nullptr);
 
 }  // namespace glint::compiler

@@ -5,6 +5,7 @@
 #include <glint/effects.h>
 #include <glint/memory_report.h>
 #include <glint/package.h>
+#include <glint/package_replacement.h>
 #include <glint/pipeline_statistics.h>
 #include <glint/renderer_options.h>
 #include <glint/result.h>
@@ -225,6 +226,32 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
+    // Takes over another package of the same scene: one that was compiled again after a material, a pack's
+    // GLSL or a setting changed. Waits neither for the queue nor for frames in flight. It keeps pipelines
+    // whose SPIR-V is the same and buffers of the same size. The rest is made in this call or, with
+    // RendererOptions::backgroundPipelines, by threads. Recordings use the package before until everything
+    // is there. The first recording after that switches pipelines, material records and shader IDs at once.
+    // Its commands must be submitted, because those of later recordings rely on them. If it has a sampleIndex
+    // above 0, its picture averages samples of both packages; see ReplacementProgress::ready.
+    //
+    // The options stay those of create(). A package that waits gives way to one that is given later. If two
+    // renderers share a GpuScene, the other one's recordings then fail with "package-replaced". Call this on
+    // the thread that records. `package` must not be null; the renderer keeps it as long as it is needed.
+    //
+    // With an error nothing changes. Errors: those of create() for package and options; "scene-package" (the
+    // scene has another name, or vertices, textures or acceleration structures that do not suit the package,
+    // so that it has to be uploaded anew), "position-fetch", "half-precision"; "package-frame" (its frames
+    // have other images). An error of making pipelines in the background is in replacementProgress().
+    Result<PackageReplacement> replacePackage(std::shared_ptr<const Package> package);
+    ReplacementProgress replacementProgress() const;
+
+    // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
+    // recordings there were: the number of the last one. finished() says that the device has completed all
+    // recordings up to a number, and destroys what only those used. It never waits. A program that replaces
+    // packages should call it once for each frame; render() and renderSamples() do so themselves.
+    std::uint64_t recordings() const;
+    void finished(std::uint64_t recording);
+
     // Records one sample into a command buffer of the caller's, in the recording state and outside a render
     // pass. Recordings of a renderer share its buffers, so they must run one after the other. On one queue
     // the barrier at their beginning ensures that. counters() returns those of the last recording. After the
@@ -284,7 +311,8 @@ public:
     };
     PipelineMaking pipelineMaking() const;
     // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then. These
-    // say how far they are, and wait until the last is made. Without it nothing is wanted.
+    // say how far they are, and wait until the last is made, also of a package that waits to take its place.
+    // Without it nothing is wanted.
     PipelineProgress pipelineProgress() const;
     void waitForPipelines();
     // Returns what the driver reports about each pipeline. Errors: "pipeline-statistics" without

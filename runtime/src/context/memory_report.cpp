@@ -66,7 +66,7 @@ Renderer::Footprint Renderer::footprint() const {
         (item.isImage ? footprint.images : footprint.buffers) += item.count;
         footprint.bytes += item.bytes;
     }
-    footprint.allocatedBytes = state_->frame.pool.bytes() + state_->pipelines.pool.bytes();
+    footprint.allocatedBytes = glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
     return footprint;
 }
 
@@ -121,6 +121,7 @@ std::vector<MemoryItem> GpuScene::memory() const {
 std::uint64_t GpuScene::allocatedBytes() const {
     const SceneMotion* const motion = state_->motion.get();
     std::uint64_t bytes = state_->pool.bytes();
+    bytes += state_->package.pool != nullptr ? state_->package.pool->bytes() : 0;
     if (motion != nullptr) {
         bytes +=
             motion->pool.bytes() + (motion->deformer != nullptr ? motion->deformer->allocatedBytes() : 0);

@@ -28,6 +28,8 @@ std::uint64_t waitingHits(const PlannedPipeline& planned, std::span<const std::u
 BackgroundPipelines::BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
                                          std::uint32_t threads)
     : flags_(flags), waiting_(std::move(planned)), wanted_(static_cast<std::uint32_t>(waiting_.size())) {
+    missing_ =
+        wanted_ - static_cast<std::uint32_t>(std::ranges::count(waiting_, true, &PlannedPipeline::spare));
     for (std::uint32_t i = 0; i < std::max(threads, 1U); ++i) {
         try {
             threads_.emplace_back([this] { work(); });
@@ -45,6 +47,7 @@ BackgroundPipelines::~BackgroundPipelines() {
         const std::lock_guard lock(mutex_);
         ends_ = true;
     }
+    changed_.notify_all();
     for (std::thread& thread : threads_) {
         thread.join();
     }
@@ -56,8 +59,10 @@ void BackgroundPipelines::work() {
         Result<UniquePipeline> made = planned->job.make(creation);
         const std::lock_guard lock(mutex_);
         --running_;
+        missing_ -= planned->spare ? 0 : 1;
         if (made) {
-            MadePipeline pipeline{planned->job.name, std::move(*made), creation.feedback};
+            MadePipeline pipeline{planned->job.name, std::make_shared<const UniquePipeline>(std::move(*made)),
+                                  creation.feedback, planned->job.identity};
             done_.push_back({std::move(*planned), std::move(pipeline)});
         } else if (!error_) {
             error_ = made.error();
@@ -67,12 +72,14 @@ void BackgroundPipelines::work() {
 }
 
 std::optional<PlannedPipeline> BackgroundPipelines::next() {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return ends_ || waiting_.empty() || !paused_; });
     if (ends_ || waiting_.empty()) {
         return std::nullopt;
     }
-    const auto most = std::ranges::max_element(
-        waiting_, {}, [&](const PlannedPipeline& planned) { return waitingHits(planned, hits_); });
+    const auto most = std::ranges::max_element(waiting_, {}, [&](const PlannedPipeline& planned) {
+        return std::pair(!planned.spare, waitingHits(planned, hits_));
+    });
     PlannedPipeline planned = std::move(*most);
     waiting_.erase(most);
     ++running_;
@@ -96,7 +103,25 @@ std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::size_t mos
 
 void BackgroundPipelines::wait() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return waiting_.empty() && running_ == 0; });
+    changed_.wait(lock, [&] { return (waiting_.empty() || paused_) && running_ == 0; });
+}
+
+void BackgroundPipelines::setPaused(bool paused) {
+    {
+        const std::lock_guard lock(mutex_);
+        paused_ = paused;
+    }
+    changed_.notify_all();
+}
+
+std::uint32_t BackgroundPipelines::missing() const {
+    const std::lock_guard lock(mutex_);
+    return missing_;
+}
+
+bool BackgroundPipelines::isMaking() const {
+    const std::lock_guard lock(mutex_);
+    return running_ > 0;
 }
 
 PipelineProgress BackgroundPipelines::progress() const {

@@ -24,6 +24,7 @@ struct PlannedPipeline {
     std::vector<package::ModuleKey> keys;      // of compute and graphics passes
     std::shared_ptr<const RayPass> rays = {};  // of a ray tracing pipeline
     bool later = false;                        // frames can begin without it
+    bool spare = false;                        // nothing that is drawn needs it: it is made last
 };
 
 class BackgroundPipelines {
@@ -47,8 +48,14 @@ public:
     void setHits(std::span<const std::uint32_t> bucketCounts);
     // Returns pipelines that were made since the last call, at most `most`.
     std::vector<Done> take(std::size_t most);
-    // Returns when every pipeline was made or has failed.
+    // Returns when every pipeline was made or has failed; while paused, when none is being made.
     void wait();
+    // While paused, no further pipeline is begun.
+    void setPaused(bool paused);
+    // Returns the number of pipelines, other than spare ones, that are not made yet.
+    std::uint32_t missing() const;
+    // Whether a pipeline is being made just now. The destructor would wait for it.
+    bool isMaking() const;
 
     PipelineProgress progress() const;
 
@@ -64,9 +71,11 @@ private:
     std::vector<std::uint32_t> hits_;  // by shader ID
     std::uint32_t wanted_ = 0;
     std::uint32_t running_ = 0;
+    std::uint32_t missing_ = 0;
     std::uint32_t adopted_ = 0;
     std::optional<Diagnostic> error_;
     bool ends_ = false;
+    bool paused_ = false;
     std::vector<std::thread> threads_;
 };
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -107,7 +109,15 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
     return okStatus();
 }
 
-Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
+struct WantedBuffer {
+    Buffer FrameResources::*member;
+    VkDeviceSize bytes;  // 0: the frame needs none
+    VkBufferUsageFlags usage;
+    MemoryUse use;
+};
+
+// In the order of FrameResources::buffers().
+std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const FrameSize& size) {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
@@ -129,39 +139,38 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
-    const struct {
-        Buffer& target;
-        VkDeviceSize bytes;
-        VkBufferUsageFlags usage;
-        MemoryUse use;
-    } wanted[] = {
-        {frame.constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
-        {frame.samples, samples * sizeof(gpu::EffectSample), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+    using Frame = FrameResources;
+    return {{
+        {&Frame::constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
+        {&Frame::samples, samples * sizeof(gpu::EffectSample), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
-        {frame.radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        {&Frame::radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
-        {frame.rays, ownRays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+        {&Frame::rays, ownRays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
          MemoryUse::Device},
-        {frame.nextRays, size.paths ? ownRays * sizeof(gpu::RayRecord) : 0, kStorage, MemoryUse::Device},
-        {frame.paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
-        {frame.lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
+        {&Frame::nextRays, size.paths ? ownRays * sizeof(gpu::RayRecord) : 0, kStorage, MemoryUse::Device},
+        {&Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
+        {&Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
          MemoryUse::Device},
-        {frame.hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
-        {frame.orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
-        {frame.visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
-        {frame.shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
-        {frame.shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
-        {frame.bucketCounts, bucketBytes, kCleared, MemoryUse::Device},
-        {frame.bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
-        {frame.bucketCursors, bucketBytes, kCleared, MemoryUse::Device},
-        {frame.rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {frame.counters, counterBytes(size), kCleared, MemoryUse::Device},
-        {frame.readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
+        {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
+        {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
+        {&Frame::shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
+        {&Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {&Frame::bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
+        {&Frame::bucketCounts, bucketBytes, kCleared, MemoryUse::Device},
+        {&Frame::bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
+        {&Frame::bucketCursors, bucketBytes, kCleared, MemoryUse::Device},
+        {&Frame::rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {&Frame::bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {&Frame::counters, counterBytes(size), kCleared, MemoryUse::Device},
+        {&Frame::readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
          MemoryUse::Readback},
-    };
-    for (const auto& entry : wanted) {
+    }};
+}
+
+Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    for (const WantedBuffer& entry : wantedBuffers(size)) {
         if (entry.bytes == 0) {
             continue;
         }
@@ -169,7 +178,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         if (!buffer) {
             return buffer.error();
         }
-        entry.target = std::move(*buffer);
+        frame.*entry.member = std::move(*buffer);
     }
     return okStatus();
 }
@@ -294,6 +303,65 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
     }
     fillSet(context, frame);
     return clearImages(context, frame);
+}
+
+bool haveSameImages(const FrameSize& first, const FrameSize& second) {
+    const auto sameImage = [&](std::uint32_t binding) {
+        return hasImage(first, binding) == hasImage(second, binding);
+    };
+    bool same = first.width == second.width && first.height == second.height &&
+                first.environmentMap == second.environmentMap;
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        same = same && sameImage(binding);
+    }
+    return same;
+}
+
+Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next) {
+    NextBuffers buffers;
+    buffers.pool = std::make_shared<MemoryPool>(context);
+    const auto before = wantedBuffers(now);
+    const auto after = wantedBuffers(next);
+    for (std::size_t place = 0; place < after.size(); ++place) {
+        const WantedBuffer& wanted = after[place];
+        if (wanted.bytes == before[place].bytes) {
+            buffers.kept += wanted.bytes > 0 ? 1 : 0;
+            continue;
+        }
+        Buffer made;
+        if (wanted.bytes > 0) {
+            Result<Buffer> buffer =
+                createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use);
+            if (!buffer) {
+                return buffer.error();
+            }
+            made = std::move(*buffer);
+            ++buffers.made;
+        }
+        buffers.exchanges.push_back({place, wanted.member, std::move(made)});
+    }
+    return buffers;
+}
+
+EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame) {
+    EarlierBuffers earlier;
+    for (NextBuffers::Exchange& exchange : next.exchanges) {
+        earlier.buffers.push_back(std::exchange(frame.*exchange.member, std::move(exchange.buffer)));
+        earlier.pools.push_back(std::exchange(frame.bufferPools[exchange.place], next.pool));
+    }
+    return earlier;
+}
+
+VkDeviceSize allocatedBytes(const FrameResources& frame) {
+    std::set<const MemoryPool*> pools{&frame.pool};
+    for (const std::shared_ptr<MemoryPool>& pool : frame.bufferPools) {
+        pools.insert(pool != nullptr ? pool.get() : &frame.pool);
+    }
+    VkDeviceSize bytes = 0;
+    for (const MemoryPool* const pool : pools) {
+        bytes += pool->bytes();
+    }
+    return bytes;
 }
 
 void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame) {

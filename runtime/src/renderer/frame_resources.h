@@ -8,8 +8,11 @@
 #include <glint/effects.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <utility>
+#include <vector>
 
 namespace glint {
 
@@ -26,6 +29,10 @@ struct FrameResources {
     explicit FrameResources(Context::State& context) : pool(context) {}
 
     MemoryPool pool;
+    // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
+    // others is `pool`.
+    static constexpr std::size_t kBufferCount = 20;
+    std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     std::array<DeviceImage, gpu::kFrameImageCount> images;  // by binding; layout GENERAL
     DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
     Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
@@ -53,7 +60,7 @@ struct FrameResources {
     VkDescriptorSet set = VK_NULL_HANDLE;
 
     // All buffers, with names for reports.
-    std::array<std::pair<const char*, const Buffer*>, 20> buffers() const {
+    std::array<std::pair<const char*, const Buffer*>, kBufferCount> buffers() const {
         return {{{"constants", &constants},
                  {"samples", &samples},
                  {"radiance of effects", &radiance},
@@ -127,6 +134,37 @@ std::uint64_t maxRayDispatch(const DeviceLimits& limits);
 // Makes all resources, or with FrameSize::hostRays the lists and counters alone, clears the images and waits
 // for the device.
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);
+
+// Buffers for frames of another size in memory, which replace those that have another size now.
+struct NextBuffers {
+    struct Exchange {
+        std::size_t place = 0;  // in FrameResources::buffers()
+        Buffer FrameResources::*member = nullptr;
+        Buffer buffer;  // without a handle if the frame no longer needs it
+    };
+    std::shared_ptr<MemoryPool> pool;
+    std::vector<Exchange> exchanges;
+    std::uint32_t kept = 0;  // buffers that stay
+    std::uint32_t made = 0;
+};
+
+// Whether frames of both sizes have the same images and the same layout of set 1.
+bool haveSameImages(const FrameSize& first, const FrameSize& second);
+
+// Makes the buffers that frames of the size `next` need and frames of the size `now` lack. Errors: those of
+// buffers.
+Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next);
+
+// The buffers that were exchanged, which commands in flight may still use. Members are destroyed in reverse
+// order.
+struct EarlierBuffers {
+    std::vector<std::shared_ptr<MemoryPool>> pools;
+    std::vector<Buffer> buffers;
+};
+EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame);
+
+// Returns the size of the memory of all images and buffers.
+VkDeviceSize allocatedBytes(const FrameResources& frame);
 
 // Puts the environment into the frame's set. No commands that use the set may be in flight. Requires
 // FrameSize::environmentMap.

@@ -51,7 +51,8 @@ Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> job
         if (!result) {
             return result.error();
         }
-        made.push_back({jobs[job].name, std::move(*result), creations[job].feedback});
+        made.push_back({jobs[job].name, std::make_shared<const UniquePipeline>(std::move(*result)),
+                        creations[job].feedback, jobs[job].identity});
     }
     return made;
 }

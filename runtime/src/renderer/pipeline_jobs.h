@@ -2,10 +2,12 @@
 #pragma once
 
 #include "package/shader_modules.h"
+#include "replacement/pipeline_identity.h"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,12 +19,14 @@ struct PipelineJob {
     std::size_t wordCount = 0;  // words of its SPIR-V, which estimate the work
     // Any thread may call this. It must use nothing that another job changes.
     std::function<Result<UniquePipeline>(PipelineCreation& creation)> make;
+    PipelineIdentity identity{};
 };
 
 struct MadePipeline {
     std::string name;
-    UniquePipeline handle;
-    VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives no feedback
+    std::shared_ptr<const UniquePipeline> handle;  // shared with the pipelines of a package that follows
+    VkPipelineCreationFeedback feedback{};         // without the flag VALID the driver gives no feedback
+    PipelineIdentity identity{};
 };
 
 // Returns the number of threads for that many jobs, at most `wanted`. 0 asks for as many as the machine runs

@@ -135,7 +135,7 @@ Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const {
     std::vector<PipelineStatistics> list;
     for (const MadePipeline& pipeline : state_->pipelines.owned) {
         Result<std::vector<PipelineExecutable>> executables =
-            readExecutables(state_->context, pipeline.handle.get());
+            readExecutables(state_->context, pipeline.handle->get());
         if (!executables) {
             return executables.error();
         }

@@ -4,6 +4,7 @@
 #include "package/shader_modules.h"
 #include "renderer/background_pipelines.h"
 #include "renderer/frame_resources.h"
+#include "renderer/pipeline_plan.h"
 #include "renderer/ray_passes.h"
 #include "renderer/tile_sort.h"
 
@@ -42,7 +43,8 @@ Status createLayout(Context::State& context, const LayoutSource& source, Pipelin
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreatePipelineLayout", result);
     }
-    pipelines.ownLayout = UniquePipelineLayout(context, pipelines.layout);
+    pipelines.ownLayout =
+        std::make_shared<const UniquePipelineLayout>(UniquePipelineLayout(context, pipelines.layout));
     return okStatus();
 }
 
@@ -163,7 +165,8 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
                              [&context, words, layout, threads](PipelineCreation& creation) {
                                  creation.threads = threads;
                                  return createComputePipeline(context, words, layout, creation);
-                             }},
+                             },
+                             identify(VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
                             {},
                             {},
                             true});
@@ -174,18 +177,21 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
     }
 }
 
+}  // namespace
+
 std::vector<PlannedPipeline> planPipelines(Context::State& context, const Package& package,
                                            const PipelineChoice& choice,
                                            std::span<const std::uint32_t> shaderIds,
                                            VkPipelineLayout layout) {
     std::vector<PlannedPipeline> plan;
     if (package.passes() == package::Passes::Frame) {
-        const std::size_t words = package.spirv({ModuleRole::GBufferVertex}).size() +
-                                  package.spirv({ModuleRole::GBufferFragment}).size();
-        plan.push_back({{"GBuffer", words,
+        const std::span<const std::uint32_t> vertex = package.spirv({ModuleRole::GBufferVertex});
+        const std::span<const std::uint32_t> fragment = package.spirv({ModuleRole::GBufferFragment});
+        plan.push_back({{"GBuffer", vertex.size() + fragment.size(),
                          [&context, &package, layout](PipelineCreation& creation) {
                              return createGBuffer(context, package, layout, creation);
-                         }},
+                         },
+                         identify(VK_PIPELINE_BIND_POINT_GRAPHICS, 0, {vertex, fragment})},
                         {{ModuleRole::GBufferVertex}}});
     }
     planComputePasses(context, package, choice, layout, plan);
@@ -194,7 +200,8 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
         plan.push_back({{pass->name, wordCount(pass->source),
                          [&context, pass, layout](PipelineCreation& creation) {
                              return createRayPipeline(context, layout, pass->source, creation);
-                         }},
+                         },
+                         identify(pass->source)},
                         {},
                         pass,
                         pass->later});
@@ -205,7 +212,7 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
 // Takes a pipeline, and lets the passes that it is for use it.
 Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
                    Pipelines& pipelines) {
-    const VkPipeline pipeline = made.handle.get();
+    const VkPipeline pipeline = made.handle->get();
     pipelines.owned.push_back(std::move(made));
     if (planned.rays) {
         return addRayPass(context, *planned.rays, pipeline, pipelines);
@@ -249,8 +256,6 @@ bool hasUnknown(const Package& package, std::span<const std::uint32_t> shaderIds
                return id >= package.caseCount() || package.cases()[id].keyCount == 0;
            });
 }
-
-}  // namespace
 
 Pipelines::Pipelines(Context::State& context) : pool(context) {}
 Pipelines::Pipelines(Pipelines&&) noexcept = default;

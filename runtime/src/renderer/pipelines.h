@@ -56,8 +56,9 @@ struct Pipelines {
     Pipelines& operator=(const Pipelines&) = delete;
 
     MemoryPool pool;
-    std::vector<Buffer> tables;      // shader binding tables
-    UniquePipelineLayout ownLayout;  // empty if the layout is the caller's
+    std::vector<Buffer> tables;  // shader binding tables
+    // Null if the layout is the caller's.
+    std::shared_ptr<const UniquePipelineLayout> ownLayout;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkShaderStageFlags pushStages = 0;
     VkPipeline gbuffer = VK_NULL_HANDLE;
@@ -66,7 +67,8 @@ struct Pipelines {
     std::map<std::pair<package::ModuleRole, std::uint32_t>, PassPipeline> effectPasses;
     std::vector<PassPipeline> cases;  // indexed by shader ID; cases that share a module share a pipeline
     std::vector<MadePipeline> owned;
-    std::uint32_t threads = 0;  // threads that made them
+    std::shared_ptr<const Package> package;  // that threads read; null if the caller keeps it
+    std::uint32_t threads = 0;               // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;
     // Hits may have shader IDs that no case has, and the package's fallback shades them.

@@ -142,21 +142,19 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
     }
-    const std::uint32_t rounds = std::max(package::effectSlots(size.effects), 1U);
-    Result<Timer> timer =
-        Timer::create(contextState, rounds * size.bounces * (kMaxFixedPasses + package.caseCount()));
+    const std::uint32_t stretches = timerCapacity(package, size);
+    Result<Timer> timer = Timer::create(contextState, stretches);
     if (!timer) {
         return timer.error();
     }
     auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
     state->choice = *choice;
     state->size = size;
-    for (const package::EffectInfo& effect : package.effects()) {
-        state->effects.push_back({effect.effect, effect.kind, std::string(effect.name)});
-    }
-    for (const package::CaseEntry& entry : package.cases()) {
-        state->caseNames.emplace_back(package.string(entry.name));
-    }
+    state->options = options;
+    state->timerCapacity = stretches;
+    state->scenePackage = state->scene.package.number;
+    state->effects = effectsOf(package);
+    state->caseNames = caseNamesOf(package);
     if (Status status = createFrameResources(contextState, size, state->frame); !status) {
         return status.error();
     }
@@ -181,6 +179,13 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     if (Status status = checkOutside(state_->size, outsideOf(frame)); !status) {
         return status;
     }
+    if (state_->scenePackage != state_->scene.package.number) {
+        return makeError(
+            "package-replaced", "",
+            "another renderer of the scene has replaced its package, and the shaders of this one "
+            "are for the package before",
+            "make this renderer anew with the new package");
+    }
     if (frame.environment != nullptr && frame.environment->state() != state_->environment) {
         bindEnvironment(state_->context, *frame.environment->state(), state_->frame);
         state_->environment = frame.environment->state();
@@ -191,9 +196,39 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
             return status;
         }
     }
+    if (state_->next) {
+        switchPackage(*state_, commands);
+    }
     recordFrame(*state_, commands, frame, makeConstants(*state_, frame));
     state_->recorded = true;
+    ++state_->recordings;
     return okStatus();
+}
+
+Result<PackageReplacement> Renderer::replacePackage(std::shared_ptr<const Package> package) {
+    return beginReplacement(*state_, std::move(package));
+}
+
+ReplacementProgress Renderer::replacementProgress() const {
+    ReplacementProgress progress;
+    progress.inUse = state_->replacementsInUse;
+    progress.error = state_->replacementError;
+    if (state_->next) {
+        const auto& background = state_->next->pipelines.background;
+        progress.pending = true;
+        progress.missing = background ? background->missing() : 0;
+        const bool failed = background && background->progress().error;
+        progress.ready = progress.missing == 0 && !failed && state_->pipelines.adoptedAtOnce > 0;
+    }
+    return progress;
+}
+
+std::uint64_t Renderer::recordings() const {
+    return state_->recordings;
+}
+
+void Renderer::finished(std::uint64_t recording) {
+    releaseLeftovers(*state_, recording);
 }
 
 VkImage Renderer::output() const {
@@ -228,6 +263,7 @@ Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample
         if (Status status = runner.submitAndWait(); !status) {
             return status;
         }
+        renderer.finished(renderer.recordings());
         if (Status status = afterSample ? afterSample() : okStatus(); !status) {
             return status;
         }
@@ -269,6 +305,9 @@ PipelineProgress Renderer::pipelineProgress() const {
 }
 
 void Renderer::waitForPipelines() {
+    if (state_->next && state_->next->pipelines.background) {
+        state_->next->pipelines.background->wait();
+    }
     if (state_->pipelines.background) {
         state_->pipelines.background->wait();
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "renderer/pass_state.h"
+#include "replacement/replacement.h"
 #include "scene/gpu_scene_state.h"
 
 #include <glint/renderer.h>
@@ -9,18 +10,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace glint {
-
-// An effect of the package.
-struct EffectName {
-    package::Effect effect = 0;
-    package::EffectKind kind = package::EffectKind::Rays;
-    std::string name;
-};
 
 struct Renderer::State : PassState {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
@@ -36,6 +31,16 @@ struct Renderer::State : PassState {
         std::uint32_t bounce = 1;
     };
     std::vector<Round> rounds;
+
+    RendererOptions options;
+    std::uint32_t timerCapacity = 0;  // stretches
+    std::uint64_t recordings = 0;
+    // Which package of the scene the pipelines are for, as ScenePackage::number.
+    std::uint64_t scenePackage = 0;
+    std::unique_ptr<NextPackage> next;  // null unless a package waits
+    std::vector<std::unique_ptr<Leftovers>> leftovers;
+    std::uint64_t replacementsInUse = 0;
+    std::optional<Diagnostic> replacementError;
 };
 
 // Returns the number of bounces of a frame's paths.

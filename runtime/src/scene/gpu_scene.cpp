@@ -129,6 +129,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (!changing) {
         return changing.error();
     }
+    state.package = describePackage(package, scene, layout, *changing);
     if (scene.moves) {
         state.changing = std::move(*changing);
     }

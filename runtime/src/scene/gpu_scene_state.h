@@ -4,6 +4,7 @@
 #include "context/resources.h"
 #include "motion/scene_motion.h"
 #include "renderer/draw_batches.h"
+#include "replacement/scene_package.h"
 #include "scene/acceleration.h"
 #include "scene/emitters.h"
 #include "scene/geometry.h"
@@ -29,6 +30,7 @@ struct GpuScene::State {
 
     Context::State& context;
     MemoryPool pool;
+    ScenePackage package;  // that the scene is drawn with
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
     std::vector<AccelerationStructure> blases;  // the BLASes that are built once

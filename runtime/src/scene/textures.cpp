@@ -136,15 +136,23 @@ std::uint32_t countNarrowed(const Context::State& context, std::span<const packa
 
 std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, const PackageScene& known,
                                              std::span<const ImageView> images) {
+    std::vector<std::array<float, 2>> texels;
+    for (const package::TextureEntry& texture : known.textures) {
+        const ImageView& image = images[texture.image];
+        texels.push_back({static_cast<float>(image.width), static_cast<float>(image.height)});
+    }
+    return materialsWithSizes(context, known, texels);
+}
+
+std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, const PackageScene& known,
+                                             std::span<const std::array<float, 2>> texels) {
     std::vector<std::uint8_t> bytes(known.materials.bytes.begin(), known.materials.bytes.end());
-    const std::span<const package::TextureEntry> textures = known.textures;
     const std::span<const package::SamplerEntry> samplers = known.samplers;
     for (std::size_t i = 0; i < known.materials.size(); ++i) {
         for (std::uint32_t slot = 0; slot < known.materials.textureCount; ++slot) {
             gpu::TextureRecord record = textureAt(known.materials, i, slot);
-            if (record.textureIndex < textures.size()) {
-                const ImageView& image = images[textures[record.textureIndex].image];
-                record.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
+            if (record.textureIndex < texels.size()) {
+                record.texels = {texels[record.textureIndex][0], texels[record.textureIndex][1]};
             }
             record.anisotropy = record.samplerIndex < samplers.size()
                                     ? anisotropyOf(context, samplers[record.samplerIndex])

@@ -8,6 +8,7 @@
 #include <glint/package.h>
 #include <glint/scene_view.h>
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,9 @@ std::uint32_t countNarrowed(const Context::State& context, std::span<const packa
 // for one lane even if lanes differ in the index. Requires an image for each texture.
 std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, const PackageScene& known,
                                              std::span<const ImageView> images);
+// Does the same for textures of these sizes.
+std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, const PackageScene& known,
+                                             std::span<const std::array<float, 2>> texels);
 
 // Makes one sampler for each SamplerEntry, and at least one. Error "scene-samplers".
 Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,

@@ -25,6 +25,12 @@ namespace {
 constexpr const char* kPlanOnly = "--plan-only";
 constexpr const char* kLauncher = "--launcher";
 constexpr const char* kModules = "--modules";
+constexpr const char* kWatch = "--watch";
+
+bool isGiven(const CLI::App& command, const std::string& name) {
+    const CLI::Option* const option = command.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+}
 
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addSettings(command, compiler::kOfCompile, arguments.settings);
@@ -56,6 +62,7 @@ void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option&
     launcher.needs(&plan);
     plan.excludes(&dry)->excludes(&modules);
     modules.excludes(&dry);
+    command.get_option(kWatch)->excludes(&plan)->excludes(&modules);
     for (CLI::Option* const option : {&plan, &launcher, &modules}) {
         option->group("Farm");
     }
@@ -80,6 +87,11 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     CLI::Option& dry =
         addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile nothing and write nothing");
     dry.group("Output");
+    addFlag(command, kWatch, arguments.watch,
+            "compile again whenever an input changes, until Ctrl-C, and\n"
+            "count up the file DIR.stamp after each new package")
+        .group("Output")
+        ->excludes(&dry);
     addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one for each core")
         .group("Output");
     addCacheOptions(command, arguments.cache);
@@ -102,6 +114,12 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
 void settleCompile(const CLI::App& command, CompileArguments& arguments) {
     if (arguments.output.empty() && arguments.embed.empty() && !arguments.dryRun) {
         throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
+    }
+    if (arguments.watch && arguments.output.empty()) {
+        throw CLI::RequiredError("-o DIR, which --watch");
+    }
+    if (arguments.watch && isGiven(command, "--json")) {
+        throw CLI::ExcludesError(kWatch, "--json");
     }
     checkProfile(command, arguments.settings);
     settleSettings(command, arguments.settings);

@@ -33,6 +33,8 @@ struct CompileArguments {
     std::string launcher;                  // of the plan's compilations
     std::string modules;                   // folder of compiled modules; empty: they are compiled
     bool dryRun = false;
+    bool watch = false;
+    std::vector<std::string> line;  // the command line, without the program; for --watch
 };
 
 void addCompileOptions(CLI::App& command, CompileArguments& arguments);

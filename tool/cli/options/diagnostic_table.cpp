@@ -106,7 +106,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"effect-unknown", kError, "`--effects` names an effect that neither Glint nor a pack has."},
     {"effect-unused", kWarning, "An effect is asked for that the scene can't use."},
     {"emissive-lights", kError,
-     "`--emissive-lights on` in a package that has no shadow rays, or whose lights or geometry are a host's own."},
+     "`--emissive-lights on` in a package that has no shadow rays, or whose lights or geometry are a host's "
+     "own."},
     {"engine-scene", kError,
      "A scene of a host's own (`EngineScene`) has a number out of range, or lacks something that the package "
      "reads."},
@@ -214,6 +215,7 @@ constexpr DiagnosticInfo kTable[] = {
      "Pipelines are to be made in the background, and a package has no fallback (`--fallback`)."},
     {"package-file-name", kError, "A package names a file outside of its folder."},
     {"package-foreign", kError, "A file is not a package."},
+    {"package-frame", kError, "A package can't replace a renderer's, because its frames have other images."},
     {"package-mismatch", kError,
      "A package does not fit the scene, the strategy or the sky that is asked for."},
     {"package-missing", kError, "There is no package in the folder."},
@@ -221,6 +223,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"package-module-missing", kError, "A module of a package is not there."},
     {"package-passes", kError, "A package with steps was given to `Renderer`, or one without to `RaySteps`."},
     {"package-read", kError, "A file of a package can't be read."},
+    {"package-replaced", kError, "A renderer's package was replaced through another renderer of the scene."},
     {"package-strategy", kError, "A package lacks the strategy that is asked for."},
     {"package-tracer", kError, "A package lacks the tracer that is asked for."},
     {"package-truncated", kError, "The tables of a package are cut short."},
@@ -271,7 +274,9 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-node-child", kWarning, "A scene names a node that stands below another."},
     {"scene-node-repeated", kWarning, "A scene names a node twice."},
     {"scene-order", kError, "The runtime was given primitives that are not sorted."},
-    {"scene-package", kError, "The runtime was given a scene that is not in the package."},
+    {"scene-package", kError,
+     "The runtime was given a scene that is not in the package, or can't go on with it when the package is "
+     "replaced."},
     {"scene-samplers", kError, "The scene has more samplers than the device takes."},
     {"scene-still", kError, "The runtime was given a pose of a scene that was uploaded without motion."},
     {"scene-textures", kError, "The scene has more textures than the device takes."},

@@ -1,0 +1,73 @@
+// A package that is about to take the place of a renderer's, and what the ones before have left behind.
+#pragma once
+
+#include "context/timer.h"
+#include "renderer/background_pipelines.h"
+#include "renderer/frame_resources.h"
+#include "renderer/pipelines.h"
+#include "replacement/scene_package.h"
+
+#include <glint/package_replacement.h>
+#include <glint/renderer.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// An effect of the package.
+struct EffectName {
+    package::Effect effect = 0;
+    package::EffectKind kind = package::EffectKind::Rays;
+    std::string name;
+};
+
+// Returns what reports and labels need of a package.
+std::vector<EffectName> effectsOf(const Package& package);
+std::vector<std::string> caseNamesOf(const Package& package);
+
+// Returns the number of stretches that frames of the package can have.
+std::uint32_t timerCapacity(const Package& package, const FrameSize& size);
+
+// A package with all that its frames need, except pipelines that threads are still making. Members are
+// destroyed in reverse order.
+struct NextPackage {
+    explicit NextPackage(Context::State& context) : pipelines(context) {}
+
+    std::shared_ptr<const Package> package;
+    std::uint32_t scene = 0;  // index in the package
+    PipelineChoice choice;
+    FrameSize size;
+    std::optional<Timer> timer;  // no value: the renderer's own is long enough
+    NextBuffers buffers;
+    Pipelines pipelines;                           // with no pass yet
+    std::vector<BackgroundPipelines::Done> ready;  // pipelines that are kept, or were made in the call
+};
+
+// Resources that only recordings up to `recording` use. Members are destroyed in reverse order.
+struct Leftovers {
+    std::uint64_t recording = 0;
+    EarlierBuffers buffers;
+    SceneLeftovers scene;
+    std::optional<Timer> timer;
+    std::unique_ptr<NextPackage> next;  // one that was given up
+    std::unique_ptr<Pipelines> pipelines;
+
+    // Whether threads are making a pipeline, which the destructor would wait for.
+    bool isBusy() const;
+};
+
+// Implements Renderer::replacePackage().
+Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_ptr<const Package> package);
+
+// If all pipelines of the package that waits are there, lets the commands that are recorded from now on use
+// it. If one could not be made, gives it up.
+void switchPackage(Renderer::State& state, VkCommandBuffer commands);
+
+// Destroys what recordings after `recording` do not use.
+void releaseLeftovers(Renderer::State& state, std::uint64_t recording);
+
+}  // namespace glint

@@ -1,0 +1,305 @@
+#include "cli/compile/watch.h"
+
+#include "base/clock.h"
+#include "base/files.h"
+#include "cli/compile/input_watch.h"
+#include "cli/options/diagnostics_options.h"
+#include "cli/options/options.h"
+#include "cli/options/settings_option.h"
+
+#include <glint/package_watch.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace glint::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kPause(25);  // between two polls
+constexpr std::size_t kNamed = 3;                // files that a line names
+
+// A signal handler can only reach global data.
+volatile std::sig_atomic_t interrupted = 0;
+
+void interrupt(int /*signal*/) {
+    interrupted = 1;
+}
+
+// While it lives, the first SIGINT or SIGTERM sets `interrupted`. A second one has its usual effect, so that
+// a long compilation can be ended.
+class Interruptions {
+public:
+    Interruptions() {
+        interrupted = 0;
+        struct sigaction action {};
+        action.sa_handler = interrupt;
+        action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
+        sigemptyset(&action.sa_mask);
+        for (std::size_t i = 0; i < kSignals.size(); ++i) {
+            sigaction(kSignals[i], &action, &earlier_[i]);
+        }
+    }
+    Interruptions(const Interruptions&) = delete;
+    Interruptions& operator=(const Interruptions&) = delete;
+    ~Interruptions() {
+        for (std::size_t i = 0; i < kSignals.size(); ++i) {
+            sigaction(kSignals[i], &earlier_[i], nullptr);
+        }
+    }
+
+private:
+    static constexpr std::array kSignals{SIGINT, SIGTERM};
+    std::array<struct sigaction, kSignals.size()> earlier_{};
+};
+
+// Parses the command line once more, with the settings file as it is now.
+Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
+    CLI::App app;
+    CompileArguments arguments;
+    CLI::App& command = addCommand(app, "compile", "", "");
+    addCompileOptions(command, arguments);
+    ReportArguments report;
+    addReportOptions(command, report);
+    std::vector<const char*> pointers;
+    for (const std::string& word : line) {
+        pointers.push_back(word.c_str());
+    }
+    const Result<CompletedLine> completed = completeLine(app, pointers);
+    if (!completed) {
+        return completed.error();
+    }
+    try {
+        std::vector<std::string> words(completed->words.rbegin(), completed->words.rend());
+        app.parse(words);
+        settleCompile(command, arguments);
+    } catch (const CLI::ParseError& error) {
+        const std::optional<Diagnostic> ofFile = blameFile(*completed, error.what());
+        return ofFile ? *ofFile : makeError("settings-file", "", error.what());
+    }
+    arguments.line = line;
+    return arguments;
+}
+
+// Returns the files that a run reads, as far as they are known before it.
+std::vector<std::string> knownInputs(const CompileArguments& arguments) {
+    std::vector<std::string> paths = arguments.scenes;
+    for (const fs::path& file : furtherInputs(arguments)) {
+        paths.push_back(file.string());
+    }
+    return paths;
+}
+
+// A failed run may have needed a file that comes later.
+std::vector<std::string> sceneFolders(const CompileArguments& arguments) {
+    std::vector<std::string> folders;
+    for (const std::string& scene : arguments.scenes) {
+        const fs::path folder = fs::path(scene).parent_path();
+        folders.push_back(folder.empty() ? "." : folder.string());
+    }
+    return folders;
+}
+
+// A folder only says that some file came or went.
+std::vector<std::string> withoutFolders(std::vector<std::string> changed) {
+    std::vector<std::string> files;
+    std::error_code error;
+    std::ranges::copy_if(changed, std::back_inserter(files),
+                         [&](const std::string& path) { return !fs::is_directory(path, error); });
+    return files.empty() ? changed : files;
+}
+
+std::string namesOf(const std::vector<std::string>& changed) {
+    std::string text;
+    for (std::size_t i = 0; i < std::min(changed.size(), kNamed); ++i) {
+        text += (i > 0 ? ", " : "") + changed[i];
+    }
+    return changed.size() > kNamed ? text + fmt::format(" and {} more", changed.size() - kNamed) : text;
+}
+
+class Watch {
+public:
+    Watch(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce)
+        : console_(console), arguments_(arguments), compileOnce_(compileOnce) {}
+
+    void run() {
+        inputs_ = knownInputs(arguments_);
+        watchFiles(true);
+        compile("first run");
+        while (interrupted == 0) {
+            std::this_thread::sleep_for(kPause);
+            std::vector<std::string> changed = watch_.changed();
+            if (changed.empty()) {
+                changed = newOrGone();
+            }
+            if (!changed.empty() && interrupted == 0) {
+                takeSettings(changed);
+                compile(namesOf(withoutFolders(std::move(changed))));
+            }
+        }
+    }
+
+private:
+    void watchFiles(bool failed) {
+        std::vector<std::string> paths = inputs_;
+        listed_ = knownInputs(arguments_);
+        paths.insert(paths.end(), listed_.begin(), listed_.end());
+        if (failed) {
+            const std::vector<std::string> folders = sceneFolders(arguments_);
+            paths.insert(paths.end(), folders.begin(), folders.end());
+        }
+        watch_.watch(paths);
+    }
+
+    // Returns the files of packs and hosts that have come or gone, once that has lasted.
+    std::vector<std::string> newOrGone() {
+        const std::vector<std::string> now = knownInputs(arguments_);
+        if (now == listed_) {
+            differs_.reset();
+            return {};
+        }
+        differs_ = differs_.value_or(base::Clock::now());
+        if (base::millisecondsSince(*differs_) < InputWatch::kMissingMs) {
+            return {};
+        }
+        differs_.reset();
+        const std::set<std::string> before(listed_.begin(), listed_.end());
+        const std::set<std::string> after(now.begin(), now.end());
+        std::vector<std::string> others;
+        std::ranges::set_symmetric_difference(before, after, std::back_inserter(others));
+        return others;
+    }
+
+    void takeSettings(const std::vector<std::string>& changed) {
+        const std::string& file = arguments_.settingsFile;
+        if (file.empty() || std::ranges::find(changed, file) == changed.end()) {
+            return;
+        }
+        Result<CompileArguments> again = parseAgain(arguments_.line);
+        if (again) {
+            arguments_ = std::move(*again);
+        }
+        settingsError_ = again ? std::nullopt : std::optional(again.error());
+    }
+
+    void compile(const std::string& why) {
+        const base::Clock::time_point start = base::Clock::now();
+        // Warnings that count as errors are those of this run.
+        const Console own(console_.options());
+        WatchedRun run(warm_);
+        bool done = false;
+        if (settingsError_) {
+            own.report(*settingsError_);
+        } else {
+            done = compileOnce_(own, arguments_, run) == 0;
+        }
+        warm_.endRun();
+        if (!run.inputs.empty()) {
+            inputs_ = run.inputs;
+        }
+        watchFiles(!done);
+        if (!arguments_.lock.file.empty()) {
+            watch_.accept(arguments_.lock.file);
+        }
+        bool fresh = false;
+        if (done) {
+            const Result<bool> counted = countUp(run.tables);
+            if (!counted) {
+                own.report(counted.error());
+            }
+            fresh = counted && *counted;
+        }
+        ++runs_;
+        const double milliseconds = base::millisecondsSince(start);
+        console_.print(
+            fmt::format("{}. {}: {}\n", runs_, why,
+                        done ? describe(run, fresh, milliseconds)
+                             : fmt::format("failed, the package stays as it was; {:.0f} ms", milliseconds)));
+        std::fflush(stdout);
+    }
+
+    static std::string describe(const WatchedRun& run, bool fresh, double milliseconds) {
+        return fmt::format(
+            "{}; cases: {} compiled, {} kept; other modules: {} compiled, {} kept; {:.0f} ms: read {:.0f}, "
+            "plan "
+            "{:.0f}, compile {:.0f}, write {:.0f}",
+            fresh ? "new package" : "same package", run.casesCompiled, run.cases - run.casesCompiled,
+            run.modulesCompiled, run.modules - run.modulesCompiled, milliseconds, run.readMs, run.planMs,
+            run.compileMs, run.writeMs);
+    }
+
+    // Counts the stamp up if the package is not the one that it is about. Returns whether it did.
+    Result<bool> countUp(std::uint64_t tables) {
+        const fs::path file = package::stampFile(arguments_.output);
+        const std::string hash = base::hexHash(tables);
+        if (const Result<base::Bytes> bytes = base::readFile(file);
+            bytes && base::asText(*bytes).ends_with(" " + hash + "\n")) {
+            return false;
+        }
+        const std::uint64_t counter = package::readStamp(file).value_or(0) + 1;
+        if (Status written = base::writeFile(file, fmt::format("{} {}\n", counter, hash)); !written) {
+            return written.error();
+        }
+        return true;
+    }
+
+    const Console& console_;
+    CompileArguments arguments_;
+    const CompileOnce& compileOnce_;
+    compiler::WarmModules warm_;
+    InputWatch watch_;
+    std::vector<std::string> inputs_;
+    std::vector<std::string> listed_;                 // knownInputs() at the last run
+    std::optional<base::Clock::time_point> differs_;  // since when others are there
+    std::optional<Diagnostic> settingsError_;
+    int runs_ = 0;
+};
+
+}  // namespace
+
+void describeRun(const compiler::CompiledPackage& package, WatchedRun& run) {
+    std::set<std::uint32_t> cases;
+    std::set<std::uint32_t> compiled;
+    for (const compiler::CompiledModule& module : package.modules) {
+        if (package::findRole(module.key.role)->repeated == package::Repeated::ByCase) {
+            cases.insert(module.key.index);
+            if (module.compiled) {
+                compiled.insert(module.key.index);
+            }
+        } else {
+            ++run.modules;
+            run.modulesCompiled += module.compiled ? 1 : 0;
+        }
+    }
+    run.cases = static_cast<int>(cases.size());
+    run.casesCompiled = static_cast<int>(compiled.size());
+    run.planMs = package.planMs;
+    run.compileMs = package.compileMs;
+    for (const compiler::PackageFile& file : package.files) {
+        if (file.name == package::kTablesFile) {
+            run.tables = base::hashBytes(file.bytes);
+        }
+    }
+}
+
+int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce) {
+    const Interruptions interruptions;
+    Watch(console, arguments, compileOnce).run();
+    return 0;
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,45 @@
+// glint compile --watch: compiles again when an input changes.
+#pragma once
+
+#include "cli/compile/arguments.h"
+#include "cli/console.h"
+#include "emit/compile.h"
+#include "emit/warm_modules.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace glint::cli {
+
+// What one run of the compiler gets from the watch, and tells it.
+struct WatchedRun {
+    explicit WatchedRun(compiler::WarmModules& memory) : warm(memory) {}
+
+    compiler::WarmModules& warm;
+    // The files that were read; empty if the run failed before it knew them.
+    std::vector<std::string> inputs;
+    // Wall clock: reading and checking, planning and making GLSL, making SPIR-V, and making and writing
+    // files.
+    double readMs = 0.0;
+    double planMs = 0.0;
+    double compileMs = 0.0;
+    double writeMs = 0.0;
+    int cases = 0;          // with shaders of their own
+    int casesCompiled = 0;  // those of which a module was compiled
+    int modules = 0;        // other modules
+    int modulesCompiled = 0;
+    std::uint64_t tables = 0;  // hash of tables.bin, which has the hashes of all modules
+};
+
+// Sets the counts and times of a package that was compiled.
+void describeRun(const compiler::CompiledPackage& package, WatchedRun& run);
+
+// Calls `compileOnce`, which reports and returns an exit code, at the start and after each change of an
+// input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts the
+// stamp up (glint/package_watch.h). Returns the exit code of the command, which is 0.
+using CompileOnce = std::function<int(const Console&, const CompileArguments&, WatchedRun&)>;
+int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce);
+
+}  // namespace glint::cli
