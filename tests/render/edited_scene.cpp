@@ -176,6 +176,20 @@ void TwoFrames::drain() {
     }
 }
 
+package::Tracer tracerOfDevice() {
+    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
+    return queries ? package::kTracerRayQuery : package::kTracerRayPipeline;
+}
+
+EditedSceneOptions::EditedSceneOptions(package::Strategy strategy, package::Tracer tracer) {
+    settings.strategies = strategy;
+    settings.tracers = tracer;
+    settings.plan.merge = compiler::MergePolicy::None;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    renderer.strategy = strategy;
+    renderer.tracer = tracer;
+}
+
 EditedScene::EditedScene(EditedSceneOptions options) : scene(catalogueScene()), options_(std::move(options)) {
     loaded_ = std::make_unique<LoadedScene>(scene, options_.settings);
     if (!loaded_->ok()) {

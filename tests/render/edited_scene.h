@@ -64,7 +64,13 @@ private:
     std::uint64_t completed_ = 0;
 };
 
+// Returns ray queries, or ray tracing pipelines on a device without them.
+package::Tracer tracerOfDevice();
+
 struct EditedSceneOptions {
+    // Compiles and renders with a strategy, with a case for each key and alpha tests.
+    explicit EditedSceneOptions(package::Strategy strategy = package::kStrategyUber,
+                                package::Tracer tracer = tracerOfDevice());
     compiler::CompileSettings settings;
     RendererOptions renderer;
     std::uint32_t width = 32;

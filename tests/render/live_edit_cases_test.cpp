@@ -15,17 +15,6 @@
 namespace glint::testing {
 namespace {
 
-EditedSceneOptions uberOptions() {
-    EditedSceneOptions options;
-    options.settings.strategies = package::kStrategyUber;
-    options.settings.tracers = package::kTracerRayQuery;
-    options.settings.plan.merge = compiler::MergePolicy::None;
-    options.settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-    options.renderer.strategy = package::kStrategyUber;
-    options.renderer.tracer = package::kTracerRayQuery;
-    return options;
-}
-
 template <typename T>
 void expectError(const Result<T>& result, const std::string& id, const std::string& part = "") {
     ASSERT_FALSE(result) << id;
@@ -40,10 +29,26 @@ materials::Material coatedTexture() {
     return material;
 }
 
+// Draws the first two instances, the second with that material, with a package that was compiled for it.
+LinearImage pictureWithCoatedTexture(const EditedScene& edited, const EditedSceneOptions& options) {
+    gltf::Scene known = catalogueScene();
+    known.materials[2] = coatedTexture();
+    known.meshes[kKinds + 3].primitives[0].material = 2;
+    const LoadedScene loaded(known, options.settings, [&](scene_view::SceneViewData& data) {
+        data.instances[0].objectToWorld = edited.instances[0].objectToWorld;
+        data.instances[kKinds + 3].objectToWorld = edited.instances[1].objectToWorld;
+        for (std::size_t i = 0; i < data.instances.size(); ++i) {
+            data.instances[i].visible = i == 0 || i == kKinds + 3;
+        }
+    });
+    return loaded.ok() ? loaded.render(options.renderer, defaultSetup(known, options.width, options.height))
+                       : LinearImage{};
+}
+
 class LiveEditErrors : public ::testing::Test {
 protected:
     static void SetUpTestSuite() {
-        edited_ = new EditedScene(uberOptions());
+        edited_ = new EditedScene(EditedSceneOptions());
     }
     static void TearDownTestSuite() {
         delete edited_;
@@ -215,9 +220,26 @@ TEST_F(LiveEditErrors, AKeyWithoutACase) {
     edited_->expectSameAsFresh("nothing has changed");
 }
 
+// A case that decides at run time allows keys that no primitive of the package has.
+TEST(LiveEditKeys, ACaseForSeveralKeysShadesTheKeysBetweenThem) {
+    EditedSceneOptions options;
+    options.settings.plan.merge = compiler::MergePolicy::All;
+    EditedScene edited(options);
+    ASSERT_TRUE(edited.ok());
+    edited.scene.materials[2] = coatedTexture();
+    const scene_view::MaterialSourceData source = edited.source(2);
+    const Result<MaterialHandle> added = edited.editor().addMaterial(source.view());
+    ASSERT_TRUE(added) << toString(added.error());
+    const Result<EditReport> report =
+        edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, *added);
+    ASSERT_TRUE(report) << toString(report.error());
+    EXPECT_TRUE(report->missing.empty());
+    expectSameImage(edited.picture(), pictureWithCoatedTexture(edited, options), "a key between others");
+}
+
 TEST(LiveEditUpload, RefusesScenesThatMove) {
     const gltf::Scene scene = catalogueScene();
-    const LoadedScene loaded(scene, uberOptions().settings);
+    const LoadedScene loaded(scene, EditedSceneOptions().settings);
     ASSERT_TRUE(loaded.ok());
     const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     SceneView view = data.view();
@@ -235,7 +257,7 @@ TEST(LiveEditUpload, RefusesScenesThatMove) {
 TEST(LiveEditUpload, RefusesEmissiveLights) {
     gltf::Scene scene = catalogueScene();
     scene.materials[1]["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
-    compiler::CompileSettings settings = uberOptions().settings;
+    compiler::CompileSettings settings = EditedSceneOptions().settings;
     settings.emissiveLights = compiler::EmissiveLights::On;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
@@ -246,7 +268,7 @@ TEST(LiveEditUpload, RefusesEmissiveLights) {
 }
 
 TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
-    EditedSceneOptions options = uberOptions();
+    EditedSceneOptions options;
     options.settings.plan.fallback = true;
     EditedScene edited(options);
     ASSERT_TRUE(edited.ok());
@@ -267,24 +289,12 @@ TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
     const LinearImage after = edited.picture();
     EXPECT_NE(before.pixels, after.pixels);
     // A package that has a case for it shows the same, up to the rounding of other shaders.
-    gltf::Scene known = catalogueScene();
-    known.materials[2] = coatedTexture();
-    known.meshes[kKinds + 3].primitives[0].material = 2;
-    const LoadedScene loaded(known, options.settings, [&](scene_view::SceneViewData& data) {
-        data.instances[0].objectToWorld = edited.instances[0].objectToWorld;
-        data.instances[kKinds + 3].objectToWorld = edited.instances[1].objectToWorld;
-        for (std::size_t i = 0; i < data.instances.size(); ++i) {
-            data.instances[i].visible = i == 0 || i == kKinds + 3;
-        }
-    });
-    ASSERT_TRUE(loaded.ok());
-    RenderSetup setup = defaultSetup(known, 32, 18);
-    expectSameImage(after, loaded.render(options.renderer, setup), "with a case");
+    expectSameImage(after, pictureWithCoatedTexture(edited, options), "with a case");
 }
 
 TEST(LiveEditFallback, ASceneWithoutContentOfThePackage) {
     const gltf::Scene scene = catalogueScene();
-    const LoadedScene loaded(scene, uberOptions().settings);
+    const LoadedScene loaded(scene, EditedSceneOptions().settings);
     ASSERT_TRUE(loaded.ok());
     SceneView view;
     view.editable = true;
@@ -297,7 +307,7 @@ TEST(LiveEditFallback, ASceneWithoutContentOfThePackage) {
 
 // Adds many of everything in one frame, so that every buffer grows, and removes them again.
 TEST(LiveEditGrowth, EveryBufferGrowsAndShrinks) {
-    EditedSceneOptions options = uberOptions();
+    EditedSceneOptions options;
     options.settings.lightSamples = 2;
     EditedScene edited(options);
     ASSERT_TRUE(edited.ok());
@@ -368,12 +378,7 @@ TEST(LiveEditStrategies, OtherStrategiesFollowEdits) {
         if ((sharedContext().handles().tracers & tracer) == 0) {
             continue;
         }
-        EditedSceneOptions options = uberOptions();
-        options.settings.strategies = strategy;
-        options.settings.tracers = tracer;
-        options.renderer.strategy = strategy;
-        options.renderer.tracer = tracer;
-        EditedScene edited(options);
+        EditedScene edited(EditedSceneOptions(strategy, tracer));
         ASSERT_TRUE(edited.ok());
         edited.expectSameAsFresh("as uploaded");
         const Result<EditReport> report =

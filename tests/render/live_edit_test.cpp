@@ -16,18 +16,6 @@
 namespace glint::testing {
 namespace {
 
-EditedSceneOptions optionsFor(std::optional<std::uint32_t> lightSamples) {
-    EditedSceneOptions options;
-    options.settings.strategies = package::kStrategyUber;
-    options.settings.tracers = package::kTracerRayQuery;
-    options.settings.plan.merge = compiler::MergePolicy::None;
-    options.settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-    options.settings.lightSamples = lightSamples;
-    options.renderer.strategy = package::kStrategyUber;
-    options.renderer.tracer = package::kTracerRayQuery;
-    return options;
-}
-
 // Makes one random edit after another.
 class RandomEdits {
 public:
@@ -466,13 +454,15 @@ void runEdits(EditedScene& edited, int count, std::uint32_t seed) {
 }
 
 TEST(LiveEdit, RandomEditsShowWhatAFreshUploadShows) {
-    EditedScene edited(optionsFor(std::nullopt));
+    EditedScene edited{EditedSceneOptions()};
     ASSERT_TRUE(edited.ok());
     runEdits(edited, test::nightly() ? 10000 : 300, 1);
 }
 
 TEST(LiveEdit, TheLightHierarchyFollowsTheLights) {
-    EditedScene edited(optionsFor(2));
+    EditedSceneOptions options;
+    options.settings.lightSamples = 2;
+    EditedScene edited(options);
     ASSERT_TRUE(edited.ok());
     runEdits(edited, test::nightly() ? 1000 : 200, 2);
 }
