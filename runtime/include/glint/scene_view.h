@@ -144,7 +144,7 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    // Whether GpuScene::editor() will edit the scene. Such a scene can't move by GpuScene::update().
+    // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;
     // How many textures and samplers an editable scene may have at a time, those of the upload included. The
     // pipelines of its renderers are made for these numbers, so they can't grow. A texture takes a descriptor
