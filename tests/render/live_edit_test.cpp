@@ -437,7 +437,9 @@ void runEdits(EditedScene& edited, int count, std::uint32_t seed) {
             edited.expectSameAsFresh("after " + std::to_string(i) + " edits");
         }
     }
-    EXPECT_EQ(edits.made.size(), 19U) << "every kind of edit";
+    if (count >= 300) {
+        EXPECT_EQ(edits.made.size(), 19U) << "every kind of edit";
+    }
     edits.removeAll();
     edited.frame();
     edited.drain();
