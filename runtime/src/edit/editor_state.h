@@ -146,19 +146,15 @@ MaterialHandle materialOf(const SceneEditor::State& state, const EditedInstance&
                           std::size_t primitive);
 // Writes the geometry records of an instance, whose materials have been checked.
 void writeGeometries(SceneEditor::State& state, InstanceHandle handle, const EditedInstance& instance);
-// Uploads a mesh and describes its BLASes. `attributes` are those of all primitives of the package that a
-// vertex has. `buildsLater` receives what the upload builds.
-struct LaterBuild {
-    BlasInput input;
-    AccelerationStructure* target = nullptr;
-};
+// Uploads the primitives of a mesh. With `inputs`, the caller builds their BLASes from these, part by part;
+// otherwise record() does. Materials are the caller's to set.
 Result<EditedMesh> makeMesh(SceneEditor::State& state, std::span<const PrimitiveView> primitives,
                             std::vector<BlasInput>* inputs);
 // Adds an instance whose mesh and materials have been checked.
 InstanceHandle placeInstance(SceneEditor::State& state, EditedInstance instance);
 // Finds the sampler, or makes it. Error "scene-edit-room".
 Result<std::uint32_t> samplerIndex(SceneEditor::State& state, const package::SamplerEntry& entry);
-// Records what is pending. `frame` is ignored during the upload.
+// Records what is pending, for a frame that is not before the last one.
 Status recordEdits(SceneEditor::State& state, VkCommandBuffer commands, std::uint64_t frame);
 
 std::string placeOf(const char* what, std::uint32_t index);
