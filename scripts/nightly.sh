@@ -55,8 +55,8 @@ scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
         sweep)
-            build test_combinations test_strategies_agree test_half
-            for program in test_combinations test_strategies_agree test_half; do
+            build test_combinations test_strategies_agree test_half test_live_edit
+            for program in test_combinations test_strategies_agree test_half test_live_edit; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"
             done
             ;;

@@ -125,7 +125,7 @@ void poseMaterials(const gltf::Scene& scene, SceneViewData& data) {
 
 }  // namespace
 
-void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data) {
+compiler::MaterialLayout recordLayoutOf(const Package& package, const materials::MaterialModel& model) {
     materials::FeatureMask used = 0;
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         for (const package::PrimitiveEntry& entry : package.scene(i).primitives) {
@@ -133,9 +133,13 @@ void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData
                                                                      << 32U;
         }
     }
+    return compiler::makeMaterialLayout(model, used);
+}
+
+void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data) {
     const materials::MaterialModel& model =
         scene.materials.empty() ? materials::builtinMaterialModel() : scene.materials.front().model();
-    data.materialLayout = compiler::makeMaterialLayout(model, used);
+    data.materialLayout = recordLayoutOf(package, model);
     poseMaterials(scene, data);
 }
 

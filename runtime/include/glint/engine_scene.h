@@ -85,7 +85,7 @@ public:
                                                        const EngineSceneView& scene);
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
     // yet. The GpuScene must outlive it, and update() is GpuScene's. The host binds
-    // GpuScene::descriptorSet().
+    // GpuScene::descriptorSet(). Error "scene-edit-share": the scene can be edited.
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;

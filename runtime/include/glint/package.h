@@ -92,6 +92,9 @@ public:
     std::uint32_t lightSamples() const;
     // Returns where records of materials say what they emit, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
+    // Returns the names of features of materials, in the order of bits, for messages about keys. Bits without
+    // a name are left out.
+    std::vector<std::string> featureNames(std::uint64_t features) const;
     // Returns the number of shader IDs, retired ones included.
     std::uint32_t caseCount() const;
     // Returns the number of buckets of a visibility buffer: bucket 0 holds misses, bucket 1 + shader ID holds

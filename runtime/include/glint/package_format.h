@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 11;
+inline constexpr std::uint32_t kVersion = 12;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -161,6 +161,7 @@ enum class SectionKind : std::uint32_t {
     Attributes = 9,  // AttributeEntry: attributes of vertices that packs declare
     Effects = 10,    // EffectEntry, by ascending bits
     Emission = 11,   // one EmissionEntry, in packages with emissive lights
+    Features = 12,   // FeatureEntry: every feature of materials that the compiler knew, by ascending bits
 };
 
 struct PackageSection {
@@ -299,6 +300,12 @@ struct EmissionEntry {
     std::uint32_t texCoord1Input;
 };
 
+// The name of a feature of materials, for messages about keys.
+struct FeatureEntry {
+    std::uint64_t mask;  // one bit of keys
+    StringRef name;      // in the manifest: "baseColorTexture"
+};
+
 struct SamplerEntry {
     std::uint32_t wrapU;  // 0 repeat, 1 clamp to edge, 2 mirrored repeat
     std::uint32_t wrapV;
@@ -319,5 +326,6 @@ static_assert(sizeof(SamplerEntry) == 24);
 static_assert(sizeof(AttributeEntry) == 40);
 static_assert(sizeof(EffectEntry) == 24);
 static_assert(sizeof(EmissionEntry) == 24);
+static_assert(sizeof(FeatureEntry) == 16);
 
 }  // namespace glint::package

@@ -24,6 +24,8 @@
 
 namespace glint {
 
+class SceneEditor;
+
 // What the last GpuScene::update() did. Times are device times in milliseconds; without timestamps on the
 // queue they are 0.
 struct MotionStatistics {
@@ -74,6 +76,10 @@ public:
     // Lists buffers and images by what they hold. allocatedBytes() is the memory that was allocated for them.
     std::vector<MemoryItem> memory() const;
     std::uint64_t allocatedBytes() const;
+
+    // Returns what edits a scene with SceneView::editable (glint/scene_edit.h), or null for other scenes. It
+    // lives as long as the scene.
+    SceneEditor* editor();
 
     // Records the commands that bring a scene with SceneView::moves to another pose. `commands` is a command
     // buffer of the caller's, in the recording state and outside a render pass. The device then computes the

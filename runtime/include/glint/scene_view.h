@@ -144,6 +144,13 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
+    // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
+    bool editable = false;
+    // How many textures and samplers an editable scene may have at a time, those of the upload included. The
+    // pipelines of its renderers are made for these numbers, so they can't grow. A texture takes a descriptor
+    // in each version of the scene's descriptor set.
+    std::uint32_t textureRoom = 1024;
+    std::uint32_t samplerRoom = 64;
 };
 
 // A new pose of a scene. Instances, lights and materials have the same number and order as at upload. Each

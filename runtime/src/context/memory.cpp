@@ -75,6 +75,7 @@ Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tilin
     block.type = type;
     block.tiling = tiling;
     block.bytes = bytes;
+    block.free.push_back({0, bytes});
     if (map) {
         void* mapped = nullptr;
         result = context_->vk.MapMemory(context_->handles.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped);
@@ -99,10 +100,10 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
                          "update the driver or use another device");
     }
     // Linear and optimal resources never share a block, which satisfies bufferImageGranularity.
-    auto block = std::ranges::find_if(blocks_, [&](const Block& candidate) {
+    auto block = std::ranges::find_if(blocks_, [&](Block& candidate) {
         const bool reachable = use == MemoryUse::Device || candidate.mapped != nullptr;
         return candidate.type == *type && candidate.tiling == tiling && reachable &&
-               alignUp(candidate.used, requirements.alignment) + requirements.size <= candidate.bytes;
+               candidate.findRoom(requirements) != candidate.free.end();
     });
     if (block == blocks_.end()) {
         // A block takes at most an eighth of the heap, so that one block does not fill a small heap.
@@ -122,10 +123,45 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
     }
     Allocation allocation;
     allocation.memory = block->memory.get();
-    allocation.offset = alignUp(block->used, requirements.alignment);
+    const auto room = block->findRoom(requirements);
+    allocation.begin = room->begin;
+    allocation.offset = alignUp(room->begin, requirements.alignment);
+    allocation.bytes = allocation.offset + requirements.size - allocation.begin;
     allocation.mapped = block->mapped == nullptr ? nullptr : block->mapped + allocation.offset;
-    block->used = allocation.offset + requirements.size;
+    room->begin += allocation.bytes;
+    if (room->begin == room->end) {
+        block->free.erase(room);
+    }
     return allocation;
+}
+
+std::vector<MemoryPool::Range>::iterator MemoryPool::Block::findRoom(
+    const VkMemoryRequirements& requirements) {
+    return std::ranges::find_if(free, [&](const Range& range) {
+        return alignUp(range.begin, requirements.alignment) + requirements.size <= range.end;
+    });
+}
+
+void MemoryPool::release(const Allocation& allocation) {
+    const auto block = std::ranges::find_if(
+        blocks_, [&](const Block& candidate) { return candidate.memory.get() == allocation.memory; });
+    if (block == blocks_.end() || allocation.bytes == 0) {
+        return;
+    }
+    std::vector<Range>& free = block->free;
+    auto place = std::ranges::lower_bound(free, allocation.begin, {}, &Range::begin);
+    place = free.insert(place, {allocation.begin, allocation.begin + allocation.bytes});
+    if (const auto next = place + 1; next != free.end() && next->begin == place->end) {
+        place->end = next->end;
+        free.erase(next);
+    }
+    if (place != free.begin() && (place - 1)->end == place->begin) {
+        (place - 1)->end = place->end;
+        free.erase(place);
+    }
+    if (free.front().begin == 0 && free.front().end == block->bytes) {
+        blocks_.erase(block);
+    }
 }
 
 VkDeviceSize MemoryPool::bytes() const {

@@ -19,11 +19,14 @@ struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize offset = 0;
     std::uint8_t* mapped = nullptr;
+    // What MemoryPool::release() gives back: from here on, the gap before `offset` included.
+    VkDeviceSize begin = 0;
+    VkDeviceSize bytes = 0;
 };
 
 enum class Tiling { Linear, Optimal };  // tiling of the resource; buffers are linear
 
-// Hands out memory and frees all of it when it is destroyed. The resources that live in it must be destroyed
+// Hands out memory, and frees all of it when it is destroyed. The resources that live in it must be destroyed
 // before.
 class MemoryPool {
 public:
@@ -37,17 +40,28 @@ public:
     // Errors: "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call".
     Result<Allocation> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
 
+    // Takes back memory that it has handed out and that no resource uses any more. A block of which nothing
+    // is left in use is freed. An allocation without memory changes nothing.
+    void release(const Allocation& allocation);
+
     // Returns the size of all allocations, including memory that was not handed out.
     VkDeviceSize bytes() const;
 
 private:
+    struct Range {
+        VkDeviceSize begin = 0;
+        VkDeviceSize end = 0;
+    };
     struct Block {
         UniqueMemory memory;
         std::uint32_t type = 0;
         Tiling tiling = Tiling::Linear;
         VkDeviceSize bytes = 0;
-        VkDeviceSize used = 0;
+        std::vector<Range> free;  // by ascending offset; no two of them touch
         std::uint8_t* mapped = nullptr;
+
+        // Returns the first free range that has room, or none.
+        std::vector<Range>::iterator findRoom(const VkMemoryRequirements& requirements);
     };
     Result<Block> makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes, bool map);
 

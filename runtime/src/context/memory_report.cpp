@@ -1,5 +1,6 @@
 #include "context/memory_report.h"
 
+#include "edit/editor_state.h"
 #include "motion/deformer.h"
 #include "motion/scene_motion.h"
 #include "renderer/renderer_state.h"
@@ -84,6 +85,26 @@ void addMotion(std::vector<MemoryItem>& items, const SceneMotion& motion) {
     addTo(items, "poses on their way", motion.staging);
 }
 
+void addEditor(std::vector<MemoryItem>& items, const SceneEditor::State& editor) {
+    editor.meshes.forEach([&](MeshHandle /*handle*/, const EditedMesh& mesh) {
+        for (const EditedMeshPrimitive& primitive : mesh.primitives) {
+            addTo(items, "vertices and indices", primitive.device.buffer);
+            for (const EditedPart& part : primitive.parts) {
+                addTo(items, "bottom levels", part.blas.buffer);
+            }
+        }
+    });
+    addTo(items, "textures", editor.white);
+    addTo(items, "scratch of structures", editor.tlasScratch.buffer);
+    for (const Buffer& staging : editor.uploader->staging()) {
+        addTo(items, "edits on their way", staging);
+    }
+    if (editor.retired.count() > 0) {
+        add(items,
+            {"retired by edits", MemoryUse::Device, false, editor.retired.count(), editor.retired.bytes()});
+    }
+}
+
 }  // namespace
 
 std::vector<MemoryItem> GpuScene::memory() const {
@@ -114,6 +135,9 @@ std::vector<MemoryItem> GpuScene::memory() const {
     }
     if (state_->motion != nullptr) {
         addMotion(items, *state_->motion);
+    }
+    if (state_->editor != nullptr) {
+        addEditor(items, state_->editor->state());
     }
     return items;
 }

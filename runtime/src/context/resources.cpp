@@ -39,6 +39,7 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     if (result != VK_SUCCESS) {
         return vulkanError("vkBindBufferMemory", result);
     }
+    buffer.memory = *memory;
     buffer.mapped = memory->mapped;
     buffer.use = use;
     VkBufferDeviceAddressInfo address{};
@@ -102,6 +103,7 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     if (result != VK_SUCCESS) {
         return vulkanError("vkBindImageMemory", result);
     }
+    image.memory = *memory;
     if (Status status = createView(context, info, image); !status) {
         return status.error();
     }

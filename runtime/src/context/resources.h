@@ -9,6 +9,7 @@ namespace glint {
 
 struct Buffer {
     UniqueBuffer handle;
+    Allocation memory;
     VkDeviceSize bytes = 0;
     VkDeviceAddress address = 0;
     std::uint8_t* mapped = nullptr;  // null for MemoryUse::Device
@@ -26,6 +27,7 @@ struct DeviceImage {
     VkExtent2D extent{};
     std::uint32_t mips = 1;
     VkDeviceSize bytes = 0;  // size in memory
+    Allocation memory;
 };
 
 struct ImageInfo {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -11,6 +12,8 @@ namespace {
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
 // Copies start at multiples of a texel, and of the alignment that devices prefer.
 constexpr VkDeviceSize kStagingAlignment = 256;
+// The least that a deferred uploader allocates at a time.
+constexpr VkDeviceSize kDeferredStagingBytes = VkDeviceSize{64} << 10;
 
 constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
 constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
@@ -27,7 +30,7 @@ Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
     if (!staging) {
         return staging.error();
     }
-    uploader->staging_ = std::move(*staging);
+    uploader->staging_.push_back(std::move(*staging));
     Result<CommandRunner> runner = CommandRunner::create(context);
     if (!runner) {
         return runner.error();
@@ -36,8 +39,43 @@ Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
     return uploader;
 }
 
+std::unique_ptr<Uploader> Uploader::createDeferred(Context::State& context, MemoryPool& pool) {
+    std::unique_ptr<Uploader> uploader(new Uploader(context));
+    uploader->deferredPool_ = &pool;
+    return uploader;
+}
+
+void Uploader::run(Command command) {
+    if (deferredPool_ != nullptr) {
+        queued_.push_back(std::move(command));
+        return;
+    }
+    command(commands_);
+}
+
+Status Uploader::addStaging(VkDeviceSize bytes) {
+    Result<Buffer> staging =
+        createBuffer(*context_, *deferredPool_, std::clamp(bytes, kDeferredStagingBytes, kStagingBytes),
+                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
+    if (!staging) {
+        return staging.error();
+    }
+    staging_.push_back(std::move(*staging));
+    used_ = 0;
+    return okStatus();
+}
+
+std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
+    for (const Command& command : queued_) {
+        command(commands);
+    }
+    queued_.clear();
+    used_ = 0;
+    return std::exchange(staging_, {});
+}
+
 Status Uploader::start() {
-    if (commands_ == VK_NULL_HANDLE) {
+    if (deferredPool_ == nullptr && commands_ == VK_NULL_HANDLE) {
         Result<VkCommandBuffer> commands = runner_->begin();
         if (!commands) {
             return commands.error();
@@ -62,7 +100,13 @@ Status Uploader::finish() {
 
 Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
     used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
-    if (used_ + unit > kStagingBytes) {
+    if (deferredPool_ != nullptr) {
+        if (staging_.empty() || used_ + unit > staging_.back().bytes) {
+            if (Status status = addStaging(std::max(wanted, unit)); !status) {
+                return status.error();
+            }
+        }
+    } else if (used_ + unit > kStagingBytes) {
         if (Status status = finish(); !status) {
             return status.error();
         }
@@ -70,7 +114,7 @@ Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
     if (Status status = start(); !status) {
         return status.error();
     }
-    const VkDeviceSize room = (kStagingBytes - used_) / unit * unit;
+    const VkDeviceSize room = (staging_.back().bytes - used_) / unit * unit;
     return std::min(wanted, room);
 }
 
@@ -81,9 +125,11 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
         if (!room) {
             return room.error();
         }
-        std::memcpy(staging_.mapped + used_, bytes.data(), *room);
-        const VkBufferCopy region{used_, offset, *room};
-        context_->vk.CmdCopyBuffer(commands_, staging_.handle.get(), target.handle.get(), 1, &region);
+        std::memcpy(staging_.back().mapped + used_, bytes.data(), *room);
+        run([&vk = context_->vk, region = VkBufferCopy{used_, offset, *room},
+             from = staging_.back().handle.get(), to = target.handle.get()](VkCommandBuffer commands) {
+            vk.CmdCopyBuffer(commands, from, to, 1, &region);
+        });
         used_ += *room;
         offset += *room;
         bytes = bytes.subspan(*room);
@@ -91,16 +137,20 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
     return okStatus();
 }
 
+void Uploader::transition(const ImageTransition& transition) {
+    run([context = context_, transition](VkCommandBuffer commands) {
+        recordTransition(*context, commands, transition);
+    });
+}
+
 Status Uploader::startImage(const DeviceImage& target) {
     if (Status status = start(); !status) {
         return status;
     }
-    recordTransition(
-        *context_, commands_,
-        {target.handle.get(),
-         VK_IMAGE_LAYOUT_UNDEFINED,
-         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-         {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+    transition({target.handle.get(),
+                VK_IMAGE_LAYOUT_UNDEFINED,
+                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
     return okStatus();
 }
 
@@ -116,14 +166,16 @@ Status Uploader::copyRows(std::span<const std::uint8_t> texels, std::uint32_t te
             return room.error();
         }
         const auto rows = static_cast<std::uint32_t>(*room / rowBytes);
-        std::memcpy(staging_.mapped + used_, texels.data() + row * rowBytes, *room);
+        std::memcpy(staging_.back().mapped + used_, texels.data() + row * rowBytes, *room);
         VkBufferImageCopy region{};
         region.bufferOffset = used_;
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
         region.imageOffset = {0, static_cast<std::int32_t>(row), 0};
         region.imageExtent = {width, rows, 1};
-        context_->vk.CmdCopyBufferToImage(commands_, staging_.handle.get(), target.handle.get(),
-                                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        run([&vk = context_->vk, region, from = staging_.back().handle.get(),
+             to = target.handle.get()](VkCommandBuffer commands) {
+            vk.CmdCopyBufferToImage(commands, from, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+        });
         used_ += *room;
         row += rows;
     }
@@ -150,14 +202,13 @@ void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
     auto width = static_cast<std::int32_t>(std::max(target.extent.width >> last, 1U));
     auto height = static_cast<std::int32_t>(std::max(target.extent.height >> last, 1U));
     for (std::uint32_t mip = given; mip < target.mips; ++mip) {
-        recordTransition(*context_, commands_,
-                         {image,
-                          VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                          VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                          {kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT, kBlitStages,
-                           VK_ACCESS_2_TRANSFER_READ_BIT},
-                          mip - 1,
-                          1});
+        transition({image,
+                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                    VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                    {kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT, kBlitStages,
+                     VK_ACCESS_2_TRANSFER_READ_BIT},
+                    mip - 1,
+                    1});
         VkImageBlit region{};
         region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
         region.srcOffsets[1] = {width, height, 1};
@@ -165,14 +216,14 @@ void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
         height = std::max(height / 2, 1);
         region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
         region.dstOffsets[1] = {width, height, 1};
-        context_->vk.CmdBlitImage(commands_, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
-                                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+        run([&vk = context_->vk, image, region](VkCommandBuffer commands) {
+            vk.CmdBlitImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
+                            VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
+        });
     }
     const auto recordReadable = [&](VkImageLayout layout, std::uint32_t first, std::uint32_t count) {
         if (count > 0) {
-            recordTransition(
-                *context_, commands_,
-                {image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
+            transition({image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
         }
     };
     // The mips that were blitted from have the source layout, and the others the target layout.

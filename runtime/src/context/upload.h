@@ -4,15 +4,21 @@
 #include "context/commands.h"
 #include "context/resources.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace glint {
 
 class Uploader {
 public:
     static Result<std::unique_ptr<Uploader>> create(Context::State& context);
+    // Returns one that submits nothing: its copies wait for record(). The data is copied into staging memory
+    // of `pool` at once. `pool` must outlive it.
+    static std::unique_ptr<Uploader> createDeferred(Context::State& context, MemoryPool& pool);
 
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
@@ -21,15 +27,38 @@ public:
     // `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage if mips are blitted.
     Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
                        const DeviceImage& target);
-    // Waits until all data is on the device and visible to all commands that are submitted later.
+    // Waits until all data is on the device and visible to all commands that are submitted later. A deferred
+    // one has nothing to finish.
     Status finish();
 
+    // These are for a deferred uploader. Returns how many commands wait.
+    std::size_t waiting() const {
+        return queued_.size();
+    }
+    // Forgets the commands after the first `count`, whose targets are about to be destroyed.
+    void forgetAfter(std::size_t count) {
+        queued_.resize(count);
+    }
+    // Records the waiting commands. Returns the staging buffers that they read, which the caller must keep
+    // until the device has completed them. The targets are then to be made visible to their readers.
+    std::vector<Buffer> record(VkCommandBuffer commands);
+    // The staging buffers of commands that wait.
+    const std::vector<Buffer>& staging() const {
+        return staging_;
+    }
+
 private:
+    using Command = std::function<void(VkCommandBuffer)>;
     explicit Uploader(Context::State& context) : context_(&context), pool_(context) {}
+    // Records the command now, or keeps it if the uploader is deferred.
+    void run(Command command);
+    // Makes staging memory for at least `bytes` the current one of a deferred uploader.
+    Status addStaging(VkDeviceSize bytes);
     // Returns room for at least `unit` and at most `wanted` bytes. If there is too little, it submits the
     // pending copies to make room.
     Result<VkDeviceSize> reserve(VkDeviceSize wanted, VkDeviceSize unit);
     Status start();
+    void transition(const ImageTransition& transition);
     // Moves all mips to TRANSFER_DST_OPTIMAL.
     Status startImage(const DeviceImage& target);
     Status copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes, const DeviceImage& target,
@@ -39,7 +68,9 @@ private:
 
     Context::State* context_;
     MemoryPool pool_;
-    Buffer staging_;
+    MemoryPool* deferredPool_ = nullptr;  // null unless the uploader is deferred
+    std::vector<Buffer> staging_;         // the last one is filled
+    std::vector<Command> queued_;
     std::unique_ptr<CommandRunner> runner_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;  // null between recordings
     VkDeviceSize used_ = 0;

@@ -106,6 +106,16 @@ const package::EmissionEntry* Package::emission() const {
     return state_->emission.empty() ? nullptr : state_->emission.data();
 }
 
+std::vector<std::string> Package::featureNames(std::uint64_t features) const {
+    std::vector<std::string> names;
+    for (const package::FeatureEntry& entry : state_->features) {
+        if ((features & entry.mask) != 0) {
+            names.emplace_back(string(entry.name));
+        }
+    }
+    return names;
+}
+
 std::uint32_t Package::caseCount() const {
     return state_->header.caseCount;
 }

@@ -320,6 +320,15 @@ Status checkAttributes(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+Status checkFeatures(const Package::State& state, const std::string& where) {
+    for (const package::FeatureEntry& entry : state.features) {
+        if (!std::has_single_bit(entry.mask) || !inStrings(state, entry.name)) {
+            return altered(where, "the name of a feature is not well formed");
+        }
+    }
+    return okStatus();
+}
+
 Status checkEffects(const Package::State& state, const std::string& where) {
     package::Effect last = 0;
     for (const package::EffectEntry& entry : state.effectEntries) {
@@ -367,7 +376,7 @@ Status checkTables(Package::State& state, const std::string& where) {
         state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
     }
     for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkSamplers,
-                             checkAttributes}) {
+                             checkAttributes, checkFeatures}) {
         if (Status status = check(state, where); !status) {
             return status;
         }

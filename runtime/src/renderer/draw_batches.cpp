@@ -29,6 +29,7 @@ std::vector<DrawBatch> batchDraws(std::span<const Draw> draws) {
         std::size_t end = first + stride;
         while (
             end < draws.size() && endOfInstance(draws, end) - end == stride &&
+            draws[end].geometry == draws[end - stride].geometry + stride &&
             std::equal(own.begin(), own.end(), draws.begin() + static_cast<std::ptrdiff_t>(end), isAlike)) {
             end += stride;
         }

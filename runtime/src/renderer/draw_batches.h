@@ -19,9 +19,9 @@ struct DrawBatch {
     bool mirrored = false;
 };
 
-// Joins draws into batches whose instances follow each other and have the same primitives. Batches are in the
-// order of their first draws. Hidden draws are left out. `draws` are those of SceneLayout, instance by
-// instance. Pure; O(draws).
+// Joins draws into batches whose instances and geometry records follow each other and have the same
+// primitives. Batches are in the order of their first draws. Hidden draws are left out. `draws` are those of
+// SceneLayout, instance by instance. Pure; O(draws).
 std::vector<DrawBatch> batchDraws(std::span<const Draw> draws);
 
 }  // namespace glint

@@ -33,6 +33,8 @@ std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<c
             {bytesOf(attributes), &GpuPrimitive::attributes}};
 }
 
+}  // namespace
+
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                      const PrimitiveView& view, std::span<const std::uint32_t> indices,
                                      std::span<const float> declared) {
@@ -92,6 +94,8 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
     record.attributes = primitive.attributes;
     return record;
 }
+
+namespace {
 
 // The parts of each mesh that has triangles, as indices into SceneLayout::parts.
 using PartsOfMesh = std::map<std::uint32_t, std::vector<std::uint32_t>>;
@@ -192,6 +196,11 @@ std::vector<float> joinAttributes(const Package& package, const package::Primiti
     if (std::ranges::none_of(known, [&](const auto& row) { return (row.feature & key) != 0; })) {
         return {};
     }
+    return joinAllAttributes(package, view);
+}
+
+std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view) {
+    const std::span<const package::AttributeEntry> known = package.attributes();
     std::size_t stride = 0;
     for (const package::AttributeEntry& row : known) {
         stride += row.channels;

@@ -38,6 +38,16 @@ struct GpuPrimitive {
 std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
                                   const PrimitiveView& view);
 
+// Returns the same, whatever a key reads. The primitive may lack attributes; their fallback then stands for
+// them, or 0.
+std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
+
+// Queues the copies in `uploader`. `declared` are the joined attributes. A primitive without triangles gets
+// no buffer.
+Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                     const PrimitiveView& view, std::span<const std::uint32_t> indices,
+                                     std::span<const float> declared);
+
 // Queues the copies in `uploader`. Primitives without triangles get no buffer. `ordered` holds the indices of
 // each primitive in another order of its triangles; if it is empty, the primitives' own indices are used.
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
@@ -45,6 +55,10 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
                                                    const PackageScene& known,
                                                    std::span<const PrimitiveView> primitives,
                                                    std::span<const std::vector<std::uint32_t>> ordered = {});
+
+// Makes the record of a geometry: triangles of `primitive` from `firstTriangle` on.
+gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
+                                       std::uint32_t firstTriangle, std::uint32_t instance);
 
 // The deformed vertices of one primitive of one instance. The address of an attribute that it lacks is 0.
 struct DeformedVertices {

@@ -1,4 +1,5 @@
 // GpuScene: the steps of an upload.
+#include "edit/editor_state.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/instance_math.h"
@@ -263,7 +264,8 @@ VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstan
 Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
                                                    const SceneView& scene) {
     Context::State& contextState = context.state();
-    if (scene.packageScene >= package.sceneCount()) {
+    const bool hasNothing = scene.editable && scene.packageScene == kNoPackageScene;
+    if (!hasNothing && scene.packageScene >= package.sceneCount()) {
         return makeError("scene-package", "",
                          "scene " + std::to_string(scene.packageScene) +
                              " is not in the package, which has " + std::to_string(package.sceneCount()),
@@ -284,11 +286,17 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
                          "create it with VkPhysicalDeviceVulkan12Features::shaderFloat16 and set "
                          "DeviceHandles::shaderFloat16, or compile with --precision 32");
     }
-    const PackageScene known = package.scene(scene.packageScene);
+    const PackageScene known = hasNothing ? PackageScene{} : package.scene(scene.packageScene);
     if (Status s = checkScene(package, known, scene, contextState.limits.core.maxImageDimension2D); !s) {
         return s.error();
     }
     auto state = std::make_unique<State>(contextState);
+    if (scene.editable) {
+        if (Status s = uploadEditable(*state, package, known, scene); !s) {
+            return s.error();
+        }
+        return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
+    }
     SceneLayout layout;
     std::unique_ptr<Deformer> deformer;
     if (Status s = uploadData(*state, package, scene, layout, deformer); !s) {
@@ -327,6 +335,10 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
 GpuScene::~GpuScene() = default;
+
+SceneEditor* GpuScene::editor() {
+    return state_->editor.get();
+}
 
 VkDescriptorSet GpuScene::descriptorSet() const {
     return state_->set;

@@ -13,6 +13,7 @@
 #include "scene/traversal_order.h"
 
 #include <glint/renderer.h>
+#include <glint/scene_edit.h>
 
 #include <cstdint>
 #include <memory>
@@ -53,6 +54,9 @@ struct GpuScene::State {
     Buffer firstEmitters;
     std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
+    // How many of both the set's layout has; 0: as many as there are.
+    std::uint32_t textureRoom = 0;
+    std::uint32_t samplerRoom = 0;
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
@@ -64,10 +68,23 @@ struct GpuScene::State {
     MaterialTable materialLayout;  // without records
     Statistics statistics;
     std::unique_ptr<SceneMotion> motion;  // null if the scene does not move
+    // Null if the scene can't be edited. An editable scene has its primitives, BLASes and draws in the
+    // editor, and here what the renderer reads.
+    std::unique_ptr<SceneEditor> editor;
 };
 
 // Creates the layout, the pool and set 0. The set is filled from the state's structures, textures and
 // samplers.
 Status createSceneSet(GpuScene::State& state);
+
+// These are its parts. A set of its own pool, so that older ones can stay with the frames that use them:
+struct SceneSet {
+    UniqueDescriptorPool pool;
+    VkDescriptorSet set = VK_NULL_HANDLE;
+};
+Status createSetLayout(GpuScene::State& state);
+// `absent` is bound where a texture has no image, and where there is no texture at all.
+Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
+                              VkImageView absent);
 
 }  // namespace glint

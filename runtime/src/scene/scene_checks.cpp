@@ -34,14 +34,18 @@ std::array<Attribute, 5> namedAttributes(const PrimitiveView& view) {
              {"colors", view.colors.size(), kInputVertexColor}}};
 }
 
+Diagnostic wrongCount(const Attribute& attribute, const PrimitiveView& view, const std::string& where) {
+    return makeError("scene-attribute", where,
+                     std::string(attribute.name) + " has " + std::to_string(attribute.count) +
+                         " elements for " + std::to_string(view.positions.size()) + " positions",
+                     "leave the span empty or make it as long as positions");
+}
+
 Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry& entry,
                        const std::string& where) {
     for (const Attribute& attribute : namedAttributes(view)) {
         if (attribute.count != 0 && attribute.count != view.positions.size()) {
-            return makeError("scene-attribute", where,
-                             std::string(attribute.name) + " has " + std::to_string(attribute.count) +
-                                 " elements for " + std::to_string(view.positions.size()) + " positions",
-                             "leave the span empty or make it as long as positions");
+            return wrongCount(attribute, view, where);
         }
         const bool needed = (entry.featureInputs & attribute.input) != 0;
         if (needed && attribute.count == 0 && !view.positions.empty()) {
@@ -162,38 +166,52 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
                 "the package refers to this image, the scene has " + std::to_string(images.size()),
                 kSameScene);
         }
-        const ImageView& image = images[texture.image];
-        if (image.width == 0 || image.height == 0 || image.width > maxImageSize ||
-            image.height > maxImageSize) {
-            return makeError("scene-image", where,
-                             "the image is " + std::to_string(image.width) + " x " +
-                                 std::to_string(image.height) + " pixels, the device takes 1 to " +
-                                 std::to_string(maxImageSize),
-                             "scale the image");
-        }
-        if (image.format > ImageView::Format::Rgba16) {
-            return makeError("scene-image", where, "the image has an unknown format",
-                             "use a value of ImageView::Format");
-        }
-        const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
-        if (image.levels == 0 || image.levels > most) {
-            return makeError("scene-image", where,
-                             "the image has " + std::to_string(image.levels) +
-                                 " levels, its size takes 1 to " + std::to_string(most),
-                             "give the levels that there are");
-        }
-        if (image.pixels.size() != image.byteCount(image.levels)) {
-            return makeError("scene-image", where,
-                             std::to_string(image.pixels.size()) + " bytes do not make " +
-                                 std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
-                                 " x " + std::to_string(image.height) + " RGBA pixels",
-                             "give " + std::to_string(image.bytesPerPixel()) + " bytes a pixel");
+        if (Status status = checkImage(images[texture.image], where, maxImageSize); !status) {
+            return status;
         }
     }
     return okStatus();
 }
 
 }  // namespace
+
+Status checkImage(const ImageView& image, const std::string& where, std::uint32_t maxImageSize) {
+    if (image.width == 0 || image.height == 0 || image.width > maxImageSize || image.height > maxImageSize) {
+        return makeError("scene-image", where,
+                         "the image is " + std::to_string(image.width) + " x " +
+                             std::to_string(image.height) + " pixels, the device takes 1 to " +
+                             std::to_string(maxImageSize),
+                         "scale the image");
+    }
+    if (image.format > ImageView::Format::Rgba16) {
+        return makeError("scene-image", where, "the image has an unknown format",
+                         "use a value of ImageView::Format");
+    }
+    const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+    if (image.levels == 0 || image.levels > most) {
+        return makeError("scene-image", where,
+                         "the image has " + std::to_string(image.levels) + " levels, its size takes 1 to " +
+                             std::to_string(most),
+                         "give the levels that there are");
+    }
+    if (image.pixels.size() != image.byteCount(image.levels)) {
+        return makeError("scene-image", where,
+                         std::to_string(image.pixels.size()) + " bytes do not make " +
+                             std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
+                             " x " + std::to_string(image.height) + " RGBA pixels",
+                         "give " + std::to_string(image.bytesPerPixel()) + " bytes a pixel");
+    }
+    return okStatus();
+}
+
+Status checkGeometry(const PrimitiveView& view, const std::string& where) {
+    for (const Attribute& attribute : namedAttributes(view)) {
+        if (attribute.count != 0 && attribute.count != view.positions.size()) {
+            return wrongCount(attribute, view, where);
+        }
+    }
+    return checkIndices(view, where);
+}
 
 Status checkLights(std::span<const LightView> lights) {
     for (const LightView& light : lights) {

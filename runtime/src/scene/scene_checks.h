@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace glint {
 
@@ -41,6 +42,13 @@ struct MotionShape {
 
 // Pure. Errors: "scene-motion", "scene-light".
 Status checkMotion(const MotionView& motion, const MotionShape& shape);
+
+// Checks the size, the levels and the number of bytes of an image. Error "scene-image".
+Status checkImage(const ImageView& image, const std::string& where, std::uint32_t maxImageSize);
+
+// Checks the indices of a primitive, and that its attributes are as many as its positions. Errors:
+// "scene-attribute", "scene-index".
+Status checkGeometry(const PrimitiveView& view, const std::string& where);
 
 // Checks that every light is finite and of a known type. Error "scene-light".
 Status checkLights(std::span<const LightView> lights);

@@ -14,23 +14,22 @@ Diagnostic fault(const MaterialView& view, const char* what) {
                      "give records of the package's materials, by ascending number, the same at each update");
 }
 
-// Takes all values except the choice of textures and samplers, their sizes and UV sets. `record` is the
-// record of the material in `table`.
-void takeValues(const MaterialView& view, const MaterialTable& table, std::span<std::uint8_t> record) {
-    std::vector<std::uint8_t> taken(view.record.begin(), view.record.end());
-    const MaterialTable given{view.record, table.recordBytes, table.textureOffset, table.textureCount};
+}  // namespace
+
+void takeValues(std::span<const std::uint8_t> values, const MaterialTable& table,
+                std::span<std::uint8_t> record) {
+    std::vector<std::uint8_t> taken(values.begin(), values.end());
+    const MaterialTable given{values, table.recordBytes, table.textureOffset, table.textureCount};
     const MaterialTable kept{record, table.recordBytes, table.textureOffset, table.textureCount};
     for (std::uint32_t slot = 0; slot < table.textureCount; ++slot) {
-        const gpu::TextureRecord values = textureAt(given, 0, slot);
+        const gpu::TextureRecord wanted = textureAt(given, 0, slot);
         gpu::TextureRecord texture = textureAt(kept, 0, slot);
-        texture.rowU = values.rowU;
-        texture.rowV = values.rowV;
+        texture.rowU = wanted.rowU;
+        texture.rowV = wanted.rowV;
         std::memcpy(&taken[placeOfTexture(given, 0, slot)], &texture, sizeof texture);
     }
     std::ranges::copy(taken, record.begin());
 }
-
-}  // namespace
 
 Result<std::vector<ChangingMaterial>> replaceMaterials(std::span<const MaterialView> views,
                                                        const MaterialTable& table,
@@ -48,7 +47,7 @@ Result<std::vector<ChangingMaterial>> replaceMaterials(std::span<const MaterialV
         }
         const std::span<std::uint8_t> record =
             records.subspan(std::size_t{view.material} * table.recordBytes, table.recordBytes);
-        takeValues(view, table, record);
+        takeValues(view.record, table, record);
         changing.push_back({view.material, {record.begin(), record.end()}});
     }
     return changing;
@@ -69,7 +68,7 @@ Status takeMaterials(std::span<const MaterialView> views, const MaterialTable& t
         }
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
-        takeValues(views[i], table, changing[i].record);
+        takeValues(views[i].record, table, changing[i].record);
     }
     return okStatus();
 }

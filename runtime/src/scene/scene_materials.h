@@ -17,6 +17,11 @@ struct ChangingMaterial {
     std::vector<std::uint8_t> record;
 };
 
+// Takes all values except the choice of textures and samplers, their sizes and UV sets. `values` and `record`
+// are records of the layout of `table`, whose own records are not read.
+void takeValues(std::span<const std::uint8_t> values, const MaterialTable& table,
+                std::span<std::uint8_t> record);
+
 // Writes the values of `views` into the records that they name; `records` has the bytes of `table`, which
 // gives their layout. Each record keeps its textures and samplers, which the host can't name. Error
 // "scene-material": a material does not exist, is out of order or has another size.

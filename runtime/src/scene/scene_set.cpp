@@ -3,7 +3,9 @@
 #include "interop/frame.h"
 #include "scene/gpu_scene_state.h"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -11,8 +13,10 @@ namespace {
 constexpr std::size_t kBindings = 3;
 
 std::array<VkDescriptorSetLayoutBinding, kBindings> makeBindings(const GpuScene::State& state) {
-    const auto textures = static_cast<std::uint32_t>(state.textures.size());
-    const auto samplers = static_cast<std::uint32_t>(state.samplers.size());
+    const std::uint32_t textures =
+        std::max(state.textureRoom, static_cast<std::uint32_t>(state.textures.size()));
+    const std::uint32_t samplers =
+        std::max(state.samplerRoom, static_cast<std::uint32_t>(state.samplers.size()));
     const VkShaderStageFlags stages = VK_SHADER_STAGE_FRAGMENT_BIT | passStages(state.context);
     return {
         {{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kTlasCapacity, stages, nullptr},
@@ -20,16 +24,23 @@ std::array<VkDescriptorSetLayoutBinding, kBindings> makeBindings(const GpuScene:
          {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers, stages, nullptr}}};
 }
 
-Status createLayout(GpuScene::State& state) {
+}  // namespace
+
+Status createSetLayout(GpuScene::State& state) {
     const auto bindings = makeBindings(state);
-    // Update-after-bind gives higher limits: devices that otherwise see 16 textures then see 500,000.
-    constexpr VkDescriptorBindingFlags kFlags[kBindings] = {VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT,
-                                                            VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT,
-                                                            VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT};
+    // Update-after-bind gives higher limits: devices that otherwise see 16 textures then see 500,000. A scene
+    // with room has places without a texture or sampler.
+    VkDescriptorBindingFlags room = 0;
+    if (state.textureRoom > 0) {
+        room = VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT;
+    }
+    const VkDescriptorBindingFlags arrays = VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT | room;
+    const VkDescriptorBindingFlags bindingFlags[kBindings] = {VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT,
+                                                              arrays, arrays};
     VkDescriptorSetLayoutBindingFlagsCreateInfo flags{};
     flags.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO;
     flags.bindingCount = kBindings;
-    flags.pBindingFlags = kFlags;
+    flags.pBindingFlags = bindingFlags;
     VkDescriptorSetLayoutCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
     info.pNext = &flags;
@@ -46,7 +57,9 @@ Status createLayout(GpuScene::State& state) {
     return okStatus();
 }
 
-Status allocateSet(GpuScene::State& state) {
+namespace {
+
+Result<SceneSet> allocateSet(const GpuScene::State& state) {
     std::array<VkDescriptorPoolSize, kBindings> sizes{};
     const auto bindings = makeBindings(state);
     for (std::size_t i = 0; i < kBindings; ++i) {
@@ -64,49 +77,52 @@ Status allocateSet(GpuScene::State& state) {
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateDescriptorPool", result);
     }
-    state.descriptorPool = UniqueDescriptorPool(state.context, pool);
+    SceneSet set{UniqueDescriptorPool(state.context, pool), VK_NULL_HANDLE};
     const VkDescriptorSetLayout layout = state.setLayout.get();
     VkDescriptorSetAllocateInfo setInfo{};
     setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
     setInfo.descriptorPool = pool;
     setInfo.descriptorSetCount = 1;
     setInfo.pSetLayouts = &layout;
-    result = state.context.vk.AllocateDescriptorSets(device, &setInfo, &state.set);
+    result = state.context.vk.AllocateDescriptorSets(device, &setInfo, &set.set);
     if (result != VK_SUCCESS) {
         return vulkanError("vkAllocateDescriptorSets", result);
     }
-    return okStatus();
+    return set;
 }
 
-VkWriteDescriptorSet writeOf(const GpuScene::State& state, std::uint32_t binding, VkDescriptorType type,
+VkWriteDescriptorSet writeOf(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
                              std::size_t count) {
     VkWriteDescriptorSet write{};
     write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = state.set;
+    write.dstSet = set;
     write.dstBinding = binding;
     write.descriptorCount = static_cast<std::uint32_t>(count);
     write.descriptorType = type;
     return write;
 }
 
-void fillSet(const GpuScene::State& state) {
-    const VkAccelerationStructureKHR tlas = state.tlas.handle.get();
+void fillSet(const GpuScene::State& state, VkDescriptorSet set, VkAccelerationStructureKHR tlas,
+             VkImageView absent) {
     VkWriteDescriptorSetAccelerationStructureKHR structures{};
     structures.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
     structures.accelerationStructureCount = 1;
     structures.pAccelerationStructures = &tlas;
     std::vector<VkDescriptorImageInfo> textures;
     for (const DeviceImage& texture : state.textures) {
-        textures.push_back({VK_NULL_HANDLE, texture.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+        const VkImageView view = texture.view.get() == VK_NULL_HANDLE ? absent : texture.view.get();
+        textures.push_back({VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    }
+    if (textures.empty()) {
+        textures.push_back({VK_NULL_HANDLE, absent, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     }
     std::vector<VkDescriptorImageInfo> samplers;
     for (const UniqueSampler& sampler : state.samplers) {
         samplers.push_back({sampler.get(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED});
     }
-    std::array writes{
-        writeOf(state, gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1),
-        writeOf(state, gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures.size()),
-        writeOf(state, gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers.size())};
+    std::array writes{writeOf(set, gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1),
+                      writeOf(set, gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures.size()),
+                      writeOf(set, gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers.size())};
     writes[0].pNext = &structures;
     writes[1].pImageInfo = textures.data();
     writes[2].pImageInfo = samplers.data();
@@ -116,14 +132,25 @@ void fillSet(const GpuScene::State& state) {
 
 }  // namespace
 
+Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
+                              VkImageView absent) {
+    Result<SceneSet> set = allocateSet(state);
+    if (set) {
+        fillSet(state, set->set, tlas, absent);
+    }
+    return set;
+}
+
 Status createSceneSet(GpuScene::State& state) {
-    if (Status status = createLayout(state); !status) {
+    if (Status status = createSetLayout(state); !status) {
         return status;
     }
-    if (Status status = allocateSet(state); !status) {
-        return status;
+    Result<SceneSet> set = makeSceneSet(state, state.tlas.handle.get(), VK_NULL_HANDLE);
+    if (!set) {
+        return set.error();
     }
-    fillSet(state);
+    state.descriptorPool = std::move(set->pool);
+    state.set = set->set;
     return okStatus();
 }
 

@@ -10,10 +10,6 @@
 #include <string>
 
 namespace glint {
-namespace {
-
-// The texture of a slot that names none. White leaves a factor unchanged.
-constexpr std::uint8_t kWhite[] = {255, 255, 255, 255};
 
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                   const ImageView& image, bool srgb) {
@@ -49,6 +45,8 @@ Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Upl
     return texture;
 }
 
+namespace {
+
 VkSamplerAddressMode addressMode(std::uint32_t wrap) {
     constexpr VkSamplerAddressMode kModes[] = {VK_SAMPLER_ADDRESS_MODE_REPEAT,
                                                VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -59,6 +57,8 @@ VkSamplerAddressMode addressMode(std::uint32_t wrap) {
 VkFilter filter(std::uint32_t linear) {
     return linear != 0 ? VK_FILTER_LINEAR : VK_FILTER_NEAREST;
 }
+
+}  // namespace
 
 // A file that asks for nearest texels, or for no mips, gets those.
 float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry) {
@@ -93,8 +93,6 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
     return UniqueSampler(context, sampler);
 }
 
-}  // namespace
-
 Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                                 std::span<const package::TextureEntry> textures,
                                                 std::span<const ImageView> images) {
@@ -114,7 +112,7 @@ Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryP
         uploaded.push_back(std::move(*image));
     }
     if (uploaded.empty()) {
-        Result<DeviceImage> image = uploadTexture(context, pool, uploader, {1, 1, kWhite}, false);
+        Result<DeviceImage> image = uploadTexture(context, pool, uploader, {1, 1, kWhiteTexel}, false);
         if (!image) {
             return image.error();
         }

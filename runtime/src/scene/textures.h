@@ -14,6 +14,17 @@
 
 namespace glint {
 
+// The texture of a slot that names none. White leaves a factor unchanged.
+inline constexpr std::uint8_t kWhiteTexel[] = {255, 255, 255, 255};
+
+// Makes an image with all mips. Queues the copies in `uploader`.
+Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                  const ImageView& image, bool srgb);
+
+Result<UniqueSampler> createSampler(Context::State& context, const package::SamplerEntry& entry);
+// Returns the maximum anisotropy of that sampler.
+float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry);
+
 // Makes one image with all mips for each TextureEntry, in their order. There is at least one image, so that
 // the array is never empty. 16-bit images become 16-bit linear textures if the device can use those. Queues
 // the copies in `uploader`. Error "scene-textures": there are more than a shader of this device can see.

@@ -271,6 +271,11 @@ Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const
 
 Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) {
     const GpuScene::State& given = scene.state();
+    if (given.editor != nullptr) {
+        return makeError("scene-edit-share", "",
+                         "the scene can be edited, and its records then move to other addresses",
+                         "upload it without SceneView::editable");
+    }
     auto state = std::make_unique<State>(context.state());
     state->addresses = {given.geometries.address, given.instances.address, given.instances.address,
                         given.materials.address,  given.lights.address,    0};

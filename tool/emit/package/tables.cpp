@@ -85,20 +85,6 @@ private:
     base::Bytes content_;
 };
 
-std::uint32_t geometryFlags(const materials::Material& material, const materials::PrimitiveInputs& inputs,
-                            materials::FeatureMask key, const CompileSettings& settings, bool emits) {
-    const package::AlphaPolicy alpha = settings.plan.keys.alpha;
-    const bool tested =
-        alpha != package::AlphaPolicy::Opaque && (key & material.model().mask("alphaMask")) != 0;
-    const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
-    const bool passes =
-        settings.shadowThrough == package::ShadowThrough::Glass && (blended || passesLight(material, inputs));
-    return (tested ? gpu::kGeometryAlphaTested : 0U) | (passes ? gpu::kGeometryPassesLight : 0U) |
-           (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
-           (material.alphaMode == materials::AlphaMode::Mask || blended ? gpu::kGeometryMasked : 0U) |
-           (blended ? gpu::kGeometryBlended : 0U) | (emits ? gpu::kGeometryEmitter : 0U);
-}
-
 std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::SceneList::Range range,
                                            const Plan& plan, const CompileSettings& settings) {
     std::vector<PrimitiveEntry> entries;
@@ -115,7 +101,9 @@ std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::
         entry.featureLobes = static_cast<std::uint32_t>(primary & materials::kLobeMask);
         entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
         const bool emits = settings.emissiveLights == EmissiveLights::On && isEmitter(material, inputs);
-        entry.geometryFlags = geometryFlags(material, inputs, key.mask, settings, emits);
+        entry.geometryFlags =
+            geometryFlags(material, inputs, key.mask, settings.plan.keys.alpha, settings.shadowThrough) |
+            (emits ? gpu::kGeometryEmitter : 0U);
         entry.alphaMode = static_cast<std::uint32_t>(material.alphaMode);
         entries.push_back(entry);
     }
@@ -141,6 +129,14 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
         std::ranges::copy(attribute.fallback.value_or(std::array<float, 4>{}), entry.fallback);
         entry.feature = feature;
         entries.push_back(entry);
+    }
+    return entries;
+}
+
+std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, StringTable& strings) {
+    std::vector<FeatureEntry> entries;
+    for (const materials::Feature& feature : model.features) {
+        entries.push_back({feature.mask(), strings.add(feature.name)});
     }
     return entries;
 }
@@ -175,11 +171,7 @@ std::vector<EffectEntry> makeEffects(const Plan& plan, StringTable& strings) {
 std::vector<SamplerEntry> makeSamplers(const gltf::Scene& scene) {
     std::vector<SamplerEntry> entries;
     for (const gltf::Sampler& sampler : scene.samplers) {
-        entries.push_back({static_cast<std::uint32_t>(sampler.wrapU),
-                           static_cast<std::uint32_t>(sampler.wrapV),
-                           static_cast<std::uint32_t>(sampler.magnification),
-                           static_cast<std::uint32_t>(sampler.minification),
-                           static_cast<std::uint32_t>(sampler.mip), sampler.mipmapped ? 1U : 0U});
+        entries.push_back(samplerEntry(sampler));
     }
     return entries;
 }
@@ -211,6 +203,24 @@ bool within(int index, std::size_t count) {
 }
 
 }  // namespace
+
+SamplerEntry samplerEntry(const gltf::Sampler& sampler) {
+    return {
+        static_cast<std::uint32_t>(sampler.wrapU),         static_cast<std::uint32_t>(sampler.wrapV),
+        static_cast<std::uint32_t>(sampler.magnification), static_cast<std::uint32_t>(sampler.minification),
+        static_cast<std::uint32_t>(sampler.mip),           sampler.mipmapped ? 1U : 0U};
+}
+
+std::uint32_t geometryFlags(const materials::Material& material, const materials::PrimitiveInputs& inputs,
+                            materials::FeatureMask hitKey, AlphaPolicy alpha, ShadowThrough through) {
+    const bool tested = alpha != AlphaPolicy::Opaque && (hitKey & material.model().mask("alphaMask")) != 0;
+    const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
+    const bool passes = through == ShadowThrough::Glass && (blended || passesLight(material, inputs));
+    return (tested ? gpu::kGeometryAlphaTested : 0U) | (passes ? gpu::kGeometryPassesLight : 0U) |
+           (material.doubleSided ? gpu::kGeometryDoubleSided : 0U) |
+           (material.alphaMode == materials::AlphaMode::Mask || blended ? gpu::kGeometryMasked : 0U) |
+           (blended ? gpu::kGeometryBlended : 0U);
+}
 
 Status checkScene(const gltf::Scene& scene) {
     for (std::size_t i = 0; i < scene.textures.size(); ++i) {
@@ -270,6 +280,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
 
     const std::vector<AttributeEntry> attributes = makeAttributes(plan, strings);
     const std::vector<EffectEntry> effects = makeEffects(plan, strings);
+    const std::vector<FeatureEntry> features = makeFeatures(*plan.model, strings);
     TableWriter writer;
     writer.add(SectionKind::Modules, moduleEntries);
     writer.add(SectionKind::Materials, layout.bytes, tables.materials);
@@ -281,6 +292,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Cases, cases);
     writer.add(SectionKind::Attributes, attributes);
     writer.add(SectionKind::Effects, effects);
+    writer.add(SectionKind::Features, features);
     if (settings.emissiveLights == EmissiveLights::On) {
         writer.add(SectionKind::Emission, std::vector{emissionOf(layout)});
     }

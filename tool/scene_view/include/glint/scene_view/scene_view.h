@@ -65,6 +65,10 @@ struct SceneViewData {
 // the runtime refuses them.
 SceneViewData makeSceneView(const gltf::Scene& scene);
 
+// Returns the layout of the package's material records. `model` is that of the materials which it was
+// compiled from.
+compiler::MaterialLayout recordLayoutOf(const Package& package, const materials::MaterialModel& model);
+
 // Makes records of materials in the layout of `package`, whose scene `scene` is. A scene with materials that
 // animations change needs this before it is uploaded.
 void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data);

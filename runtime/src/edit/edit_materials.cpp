@@ -1,0 +1,379 @@
+// SceneEditor: textures and materials.
+#include "edit/editor_state.h"
+#include "scene/material_table.h"
+#include "scene/scene_checks.h"
+#include "scene/textures.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+namespace glint {
+namespace {
+
+bool isSame(const package::SamplerEntry& a, const package::SamplerEntry& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+bool isKnown(const package::SamplerEntry& entry) {
+    return entry.wrapU <= 2 && entry.wrapV <= 2 && entry.magnification <= 1 && entry.minification <= 1 &&
+           entry.mip <= 1 && entry.mipmapped <= 1;
+}
+
+Diagnostic badValue(const std::string& where, std::string message, const char* hint) {
+    return makeError("scene-edit-value", where, std::move(message), hint);
+}
+
+Status checkUse(const SceneEditor::State& state, const TextureUse& use, const std::string& where) {
+    if (state.textures.find(use.texture) == nullptr) {
+        return unknownHandle("texture");
+    }
+    if (use.slot >= state.layout.textureCount || use.texCoord > 1 || !isKnown(use.sampler)) {
+        return badValue(where,
+                        "a texture has a slot that records lack, a UV set above 1 or an unknown sampler",
+                        "use the slots of the package's records");
+    }
+    return okStatus();
+}
+
+// Checks what a source says by itself.
+Status checkSource(const SceneEditor::State& state, const MaterialSource& source, const std::string& where) {
+    if (source.record.size() != state.layout.recordBytes) {
+        return badValue(where,
+                        "the record has " + std::to_string(source.record.size()) +
+                            " bytes, those of the package have " + std::to_string(state.layout.recordBytes),
+                        "make the record in the package's layout");
+    }
+    for (const TextureUse& use : source.textures) {
+        if (Status status = checkUse(state, use, where); !status) {
+            return status;
+        }
+    }
+    for (const MaterialKey& key : source.keys) {
+        if (Status status = state.cases.checkAttributes(key, where); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+// Writes into a record which textures it has, as far as records know that.
+void settleTextures(const SceneEditor::State& state, std::span<const TextureUse> uses,
+                    std::span<const std::uint32_t> samplers, std::span<std::uint8_t> record) {
+    const MaterialTable table{record, state.layout.recordBytes, state.layout.textureOffset,
+                              state.layout.textureCount};
+    for (std::uint32_t slot = 0; slot < table.textureCount; ++slot) {
+        gpu::TextureRecord settled = textureAt(table, 0, slot);
+        settled.textureIndex = 0;
+        settled.samplerIndex = 0;
+        settled.texCoord = 0;
+        settled.texels = {};
+        settled.anisotropy = 1.0F;
+        for (std::size_t i = 0; i < uses.size(); ++i) {
+            if (uses[i].slot == slot) {
+                const EditedTexture& texture = *state.textures.find(uses[i].texture);
+                settled.textureIndex = uses[i].texture.index;
+                settled.samplerIndex = samplers[i];
+                settled.texCoord = uses[i].texCoord;
+                settled.texels = {static_cast<float>(texture.width), static_cast<float>(texture.height)};
+                settled.anisotropy = anisotropyOf(state.scene.context, uses[i].sampler);
+            }
+        }
+        std::memcpy(&record[placeOfTexture(table, 0, slot)], &settled, sizeof settled);
+    }
+}
+
+Result<std::vector<std::uint8_t>> makeRecord(SceneEditor::State& state, const MaterialSource& source) {
+    std::vector<std::uint32_t> samplers;
+    for (const TextureUse& use : source.textures) {
+        Result<std::uint32_t> sampler = samplerIndex(state, use.sampler);
+        if (!sampler) {
+            return sampler.error();
+        }
+        samplers.push_back(*sampler);
+    }
+    std::vector<std::uint8_t> record(source.record.begin(), source.record.end());
+    settleTextures(state, source.textures, samplers, record);
+    return record;
+}
+
+void countUses(SceneEditor::State& state, std::span<const TextureUse> uses, bool adds) {
+    for (const TextureUse& use : uses) {
+        std::uint32_t& count = state.textures.find(use.texture)->uses;
+        count = adds ? count + 1 : count - 1;
+    }
+}
+
+// Makes an image and queues its copies.
+Result<DeviceImage> makeImage(SceneEditor::State& state, const ImageView& image, bool srgb,
+                              const std::string& where) {
+    GpuScene::State& scene = state.scene;
+    if (Status s = checkImage(image, where, scene.context.limits.core.maxImageDimension2D); !s) {
+        return s.error();
+    }
+    const std::size_t before = state.uploader->waiting();
+    Result<DeviceImage> made = uploadTexture(scene.context, scene.pool, *state.uploader, image, srgb);
+    if (!made && !state.uploading) {
+        state.uploader->forgetAfter(before);
+    }
+    return made;
+}
+
+// The attributes of the primitives that the material is on.
+std::vector<AttributeMask> attributesWith(const SceneEditor::State& state, MaterialHandle material) {
+    std::vector<AttributeMask> found;
+    const auto add = [&](AttributeMask attributes) {
+        if (std::ranges::find(found, attributes) == found.end()) {
+            found.push_back(attributes);
+        }
+    };
+    state.meshes.forEach([&](MeshHandle /*handle*/, const EditedMesh& mesh) {
+        for (const EditedMeshPrimitive& primitive : mesh.primitives) {
+            if (primitive.material == material) {
+                add(primitive.attributes);
+            }
+        }
+    });
+    state.instanceSlots.forEach([&](InstanceHandle /*handle*/, const EditedInstance& instance) {
+        for (std::size_t i = 0; i < instance.materials.size(); ++i) {
+            if (instance.materials[i] == material) {
+                add(state.meshes.find(instance.mesh)->primitives[i].attributes);
+            }
+        }
+    });
+    return found;
+}
+
+const MaterialKey* keyFor(std::span<const MaterialKey> keys, AttributeMask attributes) {
+    const auto found = std::ranges::find(keys, attributes, &MaterialKey::attributes);
+    return found == keys.end() ? nullptr : &*found;
+}
+
+Result<Shading> shadingBy(const SceneEditor::State& state, std::span<const MaterialKey> keys,
+                          AttributeMask attributes, const std::string& where) {
+    const MaterialKey* const key = keyFor(keys, attributes);
+    if (key == nullptr) {
+        return makeError(
+            "scene-edit-key", where,
+            "the material has no key for a primitive with the attributes " + std::to_string(attributes),
+            "give a MaterialKey for each set of attributes that its primitives have");
+    }
+    return state.cases.find(*key, where);
+}
+
+}  // namespace
+
+Diagnostic unknownHandle(const char* what) {
+    return makeError("scene-edit-handle", "", std::string("the handle of a ") + what + " names nothing",
+                     "drop handles of what was removed, and use those of this scene");
+}
+
+std::string placeOf(const char* what, std::uint32_t index) {
+    return std::string(what) + " " + std::to_string(index);
+}
+
+Result<std::uint32_t> samplerIndex(SceneEditor::State& state, const package::SamplerEntry& entry) {
+    const auto known =
+        std::ranges::find_if(state.samplers, [&](const auto& other) { return isSame(other, entry); });
+    if (known != state.samplers.end()) {
+        return static_cast<std::uint32_t>(known - state.samplers.begin());
+    }
+    if (state.samplers.size() >= state.scene.samplerRoom) {
+        return makeError("scene-edit-room", "",
+                         "the scene has " + std::to_string(state.samplers.size()) +
+                             " kinds of samplers, and no room for another",
+                         "set SceneView::samplerRoom, or use fewer kinds of samplers");
+    }
+    Result<UniqueSampler> sampler = createSampler(state.scene.context, entry);
+    if (!sampler) {
+        return sampler.error();
+    }
+    state.scene.samplers.push_back(std::move(*sampler));
+    state.samplers.push_back(entry);
+    state.setDirty = true;
+    return static_cast<std::uint32_t>(state.samplers.size() - 1);
+}
+
+Result<Shading> shadingOf(const SceneEditor::State& state, MaterialHandle material,
+                          AttributeMask attributes) {
+    const EditedMaterial* const entry = state.materialSlots.find(material);
+    if (entry == nullptr) {
+        return unknownHandle("material");
+    }
+    return shadingBy(state, entry->keys, attributes, placeOf("material", material.index));
+}
+
+void addTo(EditReport& report, const SceneEditor::State& state, MaterialHandle material,
+           const Shading& shading) {
+    const bool listed = std::ranges::any_of(report.missing, [&](const MissingCase& other) {
+        return other.material == material && other.features == shading.features;
+    });
+    if (shading.missing && !listed) {
+        report.missing.push_back(
+            {material, shading.features, state.cases.package().featureNames(shading.features)});
+    }
+}
+
+Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb) {
+    GpuScene::State& scene = state_->scene;
+    const TextureHandle next = state_->textures.next();
+    if (next.index >= scene.textureRoom) {
+        return makeError("scene-edit-room", "",
+                         "the scene has " + std::to_string(state_->textures.count()) +
+                             " textures, and no room for another",
+                         "set SceneView::textureRoom, or remove a texture");
+    }
+    Result<DeviceImage> made = makeImage(*state_, image, srgb, placeOf("texture", next.index));
+    if (!made) {
+        return made.error();
+    }
+    const TextureHandle texture = state_->textures.add({image.width, image.height, srgb, 0});
+    scene.textures.resize(std::max<std::size_t>(scene.textures.size(), state_->textures.end()));
+    scene.textures[texture.index] = std::move(*made);
+    state_->setDirty = true;
+    return texture;
+}
+
+Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image) {
+    EditedTexture* const entry = state_->textures.find(texture);
+    if (entry == nullptr) {
+        return unknownHandle("texture");
+    }
+    Result<DeviceImage> made = makeImage(*state_, image, entry->srgb, placeOf("texture", texture.index));
+    if (!made) {
+        return made.error();
+    }
+    DeviceImage& place = state_->scene.textures[texture.index];
+    state_->retired.add(std::move(place));
+    place = std::move(*made);
+    state_->setDirty = true;
+    entry->width = image.width;
+    entry->height = image.height;
+    // Records have the sizes of their textures.
+    state_->materialSlots.forEach([&](MaterialHandle handle, const EditedMaterial& material) {
+        for (const TextureUse& use : material.textures) {
+            if (use.texture == texture) {
+                const std::span<const std::uint8_t> old = state_->materials.at(handle.index);
+                std::vector<std::uint8_t> record(old.begin(), old.end());
+                const MaterialTable table{record, state_->layout.recordBytes, state_->layout.textureOffset,
+                                          state_->layout.textureCount};
+                gpu::TextureRecord settled = textureAt(table, 0, use.slot);
+                settled.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
+                std::memcpy(&record[placeOfTexture(table, 0, use.slot)], &settled, sizeof settled);
+                state_->materials.writeBytes(handle.index, record);
+            }
+        }
+    });
+    return okStatus();
+}
+
+Status SceneEditor::removeTexture(TextureHandle texture) {
+    const EditedTexture* const entry = state_->textures.find(texture);
+    if (entry == nullptr) {
+        return unknownHandle("texture");
+    }
+    if (entry->uses > 0) {
+        return makeError("scene-edit-used", placeOf("texture", texture.index),
+                         std::to_string(entry->uses) + " materials use the texture",
+                         "remove the materials first, or give them other textures");
+    }
+    state_->textures.take(texture);
+    std::vector<DeviceImage>& images = state_->scene.textures;
+    state_->retired.add(std::move(images[texture.index]));
+    images[texture.index] = {};
+    images.resize(state_->textures.end());
+    state_->setDirty = true;
+    return okStatus();
+}
+
+Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) {
+    const std::string where = placeOf("material", state_->materialSlots.next().index);
+    if (Status status = checkSource(*state_, source, where); !status) {
+        return status.error();
+    }
+    Result<std::vector<std::uint8_t>> record = makeRecord(*state_, source);
+    if (!record) {
+        return record.error();
+    }
+    const MaterialHandle material = state_->materialSlots.add(
+        {{source.keys.begin(), source.keys.end()}, {source.textures.begin(), source.textures.end()}, 0});
+    countUses(*state_, source.textures, true);
+    state_->materials.writeBytes(material.index, *record);
+    return material;
+}
+
+Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const MaterialSource& source) {
+    EditedMaterial* const entry = state_->materialSlots.find(material);
+    if (entry == nullptr) {
+        return unknownHandle("material");
+    }
+    const std::string where = placeOf("material", material.index);
+    if (Status status = checkSource(*state_, source, where); !status) {
+        return status.error();
+    }
+    EditReport report;
+    bool changes = false;
+    for (const AttributeMask attributes : attributesWith(*state_, material)) {
+        Result<Shading> shading = shadingBy(*state_, source.keys, attributes, where);
+        if (!shading) {
+            return shading.error();
+        }
+        addTo(report, *state_, material, *shading);
+        const Result<Shading> before = shadingBy(*state_, entry->keys, attributes, where);
+        changes = changes || !before || !(*before == *shading);
+    }
+    Result<std::vector<std::uint8_t>> record = makeRecord(*state_, source);
+    if (!record) {
+        return record.error();
+    }
+    // The new textures may be some of the old.
+    countUses(*state_, source.textures, true);
+    countUses(*state_, entry->textures, false);
+    entry->keys.assign(source.keys.begin(), source.keys.end());
+    entry->textures.assign(source.textures.begin(), source.textures.end());
+    state_->materials.writeBytes(material.index, *record);
+    if (changes) {
+        state_->instanceSlots.forEach([&](InstanceHandle handle, const EditedInstance& instance) {
+            for (std::size_t i = 0; i < state_->meshes.find(instance.mesh)->primitives.size(); ++i) {
+                if (materialOf(*state_, instance, i) == material) {
+                    writeGeometries(*state_, handle, instance);
+                    return;
+                }
+            }
+        });
+    }
+    return report;
+}
+
+Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record) {
+    if (state_->materialSlots.find(material) == nullptr) {
+        return unknownHandle("material");
+    }
+    if (record.size() != state_->layout.recordBytes) {
+        return badValue(placeOf("material", material.index), "the record has another size than the package's",
+                        "make the record in the package's layout");
+    }
+    const std::span<const std::uint8_t> old = state_->materials.at(material.index);
+    std::vector<std::uint8_t> taken(old.begin(), old.end());
+    takeValues(record, state_->layout, taken);
+    state_->materials.writeBytes(material.index, taken);
+    return okStatus();
+}
+
+Status SceneEditor::removeMaterial(MaterialHandle material) {
+    const EditedMaterial* const entry = state_->materialSlots.find(material);
+    if (entry == nullptr) {
+        return unknownHandle("material");
+    }
+    if (entry->uses > 0) {
+        return makeError("scene-edit-used", placeOf("material", material.index),
+                         std::to_string(entry->uses) + " primitives of meshes and instances use the material",
+                         "give them other materials first, or remove them");
+    }
+    const EditedMaterial gone = state_->materialSlots.take(material);
+    countUses(*state_, gone.textures, false);
+    state_->materials.shrink(state_->materialSlots.end());
+    return okStatus();
+}
+
+}  // namespace glint

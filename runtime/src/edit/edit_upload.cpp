@@ -1,0 +1,240 @@
+// The upload of a scene that can be edited: its content becomes that of the editor, and then takes the way of
+// edits, but for BLASes, which are built together and compacted.
+#include "context/commands.h"
+#include "edit/editor_state.h"
+#include "scene/material_table.h"
+#include "scene/scene_materials.h"
+#include "scene/textures.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace glint {
+namespace {
+
+Status checkEditable(const Package& package, const SceneView& view) {
+    const bool deforms = std::ranges::any_of(view.instances, [](const InstanceView& instance) {
+        return !instance.joints.empty() || !instance.morphWeights.empty();
+    });
+    if (view.moves || deforms) {
+        return makeError("scene-edit-moves", "",
+                         "the scene moves by GpuScene::update(), or has a mesh that changes its shape",
+                         "edit the transforms of instances instead, or leave SceneView::editable out");
+    }
+    if (package.emission() != nullptr) {
+        return makeError("scene-edit-emission", "",
+                         "the package has emissive lights, which edits can't keep up to date",
+                         "compile the package with --emissive-lights off");
+    }
+    return okStatus();
+}
+
+Status addTextures(SceneEditor::State& state, const PackageScene& known, const SceneView& view) {
+    GpuScene::State& scene = state.scene;
+    Result<DeviceImage> white =
+        uploadTexture(scene.context, scene.pool, *state.uploader, {1, 1, kWhiteTexel}, false);
+    if (!white) {
+        return white.error();
+    }
+    state.white = std::move(*white);
+    if (scene.textureRoom > scene.context.limits.maxTextures) {
+        return makeError("scene-textures", "",
+                         "the scene has room for " + std::to_string(scene.textureRoom) +
+                             " textures, the device takes " +
+                             std::to_string(scene.context.limits.maxTextures),
+                         "lower SceneView::textureRoom, or use a smaller scene");
+    }
+    for (const package::TextureEntry& entry : known.textures) {
+        const ImageView& image = view.images[entry.image];
+        Result<DeviceImage> made =
+            uploadTexture(scene.context, scene.pool, *state.uploader, image, entry.srgb != 0);
+        if (!made) {
+            return made.error();
+        }
+        scene.textures.push_back(std::move(*made));
+        state.firstTextures.push_back(state.textures.add({image.width, image.height, entry.srgb != 0, 0}));
+    }
+    scene.statistics.narrowedTextures = countNarrowed(scene.context, known.textures, view.images);
+    return okStatus();
+}
+
+// Samplers keep the package's numbers, which its records have.
+Status addSamplers(SceneEditor::State& state, const PackageScene& known) {
+    Result<std::vector<UniqueSampler>> samplers = createSamplers(state.scene.context, known.samplers);
+    if (!samplers) {
+        return samplers.error();
+    }
+    state.scene.samplers = std::move(*samplers);
+    state.samplers.assign(known.samplers.begin(), known.samplers.end());
+    if (state.samplers.empty()) {
+        state.samplers.push_back({0, 0, 1, 1, 1, 1});
+    }
+    return okStatus();
+}
+
+// A record says which textures it may read. A slot that no key reads names the first texture, too.
+std::vector<TextureUse> usesOf(const SceneEditor::State& state, const PackageScene& known,
+                               std::size_t material) {
+    std::vector<TextureUse> uses;
+    for (std::uint32_t slot = 0; slot < known.materials.textureCount && !known.textures.empty(); ++slot) {
+        const gpu::TextureRecord record = textureAt(known.materials, material, slot);
+        uses.push_back({slot, state.firstTextures[record.textureIndex], state.samplers[record.samplerIndex],
+                        record.texCoord});
+    }
+    return uses;
+}
+
+Status addMaterials(SceneEditor::State& state, const PackageScene& known, const SceneView& view) {
+    std::vector<std::uint8_t> records = materialsWithSizes(state.scene.context, known, view.images);
+    Result<std::vector<ChangingMaterial>> replaced =
+        replaceMaterials(view.materials, known.materials, records);
+    if (!replaced) {
+        return replaced.error();
+    }
+    const std::size_t bytes = state.layout.recordBytes;
+    for (std::size_t i = 0; i < known.materials.size(); ++i) {
+        EditedMaterial material;
+        material.textures = usesOf(state, known, i);
+        for (const TextureUse& use : material.textures) {
+            ++state.textures.find(use.texture)->uses;
+        }
+        const MaterialHandle handle = state.materialSlots.add(std::move(material));
+        state.firstMaterials.push_back(handle);
+        state.materials.writeBytes(handle.index, std::span(records).subspan(i * bytes, bytes));
+    }
+    return okStatus();
+}
+
+// The key of a primitive of the package becomes a key of its material.
+void addKey(SceneEditor::State& state, const package::PrimitiveEntry& entry, AttributeMask attributes) {
+    EditedMaterial& material = *state.materialSlots.find(state.firstMaterials[entry.materialIndex]);
+    if (std::ranges::find(material.keys, attributes, &MaterialKey::attributes) == material.keys.end()) {
+        const std::uint64_t features = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+        material.keys.push_back({attributes, features, features, entry.geometryFlags});
+    }
+}
+
+Status addMeshes(SceneEditor::State& state, const PackageScene& known, const SceneView& view) {
+    std::vector<BlasInput> inputs;
+    for (std::uint32_t first = 0; first < view.primitives.size();) {
+        const std::uint32_t number = view.primitives[first].mesh;
+        const PrimitiveRange range = primitivesOf(view.primitives, number);
+        const std::span<const PrimitiveView> own = view.primitives.subspan(first, range.end - first);
+        Result<EditedMesh> mesh = makeMesh(state, own, &inputs);
+        if (!mesh) {
+            return mesh.error();
+        }
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const package::PrimitiveEntry& entry = *known.findPrimitive(number, own[i].primitive);
+            EditedMeshPrimitive& primitive = mesh->primitives[i];
+            primitive.material = state.firstMaterials[entry.materialIndex];
+            ++state.materialSlots.find(primitive.material)->uses;
+            addKey(state, entry, primitive.attributes);
+        }
+        state.firstMeshes[number] = state.meshes.add(std::move(*mesh));
+        first = range.end;
+    }
+    if (Status status = state.uploader->finish(); !status) {
+        return status;
+    }
+    BlasStatistics statistics;
+    Result<std::vector<AccelerationStructure>> built =
+        buildBlases(state.scene.context, state.scene.pool, inputs, statistics);
+    if (!built) {
+        return built.error();
+    }
+    auto next = built->begin();
+    for (auto& [number, handle] : state.firstMeshes) {
+        for (EditedMeshPrimitive& primitive : state.meshes.find(handle)->primitives) {
+            for (EditedPart& part : primitive.parts) {
+                part.blas = std::move(*next++);
+            }
+        }
+    }
+    GpuScene::Statistics& scene = state.scene.statistics;
+    scene.blasCount = static_cast<std::uint32_t>(built->size());
+    scene.blasBytes = statistics.bytes;
+    scene.blasUncompactedBytes = statistics.uncompactedBytes;
+    scene.blasBuildMs = statistics.buildMs;
+    return okStatus();
+}
+
+Status recordUpload(SceneEditor::State& state) {
+    Result<CommandRunner> runner = CommandRunner::create(state.scene.context);
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    if (Status status = recordEdits(state, *commands, 0); !status) {
+        return status;
+    }
+    if (Status status = runner->submitAndWait(); !status) {
+        return status;
+    }
+    state.retired.complete(0);
+    return okStatus();
+}
+
+}  // namespace
+
+Status uploadEditable(GpuScene::State& scene, const Package& package, const PackageScene& known,
+                      const SceneView& view) {
+    if (Status status = checkEditable(package, view); !status) {
+        return status;
+    }
+    auto owned = std::make_unique<SceneEditor::State>(scene, package, view);
+    SceneEditor::State& state = *owned;
+    scene.textureRoom = std::max({view.textureRoom, static_cast<std::uint32_t>(known.textures.size()), 1U});
+    scene.samplerRoom = std::max({view.samplerRoom, static_cast<std::uint32_t>(known.samplers.size()), 1U});
+    scene.shaderIds = state.cases.shaderIds();
+    scene.materialLayout = state.layout;
+    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(scene.context);
+    if (!uploader) {
+        return uploader.error();
+    }
+    state.uploader = std::move(*uploader);
+    if (Status status = addSamplers(state, known); !status) {
+        return status;
+    }
+    for (const auto step : {addTextures, addMaterials, addMeshes}) {
+        if (Status status = step(state, known, view); !status) {
+            return status;
+        }
+    }
+    for (const InstanceView& instance : view.instances) {
+        const auto mesh = state.firstMeshes.find(instance.mesh);
+        if (mesh == state.firstMeshes.end()) {
+            state.firstInstances.emplace_back();
+            continue;
+        }
+        EditedInstance placed;
+        placed.mesh = mesh->second;
+        placed.objectToWorld = instance.objectToWorld;
+        placed.visible = instance.visible;
+        state.firstInstances.push_back(placeInstance(state, std::move(placed)));
+    }
+    for (const LightView& light : view.lights) {
+        state.firstLights.push_back(state.lightSlots.add(light));
+        state.lightOrder.push_back(state.firstLights.back());
+    }
+    if (Status status = createSetLayout(scene); !status) {
+        return status;
+    }
+    if (Status status = recordUpload(state); !status) {
+        return status;
+    }
+    for (RecordStore* const store :
+         {&state.geometries, &state.instances, &state.materials, &state.lights, &state.lightNodes}) {
+        store->firstCapacity = store->capacity;
+    }
+    state.firstTlasCapacity = state.tlasCapacity;
+    state.uploader = Uploader::createDeferred(scene.context, scene.pool);
+    state.uploading = false;
+    scene.editor = SceneEditor::create(std::move(owned));
+    return okStatus();
+}
+
+}  // namespace glint

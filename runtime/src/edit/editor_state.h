@@ -1,0 +1,164 @@
+// What a SceneEditor knows of its scene: the content by handles, and what the device still has to get.
+#pragma once
+
+#include "context/upload.h"
+#include "edit/case_table.h"
+#include "edit/record_store.h"
+#include "edit/retired.h"
+#include "edit/slots.h"
+#include "motion/motion_bounds.h"
+#include "scene/acceleration.h"
+#include "scene/blas_build.h"
+#include "scene/geometry.h"
+#include "scene/gpu_scene_state.h"
+#include "scene/instance_math.h"
+
+#include <glint/scene_edit.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// A texture. Its image is GpuScene::State::textures at the handle's index.
+struct EditedTexture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    bool srgb = false;
+    std::uint32_t uses = 0;  // by materials
+};
+
+// A material. Its record is in State::materials at the handle's index.
+struct EditedMaterial {
+    std::vector<MaterialKey> keys;
+    std::vector<TextureUse> textures;
+    std::uint32_t uses = 0;  // by primitives of meshes and by instances
+};
+
+// A BLAS with one geometry: a primitive, or a part of a large one. What a material decides about it is said
+// by the TLAS, so that a change of materials builds no BLAS.
+struct EditedPart {
+    TriangleRange triangles;
+    AccelerationStructure blas;
+    Box box = Box::nothing();
+};
+
+struct EditedMeshPrimitive {
+    GpuPrimitive device;
+    AttributeMask attributes = 0;
+    MaterialHandle material;
+    std::vector<EditedPart> parts;
+};
+
+struct EditedMesh {
+    std::vector<EditedMeshPrimitive> primitives;
+    std::uint32_t partCount = 0;
+    std::uint32_t uses = 0;  // by instances
+};
+
+struct EditedInstance {
+    MeshHandle mesh;
+    Rows objectToWorld{};
+    bool visible = true;
+    std::vector<MaterialHandle> materials;  // one for each primitive of the mesh; some may name nothing
+    std::uint32_t firstGeometry = 0;        // a geometry record for each part of the mesh
+    std::uint32_t geometryCount = 0;
+
+    bool isShown() const;
+};
+
+struct SceneEditor::State {
+    State(GpuScene::State& owner, const Package& package, const SceneView& view);
+
+    GpuScene::State& scene;
+    CaseTable cases;
+    MaterialTable layout;  // of material records, without records
+    BlasCapacity capacity;
+    LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
+    bool dataAccess = false;        // BLASes let shaders read positions
+    bool passesLight = false;       // a ray meets each triangle at most once
+    bool buildsTree = false;        // the package chooses lights by a hierarchy
+
+    Slots<EditedTexture, TextureHandle> textures;
+    Slots<EditedMaterial, MaterialHandle> materialSlots;
+    Slots<EditedMesh, MeshHandle> meshes;
+    Slots<EditedInstance, InstanceHandle> instanceSlots;
+    Slots<LightView, LightHandle> lightSlots;
+    std::vector<LightHandle> lightOrder;
+    std::vector<package::SamplerEntry> samplers;  // of GpuScene::State::samplers
+    DeviceImage white;                            // for places without a texture
+
+    // By their numbers at the upload.
+    std::vector<TextureHandle> firstTextures;
+    std::vector<MaterialHandle> firstMaterials;
+    std::map<std::uint32_t, MeshHandle> firstMeshes;
+    std::vector<InstanceHandle> firstInstances;
+    std::vector<LightHandle> firstLights;
+
+    RecordStore geometries{sizeof(gpu::GeometryRecord)};
+    RecordStore instances{sizeof(gpu::InstanceRecord)};
+    RecordStore materials;
+    RecordStore lights{sizeof(gpu::LightRecord)};
+    RecordStore lightNodes{sizeof(gpu::LightNode)};
+    RunAllocator geometryRuns;
+
+    // What record() has to do.
+    std::unique_ptr<Uploader> uploader;
+    struct PendingBuild {
+        BlasBuild build;
+        VkAccelerationStructureKHR target = VK_NULL_HANDLE;
+    };
+    std::vector<PendingBuild> builds;
+    bool tlasDirty = true;
+    bool drawsDirty = true;
+    bool lightsDirty = true;
+    bool setDirty = false;
+    bool trims = false;
+
+    std::uint32_t tlasCapacity = 0;  // instances
+    std::uint32_t firstTlasCapacity = 0;
+    Scratch tlasScratch;
+    Retired retired;
+    std::uint64_t lastFrame = 0;
+    // During the upload, BLASes are built together and compacted.
+    bool uploading = true;
+};
+
+// The upload of an editable scene; `known` may be a scene without tables.
+Status uploadEditable(GpuScene::State& state, const Package& package, const PackageScene& known,
+                      const SceneView& view);
+
+// Parts of an edit that several functions share.
+
+// Finds the shading of a material on a primitive. Errors as SceneEditor says.
+Result<Shading> shadingOf(const SceneEditor::State& state, MaterialHandle material, AttributeMask attributes);
+// Lists the key in the report if the fallback shades it.
+void addTo(EditReport& report, const SceneEditor::State& state, MaterialHandle material,
+           const Shading& shading);
+// The material of a primitive of an instance.
+MaterialHandle materialOf(const SceneEditor::State& state, const EditedInstance& instance,
+                          std::size_t primitive);
+// Writes the geometry records of an instance, whose materials have been checked.
+void writeGeometries(SceneEditor::State& state, InstanceHandle handle, const EditedInstance& instance);
+// Uploads the primitives of a mesh. With `inputs`, the caller builds their BLASes from these, part by part;
+// otherwise record() does. Materials are the caller's to set.
+Result<EditedMesh> makeMesh(SceneEditor::State& state, std::span<const PrimitiveView> primitives,
+                            std::vector<BlasInput>* inputs);
+// Adds an instance whose mesh and materials have been checked.
+InstanceHandle placeInstance(SceneEditor::State& state, EditedInstance instance);
+// Finds the sampler, or makes it. Error "scene-edit-room".
+Result<std::uint32_t> samplerIndex(SceneEditor::State& state, const package::SamplerEntry& entry);
+// Records what is pending, for a frame that is not before the last one.
+Status recordEdits(SceneEditor::State& state, VkCommandBuffer commands, std::uint64_t frame);
+
+std::string placeOf(const char* what, std::uint32_t index);
+// Error "scene-edit-handle".
+Diagnostic unknownHandle(const char* what);
+
+}  // namespace glint

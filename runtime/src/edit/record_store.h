@@ -1,0 +1,83 @@
+// Arrays of records on the device that are edited in place and grow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace glint {
+
+// Indices [first, end).
+struct IndexRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+
+// Finds room for runs of consecutive records. A run gets the lowest place that has room.
+class RunAllocator {
+public:
+    std::uint32_t allocate(std::uint32_t count);
+    void release(std::uint32_t first, std::uint32_t count);
+    // One past the last index in use.
+    std::uint32_t end() const {
+        return end_;
+    }
+
+private:
+    std::vector<IndexRange> free_;  // below end_, by ascending index; no two of them touch
+    std::uint32_t end_ = 0;
+};
+
+// The host's copy of an array of records, and what of it the device does not have yet.
+class RecordStore {
+public:
+    explicit RecordStore(std::size_t stride) : stride_(stride) {}
+
+    // Writes the record at `index`; the array grows to hold it.
+    void writeBytes(std::uint32_t index, std::span<const std::uint8_t> record);
+    template <typename T>
+    void write(std::uint32_t index, const T& record) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        writeBytes(index, std::span(reinterpret_cast<const std::uint8_t*>(&record), sizeof record));
+    }
+    // Forgets the records from `count` on.
+    void shrink(std::uint32_t count);
+
+    std::span<const std::uint8_t> at(std::uint32_t index) const {
+        return std::span(bytes_).subspan(index * stride_, stride_);
+    }
+    template <typename T>
+    T read(std::uint32_t index) const {
+        T record;
+        std::memcpy(&record, at(index).data(), sizeof record);
+        return record;
+    }
+    std::uint32_t count() const {
+        return static_cast<std::uint32_t>(bytes_.size() / stride_);
+    }
+    std::size_t stride() const {
+        return stride_;
+    }
+    bool isDirty() const {
+        return !dirty_.empty();
+    }
+    // The records that were written since clearDirty(), as runs that do not touch.
+    std::vector<IndexRange> dirty() const;
+    void clearDirty() {
+        dirty_.clear();
+    }
+
+    // The size of the array on the device, in records.
+    std::uint32_t capacity = 0;
+    std::uint32_t firstCapacity = 0;  // that of the upload
+
+private:
+    std::size_t stride_;
+    std::vector<std::uint8_t> bytes_;
+    std::vector<std::uint32_t> dirty_;
+};
+
+}  // namespace glint

@@ -1,0 +1,162 @@
+// A scene that is edited while frames are in flight, beside a description of its content, from which the same
+// scene is uploaded afresh the ordinary way.
+#pragma once
+
+#include "render/harness.h"
+
+#include <glint/scene_edit.h>
+#include <glint/scene_view/material_source.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace glint::testing {
+
+// The kinds of materials of the catalogue, and the shapes of its meshes: one, one and two primitives.
+inline constexpr std::uint32_t kKinds = 6;
+inline constexpr std::uint32_t kShapes = 3;
+constexpr std::size_t primitivesOfShape(std::uint32_t shape) {
+    return shape == 2 ? 2 : 1;
+}
+// Returns a scene with a mesh for each shape with each choice of materials, in front of a camera.
+gltf::Scene catalogueScene();
+// Returns the number of a mesh of the catalogue. `kinds` has one kind for each primitive.
+std::uint32_t meshOfCatalogue(std::uint32_t shape, std::span<const std::uint32_t> kinds);
+
+// Submits frames of two command buffers in turn.
+class TwoFrames {
+public:
+    explicit TwoFrames(Context& context);
+    ~TwoFrames();
+    TwoFrames(const TwoFrames&) = delete;
+    TwoFrames& operator=(const TwoFrames&) = delete;
+
+    // Waits until the frame before the last is done, which `completed()` then includes, and begins a frame.
+    VkCommandBuffer begin();
+    // The number of the frame that was begun. The first is 1.
+    std::uint64_t frame() const {
+        return frame_;
+    }
+    std::uint64_t completed() const {
+        return completed_;
+    }
+    void submit();
+    void drain();
+
+private:
+    struct Slot {
+        VkCommandPool pool = VK_NULL_HANDLE;
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        VkFence fence = VK_NULL_HANDLE;
+        std::uint64_t frame = 0;  // 0: not in flight
+    };
+    void wait(Slot& slot);
+
+    Context& context_;
+    std::array<Slot, 2> slots_;
+    std::uint64_t frame_ = 0;
+    std::uint64_t completed_ = 0;
+};
+
+// Returns ray queries, or ray tracing pipelines on a device without them.
+package::Tracer tracerOfDevice();
+
+struct EditedSceneOptions {
+    // Compiles and renders with a strategy, with a case for each key and alpha tests.
+    explicit EditedSceneOptions(package::Strategy strategy = package::kStrategyUber,
+                                package::Tracer tracer = tracerOfDevice());
+    compiler::CompileSettings settings;
+    RendererOptions renderer;
+    std::uint32_t width = 32;
+    std::uint32_t height = 18;
+};
+
+class EditedScene {
+public:
+    explicit EditedScene(EditedSceneOptions options);
+    bool ok() const {
+        return renderer_ != nullptr;
+    }
+
+    // What is there. Each object was added by the test or, if `first` is set, was uploaded.
+    struct Material {
+        MaterialHandle handle;
+        std::uint32_t kind = 0;
+        bool first = false;
+    };
+    struct Mesh {
+        MeshHandle handle;
+        std::uint32_t shape = 0;
+        std::vector<std::size_t> materials;  // indices into materials
+        bool first = false;
+    };
+    struct Instance {
+        InstanceHandle handle;
+        std::size_t mesh = 0;                               // index into meshes
+        std::vector<std::optional<std::size_t>> materials;  // indices into materials
+        std::array<float, 12> objectToWorld{};
+        bool visible = true;
+        bool first = false;
+    };
+    struct Light {
+        LightHandle handle;
+        LightView view;
+        bool first = false;
+    };
+    struct Texture {  // by index into Scene::textures
+        TextureHandle handle;
+        std::uint32_t width = 0;
+        std::uint32_t height = 0;
+        std::vector<std::uint8_t> pixels;
+        ImageView view() const {
+            return {width, height, pixels};
+        }
+    };
+    std::vector<Material> materials;
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Light> lights;
+    std::vector<Texture> textures;
+    gltf::Scene scene;  // its materials have the present values of the kinds
+
+    SceneEditor& editor() {
+        return *gpuScene_->editor();
+    }
+    GpuScene& gpuScene() {
+        return *gpuScene_;
+    }
+    const Package& package() const {
+        return loaded_->package();
+    }
+    PrimitiveView primitive(std::uint32_t shape, std::size_t index) const;
+    // The source of a material of a kind with the kind's present values.
+    scene_view::MaterialSourceData source(std::uint32_t kind) const;
+
+    // Records the edits and a frame, and submits both.
+    void frame();
+    // Waits for all frames, and frees what they used.
+    void drain();
+    // Draws the edited scene, and the same content uploaded afresh, and compares the pictures' bits.
+    void expectSameAsFresh(const std::string& what);
+    LinearImage picture();
+
+private:
+    LinearImage fresh() const;
+
+    EditedSceneOptions options_;
+    std::unique_ptr<LoadedScene> loaded_;
+    scene_view::SceneViewData data_;
+    compiler::MaterialLayout layout_;
+    FrameOptions frameOptions_;
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::unique_ptr<TwoFrames> frames_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+}  // namespace glint::testing

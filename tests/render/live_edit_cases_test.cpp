@@ -1,0 +1,396 @@
+// What edits refuse, materials without a case, buffers that grow, and other strategies.
+#include "edit/editor_state.h"
+#include "render/edited_scene.h"
+#include "render/moving_scenes.h"
+#include "render/scene_builder.h"
+
+#include <glint/engine_scene.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace glint::testing {
+namespace {
+
+template <typename T>
+void expectError(const Result<T>& result, const std::string& id, const std::string& part = "") {
+    ASSERT_FALSE(result) << id;
+    EXPECT_EQ(result.error().id, id) << toString(result.error());
+    EXPECT_NE(result.error().message.find(part), std::string::npos) << toString(result.error());
+}
+
+// A material whose parts have cases of their own, but which has none.
+materials::Material coatedTexture() {
+    materials::Material material = catalogueScene().materials[2];
+    material.texture("baseColorTexture").texture = 0;
+    return material;
+}
+
+// Draws the first two instances, the second with that material, with a package that was compiled for it.
+LinearImage pictureWithCoatedTexture(const EditedScene& edited, const EditedSceneOptions& options) {
+    gltf::Scene known = catalogueScene();
+    known.materials[2] = coatedTexture();
+    known.meshes[kKinds + 3].primitives[0].material = 2;
+    const LoadedScene loaded(known, options.settings, [&](scene_view::SceneViewData& data) {
+        data.instances[0].objectToWorld = edited.instances[0].objectToWorld;
+        data.instances[kKinds + 3].objectToWorld = edited.instances[1].objectToWorld;
+        for (std::size_t i = 0; i < data.instances.size(); ++i) {
+            data.instances[i].visible = i == 0 || i == kKinds + 3;
+        }
+    });
+    return loaded.ok() ? loaded.render(options.renderer, defaultSetup(known, options.width, options.height))
+                       : LinearImage{};
+}
+
+class LiveEditErrors : public ::testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        edited_ = new EditedScene(EditedSceneOptions());
+    }
+    static void TearDownTestSuite() {
+        delete edited_;
+    }
+    void SetUp() override {
+        ASSERT_TRUE(edited_->ok());
+    }
+    SceneEditor& editor() {
+        return edited_->editor();
+    }
+    static inline EditedScene* edited_ = nullptr;
+};
+
+TEST_F(LiveEditErrors, HandlesThatNameNothing) {
+    EXPECT_EQ(editor().mesh(999).generation, 0U);
+    EXPECT_EQ(editor().material(999).generation, 0U);
+    expectError(editor().replaceTexture({}, edited_->textures[0].view()), "scene-edit-handle", "texture");
+    expectError(editor().removeTexture({}), "scene-edit-handle");
+    expectError(editor().setMaterialValues({}, {}), "scene-edit-handle", "material");
+    expectError(editor().setMaterial({}, {}), "scene-edit-handle");
+    expectError(editor().removeMaterial({}), "scene-edit-handle");
+    expectError(editor().setMeshMaterial({}, 0, edited_->materials[0].handle), "scene-edit-handle", "mesh");
+    expectError(editor().setMeshMaterial(edited_->meshes[0].handle, 0, {}), "scene-edit-handle");
+    expectError(editor().removeMesh({}), "scene-edit-handle");
+    expectError(editor().addInstance({}), "scene-edit-handle");
+    expectError(editor().moveInstance({}, {}), "scene-edit-handle", "instance");
+    expectError(editor().showInstance({}, true), "scene-edit-handle");
+    expectError(editor().setInstanceMesh(edited_->instances[0].handle, {}), "scene-edit-handle");
+    expectError(editor().setInstanceMaterial({}, 0, {}), "scene-edit-handle");
+    expectError(editor().removeInstance({}), "scene-edit-handle");
+    expectError(editor().setLight({}, {}), "scene-edit-handle", "light");
+    expectError(editor().removeLight({}), "scene-edit-handle");
+    // A handle of what was removed does not name what took its place.
+    const Result<LightHandle> first = editor().addLight({});
+    ASSERT_TRUE(first);
+    ASSERT_TRUE(editor().removeLight(*first));
+    const Result<LightHandle> second = editor().addLight({});
+    ASSERT_TRUE(second);
+    EXPECT_EQ(first->index, second->index);
+    expectError(editor().removeLight(*first), "scene-edit-handle");
+    ASSERT_TRUE(editor().removeLight(*second));
+    edited_->expectSameAsFresh("nothing has changed");
+}
+
+TEST_F(LiveEditErrors, WhatIsInUseStays) {
+    expectError(editor().removeMesh(edited_->meshes[0].handle), "scene-edit-used", "1 instances");
+    expectError(editor().removeMaterial(edited_->materials[0].handle), "scene-edit-used");
+    expectError(editor().removeTexture(edited_->textures[0].handle), "scene-edit-used", "1 materials");
+}
+
+TEST_F(LiveEditErrors, Values) {
+    const InstanceHandle instance = edited_->instances[0].handle;
+    std::array<float, 12> rows = edited_->instances[0].objectToWorld;
+    rows[3] = INFINITY;
+    expectError(editor().moveInstance(instance, rows), "scene-edit-value", "finite");
+    expectError(editor().addInstance({edited_->meshes[0].handle, rows}), "scene-edit-value", "finite");
+    const MaterialHandle three[3]{};
+    expectError(editor().setInstanceMesh(instance, edited_->meshes[0].handle, three), "scene-edit-value",
+                "3 materials for 1");
+    expectError(editor().setInstanceMaterial(instance, 1, {}), "scene-edit-value");
+    expectError(editor().setMeshMaterial(edited_->meshes[0].handle, 1, edited_->materials[0].handle),
+                "scene-edit-value");
+    const std::vector<std::uint8_t> tooShort(4);
+    expectError(editor().setMaterialValues(edited_->materials[0].handle, tooShort), "scene-edit-value");
+    scene_view::MaterialSourceData source = edited_->source(3);
+    source.textures[0].slot = 99;
+    expectError(editor().addMaterial(source.view()), "scene-edit-value", "slot");
+    expectError(editor().addMesh({}), "scene-edit-value");
+    EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
+    primitive.geometry.indices = {};
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-value", "no triangle");
+    LightView light;
+    light.size = -1;
+    expectError(editor().addLight(light), "scene-light");
+    light.size = NAN;
+    expectError(editor().setLight(edited_->lights[0].handle, light), "scene-light");
+    expectError(editor().addTexture({}, true), "scene-image");
+    expectError(editor().replaceTexture(edited_->textures[0].handle, {}), "scene-image");
+}
+
+TEST_F(LiveEditErrors, Geometry) {
+    EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
+    const std::uint32_t outside[] = {0, 1, 99};
+    primitive.geometry.indices = outside;
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-index");
+    primitive.geometry = edited_->primitive(0, 0);
+    primitive.geometry.normals = primitive.geometry.normals.first(2);
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-attribute");
+    primitive.geometry = edited_->primitive(0, 0);
+    const MorphTargetView target;
+    primitive.geometry.targets = std::span(&target, 1);
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-moves");
+}
+
+TEST_F(LiveEditErrors, Keys) {
+    scene_view::MaterialSourceData source = edited_->source(3);
+    source.keys = {source.keys.front()};
+    const Result<MaterialHandle> added = editor().addMaterial(source.view());
+    ASSERT_TRUE(added);
+    const EditedPrimitive primitive{edited_->primitive(0, 0), *added};
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-key", "no key");
+    ASSERT_TRUE(editor().removeMaterial(*added));
+    // A key that reads what it says is not there.
+    source = edited_->source(3);
+    source.keys.back().attributes = 0;
+    expectError(editor().addMaterial(source.view()), "scene-edit-key", "texCoord0");
+}
+
+TEST_F(LiveEditErrors, Rooms) {
+    std::vector<TextureHandle> added;
+    for (;;) {
+        const Result<TextureHandle> texture = editor().addTexture(edited_->textures[0].view(), false);
+        if (!texture) {
+            expectError(texture, "scene-edit-room");
+            break;
+        }
+        added.push_back(*texture);
+    }
+    EXPECT_EQ(added.size() + edited_->textures.size(), SceneView{}.textureRoom);
+    for (const TextureHandle texture : added) {
+        ASSERT_TRUE(editor().removeTexture(texture));
+    }
+    scene_view::MaterialSourceData source = edited_->source(3);
+    std::vector<MaterialHandle> materials;
+    for (std::uint32_t i = 0; i < 9 * 8; ++i) {
+        source.textures[0].sampler = {i % 3, i / 3 % 3, i / 9 % 2, i / 18 % 2, i / 36, 1};
+        const Result<MaterialHandle> material = editor().addMaterial(source.view());
+        if (!material) {
+            expectError(material, "scene-edit-room", "samplers");
+            break;
+        }
+        materials.push_back(*material);
+    }
+    EXPECT_LE(materials.size(), SceneView{}.samplerRoom);
+    for (const MaterialHandle material : materials) {
+        ASSERT_TRUE(editor().removeMaterial(material));
+    }
+    edited_->expectSameAsFresh("rooms were full and are empty again");
+}
+
+TEST_F(LiveEditErrors, Frames) {
+    edited_->frame();
+    edited_->drain();
+    expectError(editor().record(VK_NULL_HANDLE, 0), "scene-edit-frame");
+}
+
+TEST_F(LiveEditErrors, AKeyWithoutACase) {
+    edited_->scene.materials[2] = coatedTexture();
+    const scene_view::MaterialSourceData source = edited_->source(2);
+    edited_->scene.materials[2] = catalogueScene().materials[2];
+    const Result<MaterialHandle> added = editor().addMaterial(source.view());
+    ASSERT_TRUE(added) << toString(added.error());
+    const EditedPrimitive primitive{edited_->primitive(0, 0), *added};
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-case", "baseColorTexture");
+    expectError(editor().setInstanceMaterial(edited_->instances[0].handle, 0, *added), "scene-edit-case",
+                "clearcoat");
+    expectError(editor().setMeshMaterial(edited_->meshes[0].handle, 0, *added), "scene-edit-case");
+    expectError(editor().setMaterial(edited_->materials[0].handle, source.view()), "scene-edit-case");
+    ASSERT_TRUE(editor().removeMaterial(*added));
+    // No material of the package has this one.
+    materials::Material sheen = catalogueScene().materials[1];
+    sheen.give("KHR_materials_sheen");
+    sheen["sheenColorFactor"] = {0.5F, 0.5F, 0.5F};
+    edited_->scene.materials[1] = sheen;
+    const scene_view::MaterialSourceData unknown = edited_->source(1);
+    edited_->scene.materials[1] = catalogueScene().materials[1];
+    expectError(editor().setMaterial(edited_->materials[0].handle, unknown.view()), "scene-edit-feature",
+                "sheen");
+    edited_->expectSameAsFresh("nothing has changed");
+}
+
+// A case that decides at run time allows keys that no primitive of the package has.
+TEST(LiveEditKeys, ACaseForSeveralKeysShadesTheKeysBetweenThem) {
+    EditedSceneOptions options;
+    options.settings.plan.merge = compiler::MergePolicy::All;
+    EditedScene edited(options);
+    ASSERT_TRUE(edited.ok());
+    edited.scene.materials[2] = coatedTexture();
+    const scene_view::MaterialSourceData source = edited.source(2);
+    const Result<MaterialHandle> added = edited.editor().addMaterial(source.view());
+    ASSERT_TRUE(added) << toString(added.error());
+    const Result<EditReport> report =
+        edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, *added);
+    ASSERT_TRUE(report) << toString(report.error());
+    EXPECT_TRUE(report->missing.empty());
+    expectSameImage(edited.picture(), pictureWithCoatedTexture(edited, options), "a key between others");
+}
+
+TEST(LiveEditUpload, RefusesScenesThatMove) {
+    const gltf::Scene scene = catalogueScene();
+    const LoadedScene loaded(scene, EditedSceneOptions().settings);
+    ASSERT_TRUE(loaded.ok());
+    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    SceneView view = data.view();
+    view.editable = true;
+    view.moves = true;
+    expectError(GpuScene::upload(sharedContext(), loaded.package(), view), "scene-edit-moves");
+    EXPECT_EQ(loaded.gpuScene().editor(), nullptr);
+    view.moves = false;
+    const auto editable = GpuScene::upload(sharedContext(), loaded.package(), view);
+    ASSERT_TRUE(editable) << toString(editable.error());
+    expectError(EngineScene::share(sharedContext(), **editable), "scene-edit-share");
+    expectError((*editable)->updateAndWait({}), "scene-still");
+}
+
+TEST(LiveEditUpload, RefusesEmissiveLights) {
+    gltf::Scene scene = catalogueScene();
+    scene.materials[1]["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
+    compiler::CompileSettings settings = EditedSceneOptions().settings;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    SceneView view;
+    view.editable = true;
+    view.packageScene = kNoPackageScene;
+    expectError(GpuScene::upload(sharedContext(), loaded.package(), view), "scene-edit-emission");
+}
+
+TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
+    EditedSceneOptions options;
+    options.settings.plan.fallback = true;
+    EditedScene edited(options);
+    ASSERT_TRUE(edited.ok());
+    const LinearImage before = edited.picture();
+    edited.scene.materials[2] = coatedTexture();
+    const scene_view::MaterialSourceData source = edited.source(2);
+    const Result<MaterialHandle> added = edited.editor().addMaterial(source.view());
+    ASSERT_TRUE(added) << toString(added.error());
+    const Result<EditReport> report =
+        edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, *added);
+    ASSERT_TRUE(report) << toString(report.error());
+    ASSERT_EQ(report->missing.size(), 1U);
+    const MissingCase& missing = report->missing.front();
+    EXPECT_EQ(missing.material, *added);
+    EXPECT_NE(std::ranges::find(missing.names, "clearcoat"), missing.names.end());
+    EXPECT_NE(std::ranges::find(missing.names, "baseColorTexture"), missing.names.end());
+    EXPECT_EQ(edited.package().featureNames(missing.features), missing.names);
+    const LinearImage after = edited.picture();
+    EXPECT_NE(before.pixels, after.pixels);
+    // A package that has a case for it shows the same, up to the rounding of other shaders.
+    expectSameImage(after, pictureWithCoatedTexture(edited, options), "with a case");
+}
+
+TEST(LiveEditFallback, ASceneWithoutContentOfThePackage) {
+    const gltf::Scene scene = catalogueScene();
+    const LoadedScene loaded(scene, EditedSceneOptions().settings);
+    ASSERT_TRUE(loaded.ok());
+    SceneView view;
+    view.editable = true;
+    view.packageScene = kNoPackageScene;
+    const auto empty = GpuScene::upload(sharedContext(), loaded.package(), view);
+    ASSERT_TRUE(empty) << toString(empty.error());
+    EXPECT_EQ((*empty)->statistics().instances, 0U);
+    EXPECT_EQ((*empty)->editor()->material(0).generation, 0U);
+}
+
+// Adds many of everything in one frame, so that every buffer grows, and removes them again.
+TEST(LiveEditGrowth, EveryBufferGrowsAndShrinks) {
+    EditedSceneOptions options;
+    options.settings.lightSamples = 2;
+    EditedScene edited(options);
+    ASSERT_TRUE(edited.ok());
+    SceneEditor& editor = edited.editor();
+    const SceneEditor::State& state = editor.state();
+    edited.expectSameAsFresh("before");
+    const auto capacities = [&] {
+        return std::array{state.geometries.capacity, state.instances.capacity,  state.materials.capacity,
+                          state.lights.capacity,     state.lightNodes.capacity, state.tlasCapacity};
+    };
+    const auto first = capacities();
+    const std::uint64_t allocated = edited.gpuScene().allocatedBytes();
+    constexpr std::size_t kMany = 40;
+    for (std::size_t i = 0; i < kMany; ++i) {
+        const auto kind = static_cast<std::uint32_t>(i % kKinds);
+        const Result<MaterialHandle> material = editor.addMaterial(edited.source(kind).view());
+        ASSERT_TRUE(material);
+        edited.materials.push_back({*material, kind, false});
+        const EditedPrimitive primitive{edited.primitive(1, 0), *material};
+        const Result<AddedMesh> mesh = editor.addMesh(std::span(&primitive, 1));
+        ASSERT_TRUE(mesh);
+        edited.meshes.push_back({mesh->mesh, 1, {edited.materials.size() - 1}, false});
+        const float x = static_cast<float>(i % 8) * 0.5F - 2.0F;
+        const float y = static_cast<float>(i / 8) * 0.4F - 0.8F;
+        const std::array<float, 12> rows{0.3F, 0, 0, x, 0, 0.3F, 0, y, 0, 0, 0.3F, -2.0F - 0.01F * x};
+        const Result<AddedInstance> instance = editor.addInstance({mesh->mesh, rows});
+        ASSERT_TRUE(instance);
+        edited.instances.push_back({instance->instance, edited.meshes.size() - 1, {}, rows, true, false});
+        LightView light;
+        light.type = LightView::Type::Point;
+        light.position = {x, y + 1.0F, -1.0F};
+        light.intensity = {0.1F, 0.1F, 0.2F};
+        const Result<LightHandle> added = editor.addLight(light);
+        ASSERT_TRUE(added);
+        edited.lights.push_back({*added, light, false});
+    }
+    edited.frame();
+    const auto grown = capacities();
+    for (std::size_t i = 0; i < grown.size(); ++i) {
+        EXPECT_GT(grown[i], first[i]) << i;
+    }
+    edited.expectSameAsFresh("grown");
+    while (edited.instances.size() > 2) {
+        ASSERT_TRUE(editor.removeInstance(edited.instances.back().handle));
+        ASSERT_TRUE(editor.removeMesh(edited.meshes.back().handle));
+        ASSERT_TRUE(editor.removeMaterial(edited.materials.back().handle));
+        ASSERT_TRUE(editor.removeLight(edited.lights.back().handle));
+        edited.instances.pop_back();
+        edited.meshes.pop_back();
+        edited.materials.pop_back();
+        edited.lights.pop_back();
+    }
+    edited.frame();
+    EXPECT_EQ(capacities(), grown) << "buffers shrink only after trim()";
+    edited.drain();
+    editor.trim();
+    edited.frame();
+    EXPECT_EQ(capacities(), first);
+    edited.expectSameAsFresh("shrunk");
+    EXPECT_EQ(edited.gpuScene().allocatedBytes(), allocated);
+}
+
+// The shader binding table and the buckets serve any content.
+TEST(LiveEditStrategies, OtherStrategiesFollowEdits) {
+    for (const package::Strategy strategy : {package::kStrategyVisibility, package::kStrategyHitShaders}) {
+        const package::Tracer tracer =
+            strategy == package::kStrategyHitShaders ? package::kTracerRayPipeline : package::kTracerRayQuery;
+        if ((sharedContext().handles().tracers & tracer) == 0) {
+            continue;
+        }
+        EditedScene edited(EditedSceneOptions(strategy, tracer));
+        ASSERT_TRUE(edited.ok());
+        edited.expectSameAsFresh("as uploaded");
+        const Result<EditReport> report =
+            edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, edited.materials[5].handle);
+        ASSERT_TRUE(report) << toString(report.error());
+        edited.instances[1].materials = {5};
+        edited.expectSameAsFresh("a variant");
+        ASSERT_TRUE(edited.editor().removeInstance(edited.instances[0].handle));
+        edited.instances.erase(edited.instances.begin());
+        edited.expectSameAsFresh("without the floor");
+    }
+}
+
+}  // namespace
+}  // namespace glint::testing
