@@ -503,6 +503,28 @@ TEST_F(ReplacePackage, ErrorsKeepThePackageBefore) {
     expectNoValidationMessages();
 }
 
+TEST_F(ReplacePackage, AnEditableSceneKeepsItsPackage) {
+    const std::shared_ptr<const Package> original = packageOf(*before_, settingsFor(package::kStrategyUber));
+    scene_view::SceneViewData data = scene_view::makeSceneView(*before_);
+    scene_view::useLayoutOf(*original, *before_, data);
+    SceneView view = data.view();
+    view.editable = true;
+    const Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(sharedContext(), *original, view);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = setup_.width;
+    options.height = setup_.height;
+    const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+    ASSERT_NE(renderer, nullptr);
+    const LinearImage old = draw(*renderer);
+    const Result<PackageReplacement> replaced = renderer->replacePackage(original);
+    ASSERT_FALSE(replaced);
+    EXPECT_EQ(replaced.error().id, "scene-package");
+    expectEqualImage(draw(*renderer), old, "after the error");
+    expectNoValidationMessages();
+}
+
 TEST_F(ReplacePackage, AnotherRendererOfTheSceneSaysThatItIsStale) {
     const compiler::CompileSettings uber = settingsFor(package::kStrategyUber);
     const std::shared_ptr<const Package> original = packageOf(*before_, uber);

@@ -210,6 +210,10 @@ ScenePackage describePackage(const Package& package, const SceneView& scene, con
 
 Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& package) {
     const ScenePackage& now = scene.package;
+    if (scene.editor != nullptr) {
+        return otherScene(now.scene,
+                          "the scene was uploaded to be edited, and its editor keeps the package's tables");
+    }
     const std::optional<std::uint32_t> index = package.findScene(now.scene);
     if (!index) {
         return otherScene(now.scene, "the package has no scene of this name");
