@@ -268,8 +268,9 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
 // What a volume's facets pass from outside in all, over what they pass at the first bounce if none blocks another.
 GLINT_RELAXED float passedShare(Bsdf b) {
     // The mean of (1 - v·h)^5 over visible facets: over those whose reflection leaves it is the bias, and those whose
-    // reflection is blocked have about this cosine.
-    float alpha = sqrt(b.alpha.x * b.alpha.y);
+    // reflection is blocked have about this cosine. Facets block each other by their slopes towards the view.
+    vec2 along = b.view.xy * b.view.xy + 1e-4;
+    float alpha = sqrt(dot(along, b.alpha * b.alpha) / (along.x + along.y));
     vec2 blocked = vec2(0.65 * alpha / (1.0 + 0.62 * alpha * alpha), (0.64 - 0.38 * alpha) * b.view.z);
     float rest = 1.0 - min(sqrt(dot(blocked, blocked)), 1.0);
     float mean = b.viewBias + b.viewLoss * rest * rest * rest * rest * rest;

@@ -231,8 +231,10 @@ TEST(Furnace, NothingReflectsMoreThanItReceives) {
         if (most > 0.98) {
             most = largestOf(albedo(seen, 20000));
         }
-        EXPECT_LE(most, 1.001) << "material " << i << " of seed " << kSeed << ": " << seen;
-        failures += most > 1.001 ? 1 : 0;
+        // What a rough volume passes from outside is an estimate (see the tests of glass below).
+        const double bound = seen.has(GLINT_VOLUME) && seen.bsdf.eta.y > 1.0 ? 1.011 : 1.001;
+        EXPECT_LE(most, bound) << "material " << i << " of seed " << kSeed << ": " << seen;
+        failures += most > bound ? 1 : 0;
     }
 }
 
@@ -268,6 +270,28 @@ TEST(Furnace, GlassReflectsAndTransmitsEverything) {
                             : eta < 1.0 ? 1e-3
                                         : 1.1e-2)
                     << "roughness " << roughness << ", cosine " << cosine << ", eta " << eta;
+            }
+        }
+    }
+}
+
+// The fits of an anisotropic reflection are less exact for oblique views, and so is what they leave to pass.
+TEST(Furnace, AnisotropicGlassReflectsAndTransmitsNearlyEverything) {
+    for (const double roughness : {0.05, 0.3, 0.7}) {
+        for (const double strength : {0.3, 0.6, 1.0}) {
+            for (const double cosine : {0.02, 0.1, 0.5, 0.95}) {
+                for (const double phi : {0.0, 0.8, 1.45, 1.57}) {
+                    TestMaterial material = makeMaterial(roughness * roughness);
+                    material.lobes = GLINT_TRANSMISSION | GLINT_VOLUME | GLINT_ANISOTROPY;
+                    material.bsdf.alpha.x = anisotropicAlpha(material.bsdf.alpha.y, strength);
+                    material.bsdf.eta = glm::dvec3(1.5);
+                    material.bsdf.f0 = glm::dvec3(0.04);
+                    material.bsdf.transmitted = glm::dvec3(1.0);
+                    EXPECT_NEAR(meanWeight(material.seenFrom(direction(cosine, phi))), 1.0,
+                                strength < 0.5 ? 2e-2 : 6e-2)
+                        << "roughness " << roughness << ", strength " << strength << ", cosine " << cosine
+                        << ", azimuth " << phi;
+                }
             }
         }
     }
