@@ -1,5 +1,6 @@
 // glint_swap_in: measures how long a scene of many cases takes to its first frame, with all pipelines made
-// first and with pipelines that are made in the background, and how long the frames take while these swap in.
+// first and with pipelines that are made in the background, and how long the frames take while these swap in
+// and while another package of the scene replaces the first.
 #include "base/clock.h"
 #include "emit/compile.h"
 #include "synthetic/cases_scene.h"
@@ -36,6 +37,7 @@ struct Arguments {
     std::uint32_t threads = 0;
     std::uint32_t after = 100;
     bool skipsAllFirst = false;
+    bool replaces = false;
 };
 
 constexpr std::uint32_t kMostFrames = 1'000'000;
@@ -43,9 +45,18 @@ constexpr std::uint32_t kMostFrames = 1'000'000;
 struct Bed {
     std::unique_ptr<Context> context;
     std::unique_ptr<Package> package;
+    std::shared_ptr<const Package> other;  // the same scene, with other code in every shader that shades
     std::unique_ptr<GpuScene> scene;
     FrameOptions frame;
 };
+
+Result<Package> compiledPackage(const gltf::Scene& scene, const compiler::CompileSettings& settings) {
+    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, settings);
+    if (!compiled) {
+        return compiled.error();
+    }
+    return scene_view::loadPackage(*compiled);
+}
 
 Result<Bed> makeBed(const Arguments& arguments) {
     Bed bed;
@@ -77,15 +88,19 @@ Result<Bed> makeBed(const Arguments& arguments) {
     const bool coherent = options.coherence == synthetic::Coherence::Coherent;
     settings.effects = {false,
                         compiler::builtinEffects({"shadow", coherent ? "reflection" : "indirect-diffuse"})};
-    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, settings);
-    if (!compiled) {
-        return compiled.error();
-    }
-    Result<Package> package = scene_view::loadPackage(*compiled);
+    Result<Package> package = compiledPackage(scene, settings);
     if (!package) {
         return package.error();
     }
     bed.package = std::make_unique<Package>(std::move(*package));
+    if (arguments.replaces) {
+        settings.energyCompensation = false;
+        Result<Package> other = compiledPackage(scene, settings);
+        if (!other) {
+            return other.error();
+        }
+        bed.other = std::make_shared<const Package>(std::move(*other));
+    }
     Result<std::unique_ptr<GpuScene>> uploaded =
         GpuScene::upload(*bed.context, *bed.package, scene_view::makeSceneView(scene).view());
     if (!uploaded) {
@@ -112,7 +127,44 @@ struct Course {
     double completeMs = 0.0;    // the same, until a frame used the last pipeline
     std::vector<double> before;
     std::vector<double> after;
+    double replacedMs =
+        0.0;  // from the call of replacePackage() to the end of the first frame with the package
+    std::vector<double> replacing;  // frames from that call on; the first has the call's time, too
 };
+
+// Draws a frame and appends its milliseconds, those since `begin`.
+Status drawFrame(Renderer& renderer, const Bed& bed, base::Clock::time_point begin,
+                 std::vector<double>& frames) {
+    if (Status status = renderer.renderSamples(bed.frame, 1); !status) {
+        return status;
+    }
+    frames.push_back(base::millisecondsSince(begin));
+    return okStatus();
+}
+
+// Lets the other package replace the first, and draws until a frame has used it.
+Status replace(Renderer& renderer, const Bed& bed, Course& course) {
+    const base::Clock::time_point start = base::Clock::now();
+    if (const Result<PackageReplacement> replaced = renderer.replacePackage(bed.other); !replaced) {
+        return replaced.error();
+    }
+    base::Clock::time_point begin = start;
+    while (course.replacing.size() < kMostFrames) {
+        if (Status status = drawFrame(renderer, bed, begin, course.replacing); !status) {
+            return status;
+        }
+        const ReplacementProgress progress = renderer.replacementProgress();
+        if (progress.error) {
+            return *progress.error;
+        }
+        if (progress.inUse > 0) {
+            break;
+        }
+        begin = base::Clock::now();
+    }
+    course.replacedMs = base::millisecondsSince(start);
+    return okStatus();
+}
 
 Result<Course> follow(const Bed& bed, const RendererOptions& options, std::uint32_t framesAfter) {
     Course course;
@@ -126,11 +178,9 @@ Result<Course> follow(const Bed& bed, const RendererOptions& options, std::uint3
     std::uint32_t frames = 0;
     bool complete = false;
     while (!complete && frames < kMostFrames) {
-        const base::Clock::time_point begin = base::Clock::now();
-        if (Status status = (*renderer)->renderSamples(bed.frame, 1); !status) {
+        if (Status status = drawFrame(**renderer, bed, base::Clock::now(), course.before); !status) {
             return status.error();
         }
-        course.before.push_back(base::millisecondsSince(begin));
         if (frames++ == 0) {
             course.firstFrameMs = base::millisecondsSince(start);
         }
@@ -142,13 +192,47 @@ Result<Course> follow(const Bed& bed, const RendererOptions& options, std::uint3
     }
     course.completeMs = base::millisecondsSince(start);
     for (std::uint32_t i = 0; i < framesAfter; ++i) {
-        const base::Clock::time_point begin = base::Clock::now();
-        if (Status status = (*renderer)->renderSamples(bed.frame, 1); !status) {
+        if (Status status = drawFrame(**renderer, bed, base::Clock::now(), course.after); !status) {
             return status.error();
         }
-        course.after.push_back(base::millisecondsSince(begin));
+    }
+    if (bed.other) {
+        if (Status status = replace(**renderer, bed, course); !status) {
+            return status.error();
+        }
     }
     return course;
+}
+
+// How many frames took up to each multiple of the median, and the longest.
+void printHistogram(const char* name, const std::vector<double>& frames) {
+    constexpr double kMultiples[] = {1.0, 1.1, 1.25, 1.5, 2.0, 3.0};
+    const double median = quantile(frames, 0.5);
+    fmt::print("| {} | {} | {:.2f} |", name, frames.size(), median);
+    double least = 0.0;
+    for (const double multiple : kMultiples) {
+        const double most = multiple * median;
+        fmt::print(" {} |",
+                   std::ranges::count_if(frames, [&](double ms) { return ms > least && ms <= most; }));
+        least = most;
+    }
+    fmt::print(" {} | {:.2f} |\n", std::ranges::count_if(frames, [&](double ms) { return ms > least; }),
+               quantile(frames, 1.0));
+}
+
+// The frames while pipelines swap in, with all in use, and while a package is replaced.
+void printHistograms(const Course& course) {
+    fmt::print(
+        "\nreplaced after {:.0f} ms\n\n"
+        "| frames | number | median, ms | to the median | to 1.1 | to 1.25 | to 1.5 | to 2 | to 3 | above | "
+        "most, ms |\n"
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
+        course.replacedMs);
+    // The first frame waits for its pipelines.
+    printHistogram("pipelines swap in", {course.before.begin() + 1, course.before.end()});
+    printHistogram("all in use", course.after);
+    printHistogram("a package is replaced", course.replacing);
+    fmt::print("\n");
 }
 
 void print(const std::string& strategy, const char* way, const Course& course) {
@@ -192,6 +276,9 @@ int run(const Arguments& arguments) {
                 continue;
             }
             print(name, background ? "background" : "first", *course);
+            if (background && bed->other && course->before.size() > 1 && !course->after.empty()) {
+                printHistograms(*course);
+            }
         }
     }
     return 0;
@@ -217,6 +304,9 @@ int main(int count, char** words) {
     app.add_option("--after", arguments.after, "frames after the last pipeline")->capture_default_str();
     app.add_flag("--background-only", arguments.skipsAllFirst,
                  "do not measure pipelines that are made first");
+    app.add_flag(
+        "--replace", arguments.replaces,
+        "then replace the package by one without energy compensation, and print histograms of the frames");
     CLI11_PARSE(app, count, words);
     try {
         return glint::run(arguments);
