@@ -127,9 +127,8 @@ struct Course {
     double completeMs = 0.0;    // the same, until a frame used the last pipeline
     std::vector<double> before;
     std::vector<double> after;
-    double replaceCallMs = 0.0;  // of replacePackage() alone
-    double replacedMs =
-        0.0;  // from the call of replacePackage() to the end of the first frame with the package
+    double replaceCallMs = 0.0;     // of replacePackage() alone
+    double replacedMs = 0.0;        // from that call to the end of the first frame with the other package
     std::vector<double> replacing;  // frames from that call on; the first has the call's time, too
 };
 
