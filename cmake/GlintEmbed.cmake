@@ -61,4 +61,7 @@ function(glint_embed target)
   add_dependencies(${target} ${target}_embedded)
   set_source_files_properties("${arg_OUTPUT}" TARGET_DIRECTORY ${target} PROPERTIES GENERATED TRUE)
   target_sources(${target} PRIVATE "${arg_OUTPUT}")
+  set_target_properties(${target} PROPERTIES GLINT_EMBEDDED_LIST "${arg_OUTPUT}.list")
+  # Programs can bring files of their own, as the test of docs/strategies.md does.
+  glint_compiled_alone(${target} "${arg_OUTPUT}")
 endfunction()

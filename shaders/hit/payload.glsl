@@ -13,18 +13,3 @@ struct TracePayload {
     LightPassage passage;
 #endif
 };
-
-// The payload of the strategy hit-shaders, 52 or 56 bytes: the content of a ShadeResult, and the start of the shadow
-// ray. On the way to the hit, `radiance` holds the number of the sample (as bits), the cone's width at the ray's start, and its
-// spread. In packages whose shadow rays pass glass, a shadow ray to a light that is none of the emissive ones has the
-// three members of its LightPassage in the first three here.
-struct HitPayload {
-    vec3 radiance;
-    vec3 direct;
-    vec3 shadowOrigin;
-    vec3 shadowDirection;
-    float shadowDistance;  // 0: no shadow ray; negative: the ray left the scene
-#if GLINT_EMISSIVE_LIGHTS
-    uint shadowSees;
-#endif
-};

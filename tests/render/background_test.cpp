@@ -18,7 +18,7 @@ using namespace glint::testing;
 
 compiler::CompileSettings settingsWith(bool fallback) {
     compiler::CompileSettings settings;
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kAllTracers;
     settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
@@ -44,7 +44,7 @@ LinearImage renderedBy(Renderer& renderer, const RenderSetup& setup) {
 // Calls `test` with every strategy and tracer that the device has.
 template <typename Test>
 void forEachWay(const Test& test) {
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         for (const package::Tracer tracer : package::kTracers) {
             const bool has = (sharedContext().handles().tracers & tracer) != 0;
             if (has && (package::tracersOf(strategy, package::kAllTracers) & tracer) != 0) {
@@ -167,7 +167,7 @@ TEST_F(Background, NeedsAPackageWithAFallback) {
     ASSERT_FALSE(renderer);
     EXPECT_EQ(renderer.error().id, "package-fallback");
     EXPECT_TRUE(
-        without.package().spirv({package::ModuleRole::ShadeFallback, 0, package::kTracerRayQuery}).empty());
+        without.package().spirv({package::roleNamed("ShadeFallback"), 0, package::kTracerRayQuery}).empty());
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ void expectOver(const LinearImage& image, double samples) {
 compiler::CompileSettings blendSettings() {
     compiler::CompileSettings settings;
     settings.plan.keys.alpha = package::AlphaPolicy::Stochastic;
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kAllTracers;
     return settings;
 }
@@ -124,7 +124,7 @@ TEST(Blend, RaysSeeLayersOverEachOther) {
     RenderSetup setup = squareSetup(scene);
     setup.samples = 2;
     std::optional<LinearImage> reference;
-    for (const package::StrategyInfo& strategy : package::kStrategyTable) {
+    for (const package::StrategyInfo& strategy : package::strategyTable()) {
         for (const package::Tracer tracer : {package::kTracerRayQuery, package::kTracerRayPipeline}) {
             const bool pairs = !strategy.ownPipeline || tracer == package::kTracerRayPipeline;
             if (!pairs || (sharedContext().handles().tracers & tracer) == 0) {

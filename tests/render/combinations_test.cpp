@@ -40,7 +40,7 @@ struct Way {
 
 std::vector<Way> waysOf(std::uint32_t tracers) {
     std::vector<Way> ways;
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         for (const package::Tracer tracer : package::kTracers) {
             if ((package::tracersOf(strategy, tracers) & tracer) != 0) {
                 ways.push_back({strategy, tracer});
@@ -74,7 +74,7 @@ std::vector<Combination> allCombinations() {
     // Adds the orderings and binnings of one way.
     const auto addWay = [&](unsigned room, compiler::MergePolicy merge, package::ShadowPlacement shadows,
                             const Way& way) {
-        const bool orders = (package::kOrderedStrategies & way.strategy) != 0;
+        const bool orders = (package::orderedStrategies() & way.strategy) != 0;
         for (unsigned i = 0; i < (orders ? kOrderings : 1U) * kBinnings; ++i) {
             std::optional<package::Ordering> ordering;
             if (orders) {
@@ -257,7 +257,7 @@ TEST_P(Combinations, GiveOneImage) {
 TEST_P(Combinations, PackedHitsAreClose) {
     const gltf::Scene scene = GetParam().make();
     compiler::CompileSettings settings;
-    settings.strategies = package::kOrderedStrategies;
+    settings.strategies = package::orderedStrategies();
     settings.plan.keys.alpha = GetParam().alpha;
     const LoadedScene full(scene, settings);
     settings.hitRecord = package::HitRecordFormat::Packed;

@@ -52,7 +52,7 @@ class Convergence : public ::testing::Test {
 protected:
     Convergence() : scene_(roomWithoutSharpHighlights()) {
         compiler::CompileSettings settings;
-        settings.strategies = package::kAllStrategies;
+        settings.strategies = package::allStrategies();
         settings.plan.merge = compiler::MergePolicy::All;
         loaded_.emplace(scene_, settings);
     }
@@ -113,7 +113,7 @@ TEST_F(Convergence, StrategiesHaveTheSameMean) {
     };
     std::vector<Estimate> estimates;
     std::uint32_t seed = 100;
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         std::vector<double> means;
         for (int k = 0; k < kSeeds; ++k) {
             const LinearImage image = render(strategy, 16, seed++);

@@ -51,7 +51,7 @@ gltf::Scene sheetAndPanel(const materials::MaterialModel& model) {
 
 compiler::CompileSettings settingsWith(const std::vector<std::string>& effects) {
     compiler::CompileSettings settings;
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kTracerRayQuery;
     settings.effects = {.ofPacks = effects};
     return settings;
@@ -66,7 +66,7 @@ std::map<package::Strategy, LinearImage> picturesOf(const gltf::Scene& scene,
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     std::map<package::Strategy, LinearImage> pictures;
     const LoadedScene loaded(scene, settings);
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         if (loaded.ok()) {
             pictures[strategy] = loaded.render(strategy, setup, counters);
         }
@@ -96,7 +96,7 @@ TEST_F(EffectOfThePage, BringsTheLightFromBehind) {
     const gltf::Scene scene = sheetAndPanel(model());
     FrameCounters counters;
     const auto pictures = picturesOf(scene, settingsWith({"translucency"}), &counters);
-    ASSERT_EQ(pictures.size(), package::kStrategies.size());
+    ASSERT_EQ(pictures.size(), package::strategies().size());
     const LinearImage& reference = pictures.begin()->second;
     for (const auto& [strategy, picture] : pictures) {
         ASSERT_FALSE(picture.pixels.empty());

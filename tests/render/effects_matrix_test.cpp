@@ -66,7 +66,7 @@ struct Modules {
 Modules modulesOf(const compiler::CompiledPackage& package) {
     Modules modules;
     for (const compiler::CompiledModule& module : package.modules) {
-        if (module.key.role == package::ModuleRole::ShadeCase) {
+        if (module.key.role == package::roleNamed("ShadeCase")) {
             ++modules.cases;
         } else {
             modules.roles.insert(module.name);

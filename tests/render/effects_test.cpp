@@ -20,7 +20,7 @@ using namespace glint::testing;
 compiler::CompileSettings allEffects() {
     compiler::CompileSettings settings;
     settings.effects = {false, package::kAllEffects};
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kAllTracers;
     return settings;
 }

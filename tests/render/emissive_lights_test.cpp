@@ -275,14 +275,14 @@ TEST(EmissiveLights, StrategiesAgree) {
     for (const package::ShadowPlacement shadows :
          {package::ShadowPlacement::Inline, package::ShadowPlacement::Deferred}) {
         const bool isInline = shadows == package::ShadowPlacement::Inline;
-        const Ways ways{EmissiveLights::On, 2, 2, true, package::kAllStrategies, shadows};
+        const Ways ways{EmissiveLights::On, 2, 2, true, package::allStrategies(), shadows};
         compiler::CompileSettings settings = settingsOf(ways);
-        settings.strategies = isInline ? package::kAllStrategies : std::uint32_t{package::kStrategyUber};
+        settings.strategies = isInline ? package::allStrategies() : std::uint32_t{package::kStrategyUber};
         settings.tracers = package::kAllTracers;
         settings.plan.merge = compiler::MergePolicy::None;
         const LoadedScene loaded(scene, settings, noLights);
         ASSERT_TRUE(loaded.ok());
-        for (const package::Strategy strategy : package::kStrategies) {
+        for (const package::Strategy strategy : package::strategies()) {
             for (const package::Tracer tracer : package::kTracers) {
                 if ((sharedContext().handles().tracers & tracer) == 0 ||
                     (settings.strategies & strategy) == 0 ||

@@ -372,7 +372,7 @@ TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {
     // It is not the same shader.
     for (std::size_t i = 0; i < own.compiled().modules.size(); ++i) {
         const compiler::CompiledModule& module = own.compiled().modules[i];
-        if (module.key.role == package::ModuleRole::UberShade) {
+        if (module.key.role == package::roleNamed("UberShade")) {
             EXPECT_NE(module.spirv, other.compiled().modules[i].spirv);
         }
     }

@@ -122,12 +122,12 @@ TEST(ManyLights, StrategiesChooseTheSameLights) {
     materials::Material mirror = mirrorMaterial();
     addInstance(
         scene, addMesh(scene, makeQuad(addMaterial(scene, mirror), {1, -1, -4}, {1.5, 0, 0.5}, {0, 1.5, 0})));
-    const LoadedScene loaded = load(scene, 2, package::kAllStrategies);
+    const LoadedScene loaded = load(scene, 2, package::allStrategies());
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = setupOf(scene, 4, 3);
     const LinearImage reference = loaded.render(package::kStrategyUber, setup);
     ASSERT_FALSE(reference.pixels.empty());
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         if ((package::tracersOf(strategy, package::kTracerRayQuery) & package::kTracerRayQuery) != 0) {
             expectSameImage(loaded.render(strategy, setup), reference,
                             std::string(package::nameOf(strategy)));

@@ -256,11 +256,11 @@ TEST(PackStages, EveryStrategyTracerAndMergePolicyGivesOneImage) {
     for (const compiler::MergePolicy merge : policies) {
         compiler::CompileSettings settings = separateCases(package::AlphaPolicy::Tested);
         settings.plan.merge = merge;
-        settings.strategies = package::kAllStrategies;
+        settings.strategies = package::allStrategies();
         settings.tracers = package::kAllTracers;
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
-        for (const package::Strategy strategy : package::kStrategies) {
+        for (const package::Strategy strategy : package::strategies()) {
             for (const package::Tracer tracer : package::kTracers) {
                 if ((package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {
                     continue;

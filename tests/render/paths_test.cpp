@@ -79,7 +79,7 @@ double meanOf(const LinearImage& image) {
 void expectAllWaysAgree(const gltf::Scene& scene, ShadowPlacement shadows, compiler::MergePolicy merge) {
     constexpr std::uint32_t kBounces = 3;
     compiler::CompileSettings settings = pathSettings(kBounces, package::kStrategyUber);
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kAllTracers;
     settings.shadows = shadows;
     settings.plan.merge = merge;
@@ -89,7 +89,7 @@ void expectAllWaysAgree(const gltf::Scene& scene, ShadowPlacement shadows, compi
     const RenderSetup setup = pathSetup(scene, 32, 24, 2);
     std::optional<LinearImage> reference;
     FrameCounters expected;
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         for (const package::Tracer tracer : package::kTracers) {
             const bool has = (sharedContext().handles().tracers & tracer) != 0;
             if (!has || (package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {

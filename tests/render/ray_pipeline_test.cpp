@@ -28,7 +28,7 @@ struct Way {
 
 std::vector<Way> allWays() {
     std::vector<Way> ways;
-    for (const Strategy strategy : package::kStrategies) {
+    for (const Strategy strategy : package::strategies()) {
         for (const Tracer tracer : package::kTracers) {
             if ((package::tracersOf(strategy, package::kAllTracers) & tracer) != 0) {
                 ways.push_back({strategy, tracer});
@@ -51,7 +51,7 @@ RendererOptions optionsOf(const Way& way) {
 
 compiler::CompileSettings settingsFor(ShadowPlacement shadows, compiler::MergePolicy merge) {
     compiler::CompileSettings settings;
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kAllTracers;
     settings.shadows = shadows;
     settings.plan.merge = merge;
@@ -133,7 +133,7 @@ TEST(RayPipelines, DeferredShadowsAndSharedCasesToo) {
 TEST(RayPipelines, PackedHitsToo) {
     compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::Family);
     settings.hitRecord = package::HitRecordFormat::Packed;
-    settings.strategies = package::kOrderedStrategies;
+    settings.strategies = package::orderedStrategies();
     expectAllWaysAgreeInHall(settings);
 }
 

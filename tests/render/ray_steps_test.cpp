@@ -195,7 +195,7 @@ private:
 compiler::CompileSettings stepSettings() {
     compiler::CompileSettings settings;
     settings.passes = package::Passes::Steps;
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     settings.tracers = package::kAllTracers;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;

@@ -129,7 +129,7 @@ std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
 
 // Cases that send no shadow ray trace nothing.
 std::span<const std::uint32_t> caseWords(const Package& package, std::uint32_t shaderId) {
-    return package.spirv({package::ModuleRole::ShadeCase, shaderId, 0});
+    return package.spirv({package::roleNamed("ShadeCase"), shaderId, 0});
 }
 
 class ReplacePackage : public ::testing::Test {
@@ -137,7 +137,7 @@ protected:
     static void SetUpTestSuite() {
         before_ = new gltf::Scene(roomScene());
         after_ = new gltf::Scene(editedRoom());
-        const compiler::CompileSettings settings = settingsFor(package::kAllStrategies, true);
+        const compiler::CompileSettings settings = settingsFor(package::allStrategies(), true);
         edited_ = new std::shared_ptr<const Package>(packageOf(*after_, settings));
         original_ = new std::shared_ptr<const Package>(packageOf(*before_, settings));
     }
@@ -164,7 +164,7 @@ protected:
     // Every strategy, and visibility with every tracer that the device has.
     template <typename Test>
     static void forEachWay(const Test& test) {
-        for (const package::Strategy strategy : package::kStrategies) {
+        for (const package::Strategy strategy : package::strategies()) {
             bool tested = false;
             for (const package::Tracer tracer : package::kTracers) {
                 const bool again = tested && strategy != package::kStrategyVisibility;

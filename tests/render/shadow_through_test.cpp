@@ -265,7 +265,7 @@ LinearImage agreedPicture(const gltf::Scene& scene, ShadowThrough through, packa
     RenderSetup setup = darkSetup(scene, 24);
     setup.frame.maxReflectionRoughness = 1.0F;
     std::optional<LinearImage> reference;
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         for (const package::Tracer tracer : package::kTracers) {
             const bool has = loaded.ok() && (strategies & strategy) != 0 &&
                              (sharedContext().handles().tracers & tracer) != 0;
@@ -288,8 +288,8 @@ LinearImage agreedPicture(const gltf::Scene& scene, ShadowThrough through, packa
 
 TEST(ShadowThrough, EveryStrategyAndTracerGivesTheSamePicture) {
     const gltf::Scene scene = glassRoom();
-    const LinearImage traced =
-        agreedPicture(scene, ShadowThrough::Glass, package::ShadowPlacement::Inline, package::kAllStrategies);
+    const LinearImage traced = agreedPicture(scene, ShadowThrough::Glass, package::ShadowPlacement::Inline,
+                                             package::allStrategies());
     const LinearImage deferred = agreedPicture(
         scene, ShadowThrough::Glass, package::ShadowPlacement::Deferred, package::kStrategyHitShaders);
     expectSameImage(deferred, traced, "deferred shadow rays");

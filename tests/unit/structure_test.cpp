@@ -1,4 +1,6 @@
 // The shape of the source tree: how large folders are, and which part may know which.
+#include <glint/strategies.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <regex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +20,7 @@
 namespace {
 
 namespace fs = std::filesystem;
+namespace package = glint::package;
 
 // The parts of the tool, from what knows least to what knows most. A part includes itself and the parts
 // before it.
@@ -27,8 +31,9 @@ constexpr std::string_view kParts[] = {"base",  "materials", "plan",       "gltf
 // what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";
 constexpr std::string_view kPlainHeaders[] = {
-    "glint/effects.h",         "glint/embedded_file.h",    "glint/names.h",  "glint/package_format.h",
-    "glint/package_modules.h", "glint/renderer_options.h", "glint/result.h", "glint/scene_view.h"};
+    "glint/effects.h",        "glint/embedded_file.h",   "glint/names.h",
+    "glint/package_format.h", "glint/package_modules.h", "glint/renderer_options.h",
+    "glint/result.h",         "glint/scene_view.h",      "glint/strategies.h"};
 
 std::optional<std::size_t> rankOf(std::string_view part) {
     const auto* const found = std::ranges::find(kParts, part);
@@ -160,6 +165,46 @@ TEST(Structure, TheCompilerKnowsNoVulkan) {
             });
         });
     }
+}
+
+// A strategy is its row and its folder. What else names one would have to be touched for a new one.
+TEST(Structure, StrategiesAreNamedByTheirRowsAndFolders) {
+    const std::set<std::string> allowed{
+        "runtime/src/modules/strategies.cpp",  // the rows
+        "runtime/include/glint/strategies.h",  // names for programs, and what is chosen without a setting
+        "tool/plan/strategy_constants.h",      // measured costs, which a script writes
+    };
+    std::string names;  // of strategies, modules and passes, in quotes; of strategies, in options and paths
+    for (const package::StrategyInfo& info : package::strategyTable()) {
+        const std::string name(info.name);
+        std::string folder = name;
+        std::ranges::replace(folder, '-', '_');
+        names += "|\"" + name + "\"|--strategy[ =]" + name + "\\b|strategies/" + folder + "\\b";
+        names += name == folder ? "" : "|" + name;
+        for (const package::StrategyModule& module : info.modules) {
+            for (const std::string_view one : {module.name, module.fallback, module.pass}) {
+                names += one.empty() ? "" : "|\"" + std::string(one) + "\"";
+            }
+        }
+    }
+    const std::regex naming("kStrategy[A-Z]" + names);
+    int files = 0;
+    for (const char* const folder : {"cmake", "runtime", "shaders", "templates", "tool"}) {
+        for (const fs::directory_entry& entry :
+             fs::recursive_directory_iterator(fs::path(GLINT_SOURCE_DIR) / folder)) {
+            const std::string path = fs::relative(entry.path(), GLINT_SOURCE_DIR).generic_string();
+            if (!entry.is_regular_file() || allowed.contains(path) ||
+                path.starts_with("shaders/strategies/")) {
+                continue;
+            }
+            ++files;
+            std::ifstream file(entry.path());
+            for (std::string line; std::getline(file, line);) {
+                EXPECT_FALSE(std::regex_search(line, naming)) << path << ": " << line;
+            }
+        }
+    }
+    EXPECT_GT(files, 500);
 }
 
 TEST(Structure, TheRuntimeIncludesNothingOfTheTool) {

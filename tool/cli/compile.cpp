@@ -199,9 +199,9 @@ std::vector<Diagnostic> warningsOf(std::span<const gltf::Scene> scenes) {
 
 // Adds to the strategies, if they contain "auto", the one that should be fastest for a frame of 1920 x 1080
 // of each scene, taken together. It uses the device of the calibration, or else the built-in GPU. If the
-// choice is hit-shaders, which not every device runs, uber is added. Has the errors of knownCosts() and
-// adviseStrategy(). `made` is the plan with these options; if it is needed, it is
-// made here at the latest.
+// choice has a pipeline of its own, which not every device runs, the first strategy is added. Has the errors
+// of knownCosts() and adviseStrategy(). `made` is the plan with these options; if it is needed, it is made
+// here at the latest.
 Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
                         std::optional<compiler::Plan>& made, CompileArguments& arguments) {
     compiler::Settings& settings = arguments.settings;
@@ -227,7 +227,7 @@ Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptio
     }
     const package::Strategy chosen = *valueNamed<package::Strategy>(advice->choice.strategy);
     settings.compile.strategies |=
-        chosen | ((chosen & package::kPipelineStrategies) != 0 ? std::uint32_t{package::kStrategyUber} : 0U);
+        chosen | (package::infoOf(chosen).ownPipeline ? std::uint32_t{package::strategyTable().front().strategy} : 0U);
     settings.compile.strategyChoice = std::move(*advice);
     return okStatus();
 }

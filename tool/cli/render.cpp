@@ -370,7 +370,7 @@ int run(const Console& console, const RenderArguments& arguments) {
 void addRender(CLI::App& app, Action& chosen) {
     CLI::App& command =
         addCommand(app, "render", "Render a scene with its compiled shaders",
-                   "glint render scene.gltf -o scene.png --size 1280x720 --spp 16 --strategy uber");
+                   "glint render scene.gltf -o scene.png --size 1280x720 --spp 16 --strategy auto");
     const auto arguments = std::make_shared<RenderArguments>();
     addRenderOptions(command, arguments, [arguments, &chosen] {
         chosen = [arguments](const Console& console) { return run(console, *arguments); };

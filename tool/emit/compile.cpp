@@ -65,22 +65,27 @@ Status checkPositionFetch(const CompileSettings& settings, const std::string& wh
                 glslangVersion()),
             "build glint with glslang 12.2 or newer, as Debian 13 has it, or leave out --position-fetch");
     }
-    const std::uint32_t able = settings.strategies & ~package::kOrderedStrategies;
+    const std::uint32_t able = settings.strategies & ~package::orderedStrategies();
     const bool byQuery =
-        (able & ~package::kPipelineStrategies) != 0 && (settings.tracers & package::kTracerRayQuery) != 0;
-    if (!byQuery && (able & package::kPipelineStrategies) == 0) {
+        (able & ~package::pipelineStrategies()) != 0 && (settings.tracers & package::kTracerRayQuery) != 0;
+    if (!byQuery && (able & package::pipelineStrategies()) == 0) {
         return makeError("position-fetch", where,
-                         "no shader of this package could fetch positions: only uber with ray queries and "
-                         "hit-shaders can, because they shade a hit where they find it",
+                         fmt::format("no shader of this package could fetch positions: only {} with ray "
+                                     "queries and {} can, because they shade a hit where they find it",
+                                     fmt::join(strategyNames(~package::orderedStrategies() &
+                                                             ~package::pipelineStrategies()),
+                                               ", "),
+                                     fmt::join(strategyNames(package::pipelineStrategies()), ", ")),
                          "add one of these strategies, or leave out --position-fetch");
     }
     return okStatus();
 }
 
 Status checkSettings(const CompileSettings& settings, const std::string& where) {
-    if (settings.strategies == 0 || settings.strategies > package::kAllStrategies) {
-        return makeError("strategy", where, fmt::format("{:#x} is no set of strategies", settings.strategies),
-                         "choose among uber, visibility, sorted-uber and hit-shaders");
+    if (settings.strategies == 0 || settings.strategies > package::allStrategies()) {
+        return makeError(
+            "strategy", where, fmt::format("{:#x} is no set of strategies", settings.strategies),
+            fmt::format("choose among {}", fmt::join(strategyNames(package::allStrategies()), ", ")));
     }
     if (settings.tracers == 0 || settings.tracers > package::kAllTracers) {
         return makeError("tracer", where, fmt::format("{:#x} is no set of tracers", settings.tracers),
@@ -192,7 +197,7 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings s
 // Fills in what depends on the scenes and on other settings.
 Result<CompileSettings> completed(std::span<const gltf::Scene> scenes, CompileSettings settings) {
     // Some strategies have a tracer of their own. If nothing else traces, it is the only tracer.
-    if ((settings.strategies & ~package::kPipelineStrategies) == 0) {
+    if ((settings.strategies & ~package::pipelineStrategies()) == 0) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
     Result<EmissiveLights> emissive = emissiveLightsOf(scenes, settings);
@@ -235,7 +240,7 @@ Result<Value> guarded(std::span<const gltf::Scene> scenes, const Work& work) {
 
 std::vector<std::string> strategyNames(std::uint32_t strategies) {
     std::vector<std::string> names;
-    for (const package::Strategy strategy : package::kStrategies) {
+    for (const package::Strategy strategy : package::strategies()) {
         if ((strategies & strategy) != 0) {
             names.emplace_back(package::nameOf(strategy));
         }

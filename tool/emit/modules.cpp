@@ -11,7 +11,7 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
+#include <string_view>
 #include <utility>
 
 namespace glint::compiler {
@@ -23,50 +23,10 @@ namespace {
 // File systems allow names of 255 bytes. The shader ID alone already makes a name unique.
 constexpr std::size_t kMaxCaseNameLength = 100;
 
-// The source of a role's GLSL: a file below shaders/, or a template.
-struct RoleSource {
-    ModuleRole role;
-    std::string_view source;
-};
-
 // Sources for an ordering that has passes of its own.
-constexpr RoleSource kTileSortSources[] = {
+constexpr std::pair<ModuleRole, std::string_view> kTileSortSources[] = {
     {ModuleRole::BucketCount, "passes/bucket_count_tile_sort.comp"},
     {ModuleRole::BucketCopy, "passes/bucket_copy_tile_sort.comp"},
-};
-
-constexpr RoleSource kSources[] = {
-    {ModuleRole::GBufferVertex, "passes/gbuffer.vert"},
-    {ModuleRole::GBufferFragment, "passes/gbuffer.frag"},
-    {ModuleRole::Lighting, "passes/lighting.comp"},
-    {ModuleRole::EffectRays, "effect_rays.comp.mustache"},
-    {ModuleRole::RayDispatch, "passes/ray_dispatch.comp"},
-    {ModuleRole::UberShade, "strategies/uber/uber.comp"},
-    {ModuleRole::Trace, "passes/trace.comp"},
-    {ModuleRole::BucketCount, "passes/bucket_count.comp"},
-    {ModuleRole::BucketOffset, "passes/bucket_offset.comp"},
-    {ModuleRole::BucketCopy, "passes/bucket_copy.comp"},
-    {ModuleRole::ShadeMiss, "strategies/visibility/shade_miss.comp"},
-    {ModuleRole::ShadeCase, "strategies/visibility/shade_case.comp.mustache"},
-    {ModuleRole::Compose, "passes/compose.comp"},
-    {ModuleRole::SortedShade, "strategies/sorted_uber/sorted_shade.comp"},
-    {ModuleRole::ShadowDispatch, "passes/shadow_dispatch.comp"},
-    {ModuleRole::ShadowTrace, "passes/shadow_trace.comp"},
-    {ModuleRole::OrderCheck, "passes/order_check.comp"},
-    {ModuleRole::TraceClosestHit, "passes/trace.rchit"},
-    {ModuleRole::TraceAnyHit, "passes/trace.rahit"},
-    {ModuleRole::TraceMiss, "passes/trace.rmiss"},
-    {ModuleRole::HitTrace, "strategies/hit_shaders/hit_trace.rgen"},
-    {ModuleRole::HitCase, "strategies/hit_shaders/hit_case.rchit.mustache"},
-    {ModuleRole::HitUnknown, "strategies/hit_shaders/hit_unknown.rchit"},
-    {ModuleRole::HitMiss, "strategies/hit_shaders/hit_miss.rmiss"},
-    {ModuleRole::HitAnyHit, "strategies/hit_shaders/hit_any.rahit"},
-    {ModuleRole::PathRays, "passes/path_rays.comp"},
-    {ModuleRole::Deform, "passes/deform.comp"},
-    {ModuleRole::UberFallback, "strategies/uber/uber.comp"},
-    {ModuleRole::ShadeFallback, "strategies/visibility/shade_case.comp.mustache"},
-    {ModuleRole::SortedFallback, "strategies/sorted_uber/sorted_shade.comp"},
-    {ModuleRole::HitFallback, "strategies/hit_shaders/hit_case.rchit.mustache"},
 };
 
 std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKey& key,
@@ -76,9 +36,10 @@ std::string_view sourceOf(const package::RoleInfo& info, const package::ModuleKe
     }
     const bool sortsTiles = info.repeated == package::Repeated::ByOrdering &&
                             key.index == static_cast<std::uint32_t>(package::Ordering::TileSort);
-    const std::span<const RoleSource> sources =
-        sortsTiles ? std::span<const RoleSource>(kTileSortSources) : std::span<const RoleSource>(kSources);
-    return std::ranges::find(sources, key.role, &RoleSource::role)->source;
+    return sortsTiles ? std::ranges::find(kTileSortSources, key.role,
+                                          &std::pair<ModuleRole, std::string_view>::first)
+                            ->second
+                      : info.source;
 }
 
 ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
@@ -90,6 +51,7 @@ ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
         case package::ShaderKind::Compute:
             return ShaderStage::Compute;
         case package::ShaderKind::Tracing:
+        case package::ShaderKind::Shading:
             return tracer == package::kTracerRayPipeline ? ShaderStage::RayGeneration : ShaderStage::Compute;
         case package::ShaderKind::RayGeneration:
             return ShaderStage::RayGeneration;
@@ -133,7 +95,7 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
     } else if (info.repeated == package::Repeated::ByWalk) {
         name = model.effects[key.index].file() + "_walk";
     } else if (info.purpose == package::Purpose::Fallback) {
-        // "shade_case" gives shade_fallback, "uber" uber_fallback.
+        // "shade_case" gives shade_fallback, "sky" would give sky_fallback.
         constexpr std::string_view kCase = "_case";
         name.resize(name.size() - (name.ends_with(kCase) ? kCase.size() : 0));
         name += "_fallback";
@@ -223,12 +185,6 @@ Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKe
     return module;
 }
 
-// Whether the role's shader chooses among cases.
-bool hasSwitch(ModuleRole role) {
-    return role == ModuleRole::UberShade || role == ModuleRole::SortedShade ||
-           role == ModuleRole::UberFallback || role == ModuleRole::SortedFallback;
-}
-
 // Returns the switch of shaders that have the fallback alone.
 Result<std::string> fallbackCases(const SourceSet& sources, kainjow::mustache::data context) {
     context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
@@ -288,7 +244,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool ofCase = info.repeated == package::Repeated::ByCase;
-        const bool ofSwitch = hasSwitch(key.role);
+        const bool ofSwitch = info.hasSwitch();
         const bool ofFallback = info.purpose == package::Purpose::Fallback;
         const SourceSet* own = ofFallback && ofSwitch ? &fallbackSwitch : &none;
         if (ofCase || (ofFallback && !ofSwitch)) {

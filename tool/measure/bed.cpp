@@ -265,7 +265,7 @@ Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, cons
     mount.renderer_ = std::move(renderer);
     mount.frame_ = frameOptions(render, camera_, sky_, environment_.get());
     mount.samples_ = render.samples;
-    mount.ordersHits_ = (*render.strategy & package::kOrderedStrategies) != 0;
+    mount.ordersHits_ = (*render.strategy & package::orderedStrategies()) != 0;
     return mount;
 }
 

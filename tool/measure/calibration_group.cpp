@@ -37,7 +37,7 @@ compiler::CompileSettings settingsOf(const CalibrationSettings& settings, std::u
 std::vector<CaseWork> workOf(const compiler::CompiledPackage& compiled) {
     std::vector<CaseWork> work(compiled.plan.cases.size());
     for (const compiler::CompiledModule& module : compiled.modules) {
-        if (module.key.role == package::ModuleRole::ShadeCase) {
+        if (package::findRole(module.key.role)->over == package::Over::Buckets) {
             CaseWork& one = work[module.key.index];
             one.instructions = module.statistics.instructions;
             one.fetches = module.statistics.textureFetches;
@@ -50,8 +50,8 @@ std::vector<CaseWork> workOf(const compiler::CompiledPackage& compiled) {
 
 std::vector<std::string> strategiesFor(std::uint32_t tracers) {
     std::vector<std::string> names;
-    for (const package::Strategy strategy : package::kStrategies) {
-        const bool pipelineOnly = (strategy & package::kPipelineStrategies) != 0;
+    for (const package::Strategy strategy : package::strategies()) {
+        const bool pipelineOnly = (strategy & package::pipelineStrategies()) != 0;
         if (!pipelineOnly || (tracers & package::kTracerRayPipeline) != 0) {
             names.emplace_back(package::nameOf(strategy));
         }

@@ -136,7 +136,7 @@ private:
         }
         RendererOptions rendering = rendererOptions(settings_.render);
         rendering.strategy = *valueNamed<package::Strategy>(measure.strategy);
-        if ((rendering.strategy & package::kPipelineStrategies) != 0) {
+        if ((rendering.strategy & package::pipelineStrategies()) != 0) {
             rendering.tracer.reset();
         }
         rendering.width = entry_.width;
@@ -150,7 +150,7 @@ private:
         measure.pipelineMs = (*renderer)->pipelineMaking().milliseconds;
         measure.bytes = (*renderer)->footprint().bytes;
         measure.tracer = package::nameOf((*renderer)->tracer());
-        if ((rendering.strategy & package::kOrderedStrategies) != 0) {
+        if ((rendering.strategy & package::orderedStrategies()) != 0) {
             measure.ordering = package::nameOf((*renderer)->ordering());
         }
         runners_.push_back({index, std::move(*renderer)});

@@ -79,9 +79,9 @@ void readStrategy(base::JsonReader& reader, const base::Json& json, const std::s
     compiler::StrategyCosts costs;
     costs.strategy = reader.text(json, place, "strategy");
     if (reader.ok() &&
-        std::ranges::find(compiler::kStrategyNames, costs.strategy) == std::end(compiler::kStrategyNames)) {
+        std::ranges::find(compiler::simplestFirst(), costs.strategy) == compiler::simplestFirst().end()) {
         reader.fail(place + "/strategy",
-                    fmt::format("is none of {}", fmt::join(compiler::kStrategyNames, ", ")));
+                    fmt::format("is none of {}", fmt::join(compiler::simplestFirst(), ", ")));
     }
     if (reader.ok() && findCosts(file.costs, costs.strategy) != nullptr) {
         reader.fail(place + "/strategy", "is there twice");

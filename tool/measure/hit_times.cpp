@@ -15,10 +15,7 @@ double HitTimes::*partOf(Pass pass) {
         case Pass::Offset:
         case Pass::Copy:
             return &HitTimes::order;
-        case Pass::Uber:
-        case Pass::SortedUber:
-        case Pass::HitShaders:
-        case Pass::ShadeMiss:
+        case Pass::Shade:
         case Pass::ShadeCase:
             return &HitTimes::shade;
         case Pass::ShadowDispatch:

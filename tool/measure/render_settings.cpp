@@ -130,7 +130,7 @@ compiler::CompileSettings compileSettings(const compiler::Settings& settings,
                                           const compiler::PlanOptions& plan, std::uint32_t tracers,
                                           const gltf::Scene& scene) {
     compiler::CompileSettings compile = compileSettings(settings, plan);
-    compile.strategies = settings.strategy.value_or(package::kAllStrategies);
+    compile.strategies = settings.strategy ? std::uint32_t{*settings.strategy} : package::allStrategies();
     const bool queries = (tracers & package::kTracerRayQuery) != 0;
     compile.tracers =
         settings.renderer.tracer.value_or(queries ? package::kTracerRayQuery : package::kTracerRayPipeline);

@@ -62,7 +62,7 @@ std::string withoutEffects(const compiler::Descriptor& row, compiler::BenchFacts
 
 bool ordersHits(std::string_view strategy) {
     const std::optional<package::Strategy> named = valueNamed<package::Strategy>(strategy);
-    return named && (*named & package::kOrderedStrategies) != 0;
+    return named && (*named & package::orderedStrategies()) != 0;
 }
 
 }  // namespace

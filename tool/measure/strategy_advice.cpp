@@ -61,10 +61,10 @@ std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
     const std::uint32_t wanted = tracer ? std::uint32_t{*tracer} : package::kAllTracers;
     const std::uint32_t compiled = package != nullptr ? package->shape().tracers : package::kAllTracers;
     std::vector<std::string> names;
-    for (const std::string_view name : compiler::kStrategyNames) {
+    for (const std::string_view name : compiler::simplestFirst()) {
         const package::Strategy strategy = *valueNamed<package::Strategy>(name);
         const bool has = package == nullptr || package->supports(strategy);
-        // hit-shaders needs ray tracing pipelines, whatever the package's tracers are.
+        // Some strategies need ray tracing pipelines, whatever the package's tracers are.
         const std::uint32_t tracers = package::tracersOf(strategy, compiled);
         if (has && (tracers & wanted & deviceTracers) != 0) {
             names.emplace_back(name);

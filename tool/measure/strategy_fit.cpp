@@ -65,8 +65,8 @@ std::vector<Sample> samplesOf(std::span<const CalibrationPoint> points, double s
         sample.group = fmt::format("{} {} {}", point.cases, point.cost, point.coherence);
         sample.terms = termsOf(roundOf(point), subgroupSize);
         for (const StrategyTime& time : point.times) {
-            const bool known = std::ranges::find(compiler::kStrategyNames, time.strategy) !=
-                               std::end(compiler::kStrategyNames);
+            const bool known = std::ranges::find(compiler::simplestFirst(), time.strategy) !=
+                               compiler::simplestFirst().end();
             if (known && std::isfinite(time.ms) && time.ms > 0.0) {
                 sample.ms[time.strategy] = time.ms;
             } else {
@@ -148,7 +148,7 @@ Estimates estimateHeldOut(const std::vector<Sample>& samples, bool& held) {
                 others.push_back(&sample);
             }
         }
-        for (const std::string_view strategy : compiler::kStrategyNames) {
+        for (const std::string_view strategy : compiler::simplestFirst()) {
             const std::optional<compiler::StrategyCosts> costs = fitOne(strategy, others);
             for (const Sample& sample : samples) {
                 if (costs && sample.group == group && sample.ms.contains(strategy)) {
@@ -195,7 +195,7 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
         // The loop follows the order in which a choice takes the first of equals.
         std::string_view taken;
         std::string_view fastest;
-        for (const std::string_view strategy : compiler::kStrategyNames) {
+        for (const std::string_view strategy : compiler::simplestFirst()) {
             const auto estimated = own->second.find(strategy);
             if (estimated == own->second.end()) {
                 continue;
@@ -248,7 +248,7 @@ DeviceFit fitStrategies(std::span<const CalibrationPoint> points, double subgrou
         all.push_back(&sample);
     }
     const Estimates estimates = estimateHeldOut(samples, fit.quality.held);
-    for (const std::string_view strategy : compiler::kStrategyNames) {
+    for (const std::string_view strategy : compiler::simplestFirst()) {
         const auto measured = static_cast<std::size_t>(std::ranges::count_if(
             samples, [&](const Sample& sample) { return sample.ms.contains(strategy); }));
         if (measured == 0) {

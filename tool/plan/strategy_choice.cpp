@@ -142,9 +142,9 @@ std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, cons
     StrategyChoice choice;
     choice.facts = factsOf(rounds, device.subgroupSize);
     const StrategyEstimate* best = nullptr;
-    choice.estimates.reserve(std::size(kStrategyNames));  // The vector must not reallocate, so that `best`
-                                                          // stays valid.
-    for (const std::string_view name : kStrategyNames) {
+    choice.estimates.reserve(simplestFirst().size());  // The vector must not reallocate, so that `best`
+                                                       // stays valid.
+    for (const std::string_view name : simplestFirst()) {
         const StrategyCosts* const costs = findCosts(device, name);
         if (costs == nullptr) {
             continue;

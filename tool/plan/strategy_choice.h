@@ -46,12 +46,12 @@ struct StrategyChoice {
     std::string strategy;
     std::string why;  // full sentences
     FrameFacts facts;
-    std::vector<StrategyEstimate> estimates;  // in the order of kStrategyNames; only those that have
+    std::vector<StrategyEstimate> estimates;  // in the order of simplestFirst(); only those that have
                                               // constants
 };
 
-// Chooses the fastest of `available` (a subset of kStrategyNames) for the sum of `rounds`. If several are
-// equal, it takes the first in kStrategyNames; with one case it takes none that orders hits, unless there is
+// Chooses the fastest of `available` (a subset of simplestFirst()) for the sum of `rounds`. If several are
+// equal, it takes the first in simplestFirst(); with one case it takes none that orders hits, unless there is
 // no other. Without rays it takes the first that is available. Returns nothing if the device has no constants
 // for any of them.
 std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, const DeviceCosts& device,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 namespace glint::compiler {
 
@@ -30,6 +31,24 @@ static_assert(std::size(kTerms) == kCostTerms);
 
 std::span<const CostTermInfo> costTerms() {
     return kTerms;
+}
+
+std::span<const std::string_view> simplestFirst() {
+    static const std::vector<std::string_view> kNames = [] {
+        std::vector<const package::StrategyInfo*> infos;
+        for (const package::StrategyInfo& info : package::strategyTable()) {
+            infos.push_back(&info);
+        }
+        std::ranges::stable_sort(infos, {}, [](const package::StrategyInfo* info) {
+            return std::tuple(info->ownPipeline, info->dispatchesCases, info->ordersHits);
+        });
+        std::vector<std::string_view> names;
+        for (const package::StrategyInfo* const info : infos) {
+            names.push_back(info->name);
+        }
+        return names;
+    }();
+    return kNames;
 }
 
 bool hasTerm(std::string_view strategy, CostTerm term) {

@@ -74,12 +74,12 @@ struct CostTermInfo {
 // The rows are indexed by term.
 std::span<const CostTermInfo> costTerms();
 
-// In the order in which equally fast strategies are taken: the simplest first.
-inline constexpr std::string_view kStrategyNames[] = {
-    package::nameOf(package::kStrategyUber), package::nameOf(package::kStrategySortedUber),
-    package::nameOf(package::kStrategyVisibility), package::nameOf(package::kStrategyHitShaders)};
+// Returns the names of all strategies in the order in which equally fast ones are taken, the simplest first:
+// those that order no hits before those that do, then those with a dispatch a case, then those with a
+// pipeline of their own.
+std::span<const std::string_view> simplestFirst();
 
-// Returns whether the time of a strategy has the term. `strategy` is one of kStrategyNames.
+// Returns whether the time of a strategy has the term. `strategy` is a strategy's name.
 bool hasTerm(std::string_view strategy, CostTerm term);
 
 // A case of a round, with its share of the hits and the size of its code.
@@ -111,8 +111,8 @@ struct DeviceCosts {
     std::string driver;
     bool onCpu = false;
     double subgroupSize = 32.0;
-    std::string tracer;   // used for all strategies except hit-shaders
-    std::string shadows;  // inline or deferred; used for all strategies except hit-shaders
+    std::string tracer;   // used for all strategies without a pipeline of their own
+    std::string shadows;  // inline or deferred; used for all strategies without a pipeline of their own
     std::string source;   // the command that measured them
     std::vector<StrategyCosts> strategies;
 };

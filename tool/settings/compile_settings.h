@@ -41,7 +41,7 @@ constexpr std::span<const Named<EmissiveLights>> namesOf(EmissiveLights /*type*/
 }
 
 struct CompileSettings {
-    std::uint32_t strategies = package::kStrategyUber | package::kStrategyVisibility;
+    std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
     package::ShadowThrough shadowThrough = package::ShadowThrough::Alpha;
@@ -51,8 +51,8 @@ struct CompileSettings {
     package::HitAnswer answer = package::HitAnswer::Radiance;
     package::Bindings bindings{};  // Passes::Steps alone may have other than the default's
     bool environmentMap = false;   // Rays that leave the scene read an environment map instead of a gradient.
-    // With this, the strategies uber with ray queries and hit-shaders read the positions of hit triangles
-    // from the acceleration structure instead of the vertex buffer.
+    // With this, strategies that shade a hit where they find it read the positions of its triangle from the
+    // acceleration structure instead of the vertex buffer: with ray queries, or in a pipeline of their own.
     bool positionFetch = false;
     PlanOptions plan;
     EffectRequest effects{false, builtinEffects({"shadow", "reflection"})};

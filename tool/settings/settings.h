@@ -37,7 +37,7 @@ struct Settings {
     FrameOptions frame;
 
     // The strategy of a picture. No value takes the one that should be fastest.
-    std::optional<package::Strategy> strategy = package::kStrategyVisibility;
+    std::optional<package::Strategy> strategy = package::kDefaultStrategy;
     // A package also gets the strategy that should be fastest, besides compile.strategies.
     bool advisesStrategy = false;
     std::optional<package::AlphaPolicy> alpha{};  // none: as the scene needs

@@ -13,7 +13,7 @@ constexpr double kMaxMetres = 1e6;
 bool ordersHits(const Configuration& base) {
     const std::optional<package::Strategy> strategy =
         valueNamed<package::Strategy>(base.find("strategy")->second);
-    return strategy && (*strategy & package::kOrderedStrategies) != 0;
+    return strategy && (*strategy & package::orderedStrategies()) != 0;
 }
 
 // Why settings are not worth trying. Each returns a reason for all values, or nothing.
@@ -54,6 +54,15 @@ std::string withoutEmission(std::string_view value, const BenchFacts& facts, con
         return "no material emits light";
     }
     return value == "on" && !facts.lightsMayEmit ? "the default has no shadow rays" : "";
+}
+
+std::vector<std::string> strategiesToTry(const BenchFacts& /*facts*/, const std::string& /*base*/,
+                                         bool /*quick*/) {
+    std::vector<std::string> names;
+    for (const package::StrategyInfo& info : package::strategyTable()) {
+        names.emplace_back(info.name);
+    }
+    return names;
 }
 
 // Returns the default's effects, those of a reference of all transport, and values that leave out one effect
@@ -377,7 +386,7 @@ constexpr Descriptor kRows[] = {
      .commands = kMakers,
      .stage = SettingStage::Package,
      .group = kShaders,
-     .what = "what is kept of a hit between passes (visibility, sorted-uber)",
+     .what = "what strategies that sort hits keep of a hit between passes",
      .values = enumerator<&Settings::compile, &CompileSettings::hitRecord>(),
      .bench = approximates("full", {}, {}, withoutOrder),
      .document = "reflections.md",
@@ -413,8 +422,8 @@ constexpr Descriptor kRows[] = {
      .commands = kMakers,
      .stage = SettingStage::Package,
      .group = kShaders,
-     .what = "uber (with ray queries) and hit-shaders read positions from the acceleration structure instead "
-             "of from vertices",
+     .what = "strategies that shade hits where they find them read positions from the acceleration "
+             "structure instead of from vertices; with ray queries, or in hit shaders",
      .values = flag<&Settings::compile, &CompileSettings::positionFetch>(),
      .bench =
          changesTime(
@@ -442,27 +451,27 @@ constexpr Descriptor kRows[] = {
      .group = kShaders,
      .what = "how hits are shaded",
      .values = optional<&Settings::strategy>("the one that should be fastest, by --calibration"),
-     .bench =
-         changesTime(
-             [](std::string_view value, const BenchFacts& facts, const Configuration& base) {
-                 const package::StrategyInfo* const info = package::findStrategy(value);
-                 return info != nullptr && info->ownPipeline && !facts.rayPipeline
-                            ? std::string("the device has no ray tracing pipelines")
-                            : withoutRays(value, facts, base);
-             },
-             "uber visibility sorted-uber hit-shaders"),
+     .bench = {.use = BenchUse::Swept,
+               .against =
+                   [](std::string_view value, const BenchFacts& facts, const Configuration& base) {
+                       const package::StrategyInfo* const info = package::findStrategy(value);
+                       return info != nullptr && info->ownPipeline && !facts.rayPipeline
+                                  ? std::string("the device has no ray tracing pipelines")
+                                  : withoutRays(value, facts, base);
+                   },
+               .triedFor = strategiesToTry},
      .document = "cli.md#which-strategy"},
     {.name = "tracer",
      .commands = kOfCompile,
      .stage = SettingStage::Choice,
      .group = kShaders,
-     .what = "what traces rays, separated by commas; hit-shaders always has its own",
+     .what = "what traces rays, separated by commas; strategies of hit shaders always have their own",
      .values = bits<package::Tracer, nullptr, &Settings::compile, &CompileSettings::tracers>()},
     {.name = "tracer",
      .commands = kOfRender,
      .stage = SettingStage::Choice,
      .group = kShaders,
-     .what = "what traces rays; hit-shaders always uses ray-pipeline",
+     .what = "what traces rays; strategies of hit shaders always use ray-pipeline",
      .values = optional<&Settings::renderer, &RendererOptions::tracer>(
          "ray-query where package and device have it, else ray-pipeline")},
     {.name = "merge",
@@ -494,7 +503,7 @@ constexpr Descriptor kRows[] = {
      .commands = kOfRender,
      .stage = SettingStage::Renderer,
      .group = kReflections,
-     .what = "how visibility and sorted-uber sort hits by shader",
+     .what = "how strategies that sort hits by shader do so",
      .values = optional<&Settings::renderer, &RendererOptions::ordering>(
          "by the device and the number of shaders", "auto|NAME"),
      .bench = changesTime(withoutOrder, {}, "auto local-histogram"),

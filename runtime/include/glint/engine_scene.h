@@ -68,9 +68,9 @@ struct EngineSceneView {
     std::span<const LightView> lights;
     RecordsBy recordsBy = RecordsBy::CustomIndex;
     std::span<const std::uint32_t> firstRecords{};
-    // For the strategy hit-shaders: for each hit record of the shader binding table, the number of the
-    // geometry that it is for. A hit's record is instanceShaderBindingTableRecordOffset plus the index of the
-    // geometry in its BLAS. If empty, record i is for geometry i.
+    // For strategies with a pipeline of their own: for each hit record of the shader binding table, the
+    // number of the geometry that it is for. A hit's record is instanceShaderBindingTableRecordOffset plus
+    // the index of the geometry in its BLAS. If empty, record i is for geometry i.
     std::span<const std::uint32_t> hitRecords{};
 };
 

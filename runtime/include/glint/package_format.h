@@ -15,22 +15,13 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 12;
+inline constexpr std::uint32_t kVersion = 13;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
 
-// How hits are shaded, as bits of a set.
-enum Strategy : std::uint32_t {
-    kStrategyUber = 1,        // trace and shade in one dispatch, a switch over the cases
-    kStrategyVisibility = 2,  // hit records, ordered by case; one dispatch a case
-    kStrategySortedUber = 4,  // hit records, ordered; one dispatch whose switch is uniform in a workgroup
-    kStrategyHitShaders = 8,  // a ray tracing pipeline with a closest-hit shader a case
-    kAllStrategies = 15,
-};
-
-// How rays are traced, as bits of a set. The strategy hit-shaders always uses the ray tracing pipeline,
-// whichever tracers the package has for the other strategies.
+// How rays are traced, as bits of a set. Strategies with a pipeline of their own always use the ray tracing
+// pipeline, whichever tracers the package has for the others.
 enum Tracer : std::uint32_t {
     kTracerRayQuery = 1,
     kTracerRayPipeline = 2,  // ray generation shaders: for devices without ray queries
@@ -43,7 +34,6 @@ enum class ShadowPlacement : std::uint32_t {
     Deferred = 1,  // by a pass of their own, from a list
 };
 
-// How a hit is stored between passes.
 // What rays do with the alpha of a material.
 enum class AlphaPolicy : std::uint32_t {
     Opaque = 0,      // nothing: whatever they hit is opaque
@@ -58,6 +48,7 @@ enum class ShadowThrough : std::uint32_t {
     Glass = 2,   // a share of each colour
 };
 
+// How a hit is stored between passes.
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 32 bytes, gpu::HitRecord
     Packed = 1,  // 16 bytes, gpu::PackedHitRecord
@@ -177,47 +168,34 @@ struct StringRef {
 };
 
 // The purpose of a SPIR-V module. The values are stable.
+// What a module is for. Each strategy has roles of its own, which follow these (package_modules.h).
 enum class ModuleRole : std::uint32_t {
+    None = 0,
     GBufferVertex = 1,
     GBufferFragment = 2,
     Lighting = 3,
     EffectRays = 4,  // one entry for each effect that sends rays
     RayDispatch = 5,
-    UberShade = 6,
-    Trace = 7,
-    BucketCount = 8,
-    BucketOffset = 9,
-    BucketCopy = 10,
-    ShadeMiss = 11,
-    ShadeCase = 12,  // one entry for each case
-    Compose = 13,
-    SortedShade = 14,
-    ShadowDispatch = 15,
-    ShadowTrace = 16,
-    OrderCheck = 17,
-    TraceClosestHit = 18,  // of ray tracing pipelines that only trace: other passes shade their hits
-    TraceAnyHit = 19,      // alpha tests
-    TraceMiss = 20,
-    HitTrace = 21,    // ray generation shader of the strategy hit-shaders
-    HitCase = 22,     // closest-hit shader, one entry for each case
-    HitUnknown = 23,  // closest-hit shader for geometries whose shader ID no case has
-    HitMiss = 24,
-    EffectWalk = 25,  // one entry for each effect that follows its rays
-    Deform = 26,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
-    PathRays = 27,    // puts the next rays of paths on the list, in packages with several bounces
-    // Shaders for every material, in packages with a fallback: they stand in for UberShade, for cases of the
-    // visibility strategy, for SortedShade, and for closest-hit shaders of cases.
-    UberFallback = 28,
-    ShadeFallback = 29,
-    SortedFallback = 30,
-    HitFallback = 31,
-    HitAnyHit = 32,  // TraceAnyHit of the strategy hit-shaders, where shadow rays read more than alpha
+    Trace = 6,
+    BucketCount = 7,
+    BucketOffset = 8,
+    BucketCopy = 9,
+    OrderCheck = 10,
+    Compose = 11,
+    ShadowDispatch = 12,
+    ShadowTrace = 13,
+    TraceClosestHit = 14,  // of ray tracing pipelines that only trace: other passes shade their hits
+    TraceAnyHit = 15,      // alpha tests
+    TraceMiss = 16,
+    EffectWalk = 17,  // one entry for each effect that follows its rays
+    PathRays = 18,    // puts the next rays of paths on the list, in packages with several bounces
+    Deform = 19,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
 };
 
 struct ModuleEntry {
     ModuleRole role;
-    std::uint32_t index;   // ShadeCase and HitCase: shader ID; BucketCount and BucketCopy: Ordering;
-                           // EffectRays and EffectWalk: effectNumber(); 0 otherwise
+    std::uint32_t index;   // of a case: shader ID; BucketCount and BucketCopy: Ordering; EffectRays and
+                           // EffectWalk: effectNumber(); 0 otherwise
     std::uint32_t tracer;  // the Tracer that it traces with; 0: it traces no rays
     std::uint32_t pad;
     StringRef file;  // relative to the package's folder; several entries may name one file

@@ -6,7 +6,6 @@
 #include <glint/package_format.h>
 #include <glint/strategies.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <iterator>
 #include <span>
@@ -17,8 +16,8 @@ namespace glint::package {
 
 // The properties of a package that decide which modules it has.
 struct PackageShape {
-    std::uint32_t strategies = kStrategyUber | kStrategyVisibility;  // Strategy bits
-    std::uint32_t tracers = kTracerRayQuery;                         // Tracer bits
+    std::uint32_t strategies = kDefaultStrategies;  // Strategy bits
+    std::uint32_t tracers = kTracerRayQuery;        // Tracer bits
     ShadowPlacement shadows = ShadowPlacement::Inline;
     EffectSet effects{};
     bool alphaTested = false;
@@ -42,17 +41,6 @@ struct ModuleKey {
     friend auto operator<=>(const ModuleKey&, const ModuleKey&) = default;
 };
 
-enum class ShaderKind : std::uint8_t {
-    Vertex,
-    Fragment,
-    Compute,
-    Tracing,  // compute with ray queries, or ray generation
-    RayGeneration,
-    ClosestHit,
-    AnyHit,
-    Miss,
-};
-
 enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk };
 
 // Which packages have a role.
@@ -68,13 +56,23 @@ enum class Purpose : std::uint8_t {
 };
 
 struct RoleInfo {
-    ModuleRole role;
-    std::uint32_t strategies;  // Strategy bits
-    std::string_view name;     // stable; the name in the manifest
-    ShaderKind kind;
+    ModuleRole role{};
+    std::uint32_t strategies = 0;  // Strategy bits; one bit if it is a role of a strategy
+    std::string_view name;         // stable; the name in the manifest
+    std::string_view source;       // a file below shaders/, or a template (".mustache")
+    ShaderKind kind{};
     Purpose purpose = Purpose::Hits;
     Repeated repeated = Repeated::Once;
-    bool shades = false;  // shades hits: it traces only if shadow rays are inline
+
+    // Of a strategy's roles alone, as the strategy declares them.
+    const StrategyModule* declared = nullptr;
+    Over over = Over::Nothing;  // of the fallback of Buckets: Misses; other fallbacks have no pass
+    ModuleRole fallback{};      // the role of its fallback
+
+    // Whether its code chooses among cases.
+    bool hasSwitch() const {
+        return declared != nullptr && declared->cases == CaseCode::Switch;
+    }
 };
 
 // Names on the command line and in the manifest.
@@ -126,9 +124,6 @@ inline constexpr Named<HitAnswer> kAnswerNames[] = {
     {HitAnswer::Surface, "surface", "the surface that it hits, which the engine lights"},
 };
 
-constexpr std::span<const Named<Strategy>> namesOf(Strategy /*type*/) {
-    return kStrategyNames;
-}
 constexpr std::span<const Named<Tracer>> namesOf(Tracer /*type*/) {
     return kTracerNames;
 }
@@ -179,190 +174,27 @@ constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
 
 inline constexpr auto kTracers = valuesOf(kTracerNames);
 
-// Every role, in the order of the list of modules.
-inline constexpr RoleInfo kRoles[] = {
-    {ModuleRole::GBufferVertex, kAllStrategies, "GBufferVertex", ShaderKind::Vertex, Purpose::Picture},
-    {ModuleRole::GBufferFragment, kAllStrategies, "GBufferFragment", ShaderKind::Fragment, Purpose::Picture},
-    {ModuleRole::Lighting, kAllStrategies, "Lighting", ShaderKind::Tracing, Purpose::Picture},
-    {ModuleRole::EffectRays, kAllStrategies, "EffectRays", ShaderKind::Compute, Purpose::Hits,
-     Repeated::ByEffect},
-    {ModuleRole::RayDispatch, kAllStrategies, "RayDispatch", ShaderKind::Compute},
-    {ModuleRole::UberShade, kStrategyUber, "UberShade", ShaderKind::Tracing},
-    {ModuleRole::Trace, kOrderedStrategies, "Trace", ShaderKind::Tracing},
-    {ModuleRole::BucketCount, kOrderedStrategies, "BucketCount", ShaderKind::Compute, Purpose::Hits,
-     Repeated::ByOrdering},
-    {ModuleRole::BucketOffset, kOrderedStrategies, "BucketOffset", ShaderKind::Compute},
-    {ModuleRole::BucketCopy, kOrderedStrategies, "BucketCopy", ShaderKind::Compute, Purpose::Hits,
-     Repeated::ByOrdering},
-    {ModuleRole::ShadeMiss, kStrategyVisibility, "ShadeMiss", ShaderKind::Compute},
-    {ModuleRole::ShadeCase, kStrategyVisibility, "ShadeCase", ShaderKind::Tracing, Purpose::Hits,
-     Repeated::ByCase, true},
-    {ModuleRole::Compose, kAllStrategies, "Compose", ShaderKind::Compute, Purpose::Picture},
-    {ModuleRole::SortedShade, kStrategySortedUber, "SortedShade", ShaderKind::Tracing, Purpose::Hits,
-     Repeated::Once, true},
-    {ModuleRole::ShadowDispatch, kAllStrategies, "ShadowDispatch", ShaderKind::Compute, Purpose::Shadows},
-    {ModuleRole::ShadowTrace, kAllStrategies, "ShadowTrace", ShaderKind::Tracing, Purpose::Shadows},
-    {ModuleRole::OrderCheck, kOrderedStrategies, "OrderCheck", ShaderKind::Compute},
-    {ModuleRole::TraceClosestHit, kAllStrategies, "TraceClosestHit", ShaderKind::ClosestHit,
-     Purpose::Tracing},
-    {ModuleRole::TraceAnyHit, kAllStrategies, "TraceAnyHit", ShaderKind::AnyHit, Purpose::Tracing},
-    {ModuleRole::TraceMiss, kAllStrategies, "TraceMiss", ShaderKind::Miss, Purpose::Tracing},
-    {ModuleRole::HitTrace, kStrategyHitShaders, "HitTrace", ShaderKind::RayGeneration},
-    {ModuleRole::HitCase, kStrategyHitShaders, "HitCase", ShaderKind::ClosestHit, Purpose::Hits,
-     Repeated::ByCase},
-    {ModuleRole::HitUnknown, kStrategyHitShaders, "HitUnknown", ShaderKind::ClosestHit},
-    {ModuleRole::HitMiss, kStrategyHitShaders, "HitMiss", ShaderKind::Miss},
-    {ModuleRole::EffectWalk, kAllStrategies, "EffectWalk", ShaderKind::Tracing, Purpose::Walks,
-     Repeated::ByWalk},
-    {ModuleRole::PathRays, kAllStrategies, "PathRays", ShaderKind::Compute, Purpose::Paths},
-    {ModuleRole::Deform, kAllStrategies, "Deform", ShaderKind::Compute, Purpose::Motion},
-    {ModuleRole::UberFallback, kStrategyUber, "UberFallback", ShaderKind::Tracing, Purpose::Fallback},
-    {ModuleRole::ShadeFallback, kStrategyVisibility, "ShadeFallback", ShaderKind::Tracing, Purpose::Fallback,
-     Repeated::Once, true},
-    {ModuleRole::SortedFallback, kStrategySortedUber, "SortedFallback", ShaderKind::Tracing,
-     Purpose::Fallback, Repeated::Once, true},
-    {ModuleRole::HitFallback, kStrategyHitShaders, "HitFallback", ShaderKind::ClosestHit, Purpose::Fallback},
-    {ModuleRole::HitAnyHit, kStrategyHitShaders, "HitAnyHit", ShaderKind::AnyHit},
-};
+// Returns every role, in the order of the list of modules: those that strategies share, then those of each
+// strategy.
+std::span<const RoleInfo> roles();
+// Returns the roles that only this strategy has, in the order of its row.
+std::span<const RoleInfo> rolesOf(Strategy strategy);
 
 // Returns null for a number that is no role.
-constexpr const RoleInfo* findRole(ModuleRole role) {
-    for (const RoleInfo& info : kRoles) {
-        if (info.role == role) {
-            return &info;
-        }
-    }
-    return nullptr;
-}
-
-constexpr std::string_view roleName(ModuleRole role) {
-    const RoleInfo* const info = findRole(role);
-    return info == nullptr ? std::string_view("unknown") : info->name;
-}
+const RoleInfo* findRole(ModuleRole role);
+// Returns "unknown" for a number that is no role.
+std::string_view roleName(ModuleRole role);
+// Returns ModuleRole::None for a name that no role has.
+ModuleRole roleNamed(std::string_view name);
 
 // Returns the Tracer bits that strategies use. Those with a pipeline of their own use the ray tracing
 // pipeline; the others use the package's tracers.
-constexpr std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers) {
-    const bool others = (strategies & ~kPipelineStrategies) != 0;
-    const bool pipelines = (strategies & kPipelineStrategies) != 0;
-    return (others ? tracers : 0U) | (pipelines ? std::uint32_t{kTracerRayPipeline} : 0U);
-}
+std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers);
 
 // Whether hits send rays further.
-constexpr bool hasPaths(const PackageShape& shape) {
-    return shape.passes == Passes::Frame && shape.effects.rays != 0 && shape.maxBounces > 1;
-}
-
-// Whether a package of this shape needs modules with this purpose.
-constexpr bool hasPurpose(Purpose purpose, const PackageShape& shape) {
-    const bool frame = shape.passes == Passes::Frame;
-    const bool hits = !frame || shape.effects.rays != 0;
-    switch (purpose) {
-        case Purpose::Picture:
-            return frame;
-        case Purpose::Hits:
-            return hits;
-        case Purpose::Shadows:
-            return hits && shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Deferred;
-        case Purpose::Walks:
-            return frame && shape.effects.walks != 0;
-        case Purpose::Paths:
-            return hasPaths(shape);
-        case Purpose::Tracing:
-            return hits || shape.effects.tracesAtSurfaces();
-        case Purpose::Motion:
-            return frame && shape.deforms;
-        case Purpose::Fallback:
-            return hits && shape.fallback;
-    }
-    return false;
-}
-
-// Whether a module traces, given that modules of its kind may do so.
-constexpr bool traces(const RoleInfo& info, const PackageShape& shape) {
-    if (info.role == ModuleRole::Lighting) {
-        return shape.effects.tracesAtSurfaces();
-    }
-    return !info.shades || (shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Inline);
-}
-
-// Returns the Tracer values that the modules of a role have: several, one, or {0} if the role traces no rays.
-// The result is empty if the package does not need the role.
-inline std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const PackageShape& shape) {
-    const std::uint32_t strategies = info.strategies & shape.strategies;
-    const bool untested = info.kind == ShaderKind::AnyHit && !shape.alphaTested && !shape.shadowsApart;
-    const bool shared = info.role == ModuleRole::HitAnyHit && !shape.shadowsApart;
-    if (strategies == 0 || !hasPurpose(info.purpose, shape) || untested || shared) {
-        return {};
-    }
-    const std::uint32_t tracers = tracersOf(strategies, shape.tracers);
-    const bool pipeline = (tracers & kTracerRayPipeline) != 0;
-    switch (info.kind) {
-        case ShaderKind::Vertex:
-        case ShaderKind::Fragment:
-        case ShaderKind::Compute:
-            return {0};
-        case ShaderKind::Tracing:
-            if (!traces(info, shape)) {
-                return {0};
-            }
-            break;
-        default:
-            return pipeline ? std::vector<std::uint32_t>{kTracerRayPipeline} : std::vector<std::uint32_t>{};
-    }
-    std::vector<std::uint32_t> result;
-    for (const Tracer tracer : kTracers) {
-        if ((tracers & tracer) != 0) {
-            result.push_back(tracer);
-        }
-    }
-    return result;
-}
-
-// Returns the indices that the modules of a role have, ascending.
-inline std::vector<std::uint32_t> moduleIndices(const RoleInfo& info, const PackageShape& shape) {
-    std::vector<std::uint32_t> indices;
-    switch (info.repeated) {
-        case Repeated::Once:
-            indices.push_back(0);
-            break;
-        case Repeated::ByCase:
-            for (std::uint32_t index = 0; index < shape.caseCount; ++index) {
-                if (!std::ranges::binary_search(shape.retired, index)) {
-                    indices.push_back(index);
-                }
-            }
-            break;
-        case Repeated::ByOrdering:
-            for (std::uint32_t index = 0; index < static_cast<std::uint32_t>(Ordering::Count); ++index) {
-                indices.push_back(index);
-            }
-            break;
-        case Repeated::ByEffect:
-            forEachEffect(shape.effects.rays, [&](std::uint32_t number) { indices.push_back(number); });
-            break;
-        case Repeated::ByWalk:
-            forEachEffect(shape.effects.walks, [&](std::uint32_t number) { indices.push_back(number); });
-            break;
-    }
-    return indices;
-}
+bool hasPaths(const PackageShape& shape);
 
 // Returns every module of a package, in the order of role, index, tracer.
-inline std::vector<ModuleKey> requiredModules(const PackageShape& shape) {
-    std::vector<ModuleKey> keys;
-    for (const RoleInfo& info : kRoles) {
-        const std::vector<std::uint32_t> tracers = moduleTracers(info, shape);
-        if (tracers.empty()) {
-            continue;
-        }
-        for (const std::uint32_t index : moduleIndices(info, shape)) {
-            for (const std::uint32_t tracer : tracers) {
-                keys.push_back({info.role, index, tracer});
-            }
-        }
-    }
-    return keys;
-}
+std::vector<ModuleKey> requiredModules(const PackageShape& shape);
 
 }  // namespace glint::package

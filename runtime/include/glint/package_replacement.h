@@ -15,8 +15,8 @@ struct PackageReplacement {
     std::uint32_t pipelinesKept = 0;
     // Pipelines that are made, in the call or in the background.
     std::uint32_t pipelinesMade = 0;
-    // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only the
-    // strategy visibility has such pipelines.
+    // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
+    // strategies with a dispatch for each case have such pipelines.
     std::vector<std::uint32_t> casesMade;
     // Buffers of the frame that have the size that the new package needs, and those that are made.
     std::uint32_t buffersKept = 0;

@@ -54,7 +54,7 @@ struct EngineSurface {
 static_assert(sizeof(EngineSurface) == 112);
 
 struct RayStepsOptions {
-    package::Strategy strategy = package::kStrategyVisibility;
+    package::Strategy strategy = package::kDefaultStrategy;
     // As in RendererOptions.
     std::optional<package::Tracer> tracer{};
     std::optional<package::Ordering> ordering{};
@@ -128,7 +128,7 @@ public:
     // travel in the command buffer. Batches share buffers, so on several queues the host orders them itself.
     // Errors: "ray-steps", "sky", "environment-missing", "environment-unread".
     Status begin(VkCommandBuffer commands, const RayBatch& batch);
-    // Finds what the rays hit. The strategies uber and hit-shaders shade where they trace, so this and
+    // Finds what the rays hit. Strategies that order no hits shade where they trace, so this and
     // order() do nothing with them.
     void trace(VkCommandBuffer commands);
     // Orders the hits by shader.

@@ -5,6 +5,7 @@
 #include <glint/names.h>
 #include <glint/package_format.h>
 #include <glint/scene_view.h>
+#include <glint/strategies.h>
 
 #include <array>
 #include <cstdint>
@@ -15,7 +16,7 @@
 namespace glint {
 
 struct RendererOptions {
-    package::Strategy strategy = package::kStrategyVisibility;
+    package::Strategy strategy = package::kDefaultStrategy;
     std::uint32_t width = 1280;  // pixels
     std::uint32_t height = 720;
     // No value chooses ray queries if package and device support them, else the ray tracing pipeline.

@@ -1,22 +1,77 @@
-// The strategies: how the hits of rays are shaded. A table has one row for each; compiler, loader, renderer
-// and tools act on what the row says. shaders/strategies/<strategy>/ has its shaders.
+// The strategies: how the hits of rays are shaded. A strategy is one row of the table in
+// runtime/src/modules/strategies.cpp and one folder with its GLSL, shaders/strategies/<strategy>/. The
+// compiler, the loader, the renderer, the cost model and the tools act on what the row says.
 #pragma once
 
 #include <glint/names.h>
-#include <glint/package_format.h>
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
-#include <iterator>
+#include <span>
 #include <string_view>
 
 namespace glint::package {
 
+// A bit of a set of strategies, by the strategy's place in the table. These are names for programs; a
+// strategy works without one, as findStrategy() finds it by its name.
+enum Strategy : std::uint32_t {
+    kStrategyUber = 1,
+    kStrategyVisibility = 2,
+    kStrategySortedUber = 4,
+    kStrategyHitShaders = 8,
+};
+
+inline constexpr Strategy kDefaultStrategy = kStrategyVisibility;                         // of a renderer
+inline constexpr std::uint32_t kDefaultStrategies = kStrategyUber | kStrategyVisibility;  // of a package
+
+enum class ShaderKind : std::uint8_t {
+    Vertex,
+    Fragment,
+    Compute,
+    Tracing,  // compute with ray queries, or ray generation
+    Shading,  // as Tracing if it traces the shadow rays of hits, and else as Compute
+    RayGeneration,
+    ClosestHit,
+    AnyHit,
+    Miss,
+};
+
+// For which cases a module has code.
+enum class CaseCode : std::uint8_t {
+    None,
+    Switch,  // for all, with a switch over them
+    Own,     // for one: each case has a module of its own
+};
+
+// What the pass of a module is dispatched over.
+enum class Over : std::uint8_t {
+    Nothing,      // it has no pass: a ray tracing pipeline of its strategy runs it
+    Rays,         // every ray of the list
+    OrderedHits,  // every slot of the ordered hits; buckets begin at multiples of a workgroup
+    Misses,       // bucket 0: rays that hit nothing, and hits whose shader ID no case has
+    Buckets,      // the bucket of its case
+};
+
+// A module of a strategy, which packages with rays have. The passes of a strategy write different samples,
+// so they follow each other without a barrier.
+struct StrategyModule {
+    std::string_view name;    // stable; the name in the manifest
+    std::string_view source;  // a file below shaders/, or a template (".mustache")
+    ShaderKind kind{};
+    Over over = Over::Nothing;
+    std::string_view pass{};  // the name of its pass, for people; the name of the case follows for Buckets
+    CaseCode cases = CaseCode::None;
+    // The name of the module that packages with a fallback have beside it: the same source, with code for
+    // every material and for no case. Modules with code for cases have one.
+    std::string_view fallback{};
+};
+
 struct StrategyInfo {
-    Strategy strategy;
+    Strategy strategy{};
     std::string_view name;  // on the command line and in the manifest
-    std::string_view what;
+    std::string_view what;  // a sentence without a full stop
+    std::span<const StrategyModule> modules{};
+
+    // What follows from the modules.
     // It stores hits and orders them by shader before it shades them. The others shade a hit where they find
     // it, so that they can read its positions from the acceleration structure.
     bool ordersHits = false;
@@ -25,64 +80,24 @@ struct StrategyInfo {
     bool ownPipeline = false;      // a ray tracing pipeline of its own, whatever traces for the others
 };
 
-// The first is what the others are measured against.
-inline constexpr StrategyInfo kStrategyTable[] = {
-    {.strategy = kStrategyUber,
-     .name = "uber",
-     .what = "one dispatch traces and shades, with a switch over the shaders"},
-    {.strategy = kStrategyVisibility,
-     .name = "visibility",
-     .what = "hits are sorted by shader first, then there is one dispatch for each shader",
-     .ordersHits = true,
-     .dispatchesCases = true},
-    {.strategy = kStrategySortedUber,
-     .name = "sorted-uber",
-     .what = "hits are sorted, then there is one dispatch, whose switch is uniform in each workgroup",
-     .ordersHits = true,
-     .fillsWorkgroups = true},
-    {.strategy = kStrategyHitShaders,
-     .name = "hit-shaders",
-     .what = "a ray tracing pipeline with a closest-hit shader for each case",
-     .ownPipeline = true},
-};
-inline constexpr std::size_t kStrategyCount = std::size(kStrategyTable);
-static_assert(kAllStrategies == (1U << kStrategyCount) - 1U);
-
-// Names on the command line and in the manifest.
-inline constexpr auto kStrategyNames = [] {
-    std::array<Named<Strategy>, kStrategyCount> names{};
-    for (std::size_t i = 0; i < kStrategyCount; ++i) {
-        names[i] = {kStrategyTable[i].strategy, kStrategyTable[i].name, kStrategyTable[i].what};
-    }
-    return names;
-}();
-inline constexpr auto kStrategies = [] {
-    std::array<Strategy, kStrategyCount> strategies{};
-    for (std::size_t i = 0; i < kStrategyCount; ++i) {
-        strategies[i] = kStrategyTable[i].strategy;
-    }
-    return strategies;
-}();
-
-// Returns the strategies whose row says so, as bits.
-constexpr std::uint32_t strategiesThat(bool StrategyInfo::*says) {
-    std::uint32_t strategies = 0;
-    for (const StrategyInfo& info : kStrategyTable) {
-        strategies |= info.*says ? std::uint32_t{info.strategy} : 0U;
-    }
-    return strategies;
-}
-inline constexpr std::uint32_t kOrderedStrategies = strategiesThat(&StrategyInfo::ordersHits);
-inline constexpr std::uint32_t kPipelineStrategies = strategiesThat(&StrategyInfo::ownPipeline);
+// The rows in their order. The others are measured against the first, which every device can run.
+std::span<const StrategyInfo> strategyTable();
+std::span<const Strategy> strategies();
+std::span<const Named<Strategy>> namesOf(Strategy type);
 
 // Returns null for a name that no strategy has.
-constexpr const StrategyInfo* findStrategy(std::string_view name) {
-    for (const StrategyInfo& info : kStrategyTable) {
-        if (info.name == name) {
-            return &info;
-        }
-    }
-    return nullptr;
+const StrategyInfo* findStrategy(std::string_view name);
+// `strategy` must be the bit of a row.
+const StrategyInfo& infoOf(Strategy strategy);
+
+// Return sets of strategies as bits: all of them, and those whose row says so.
+std::uint32_t allStrategies();
+std::uint32_t strategiesThat(bool StrategyInfo::*says);
+inline std::uint32_t orderedStrategies() {
+    return strategiesThat(&StrategyInfo::ordersHits);
+}
+inline std::uint32_t pipelineStrategies() {
+    return strategiesThat(&StrategyInfo::ownPipeline);
 }
 
 }  // namespace glint::package

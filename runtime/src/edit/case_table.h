@@ -34,7 +34,7 @@ public:
     // Checks that the attributes include what shaders of the key's features read. Error "scene-edit-key".
     Status checkAttributes(const MaterialKey& key, const std::string& where) const;
 
-    // The shader IDs of the shader binding table of hit-shaders: those of the cases, then one for all others.
+    // The shader IDs of the shader binding table of a strategy: those of the cases, then one for all others.
     std::vector<std::uint32_t> shaderIds() const;
     std::string namesOf(std::uint64_t features) const;
     const Package& package() const {

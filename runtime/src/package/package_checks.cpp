@@ -87,7 +87,7 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     const auto outside = [&](const char* what, std::uint32_t value) {
         return altered(where, std::string(what) + " " + std::to_string(value) + " is unknown");
     };
-    if (header.strategies == 0 || header.strategies > package::kAllStrategies) {
+    if (header.strategies == 0 || header.strategies > package::allStrategies()) {
         return outside("the set of strategies", header.strategies);
     }
     if (header.tracers == 0 || header.tracers > package::kAllTracers) {

@@ -11,19 +11,26 @@ namespace {
 // Returns the hits that wait for a pipeline. `hits` are by shader ID.
 std::uint64_t waitingHits(const PlannedPipeline& planned, std::span<const std::uint32_t> hits) {
     std::uint64_t sum = 0;
-    const auto add = [&](std::uint32_t shaderId) { sum += shaderId < hits.size() ? hits[shaderId] : 0; };
-    for (const package::ModuleKey& key : planned.keys) {
-        if (key.role == package::ModuleRole::ShadeCase) {
-            add(key.index);
-        }
-    }
-    if (planned.rays) {
-        std::ranges::for_each(planned.rays->shaderIds, add);
+    for (const std::uint32_t shaderId : casesOf(planned)) {
+        sum += shaderId < hits.size() ? hits[shaderId] : 0;
     }
     return sum;
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> casesOf(const PlannedPipeline& planned) {
+    std::vector<std::uint32_t> cases;
+    for (const package::ModuleKey& key : planned.keys) {
+        if (package::findRole(key.role)->over == package::Over::Buckets) {
+            cases.push_back(key.index);
+        }
+    }
+    if (planned.rays) {
+        cases.insert(cases.end(), planned.rays->shaderIds.begin(), planned.rays->shaderIds.end());
+    }
+    return cases;
+}
 
 BackgroundPipelines::BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
                                          std::uint32_t threads)

@@ -27,6 +27,9 @@ struct PlannedPipeline {
     bool spare = false;                        // nothing that is drawn needs it: it is made last
 };
 
+// Returns the shader IDs of the cases that have a dispatch of their own with the pipeline.
+std::vector<std::uint32_t> casesOf(const PlannedPipeline& planned);
+
 class BackgroundPipelines {
 public:
     struct Done {

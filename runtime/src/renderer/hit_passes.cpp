@@ -2,6 +2,9 @@
 
 #include "renderer/tile_sort.h"
 
+#include <string>
+#include <vector>
+
 namespace glint {
 
 using package::ModuleRole;
@@ -47,42 +50,49 @@ void HitPasses::order() {
     }
 }
 
-void HitPasses::shadeBuckets() {
-    // Buckets write different samples, so they need no barrier among themselves.
-    const Buffer& arguments = state_.frame.bucketDispatch;
-    passes_.setBucket(0);
-    passes_.dispatchList({"shade miss", Pass::ShadeMiss}, pass(ModuleRole::ShadeMiss), arguments, 0);
-    if (state_.pipelines.shadesUnknown) {
-        passes_.dispatchList({"shade fallback", Pass::ShadeFallback}, pass(ModuleRole::ShadeFallback),
-                             arguments, 0);
-    }
-    for (std::uint32_t shaderId = 0; shaderId < state_.pipelines.cases.size(); ++shaderId) {
-        if (state_.pipelines.cases[shaderId].pipeline == VK_NULL_HANDLE) {
+void HitPasses::shadeCases(const package::RoleInfo& info) {
+    const std::vector<PassPipeline>& cases = state_.pipelines.cases;
+    for (std::uint32_t shaderId = 0; shaderId < cases.size(); ++shaderId) {
+        if (cases[shaderId].pipeline == VK_NULL_HANDLE) {
             continue;  // the bucket of a retired shader ID stays empty
         }
         passes_.setBucket(1 + shaderId);
-        passes_.dispatchList({"shade " + state_.caseNames[shaderId], Pass::ShadeCase, shaderId},
-                             state_.pipelines.cases[shaderId], arguments, 1 + shaderId);
+        passes_.dispatchList(
+            {std::string(info.declared->pass) + " " + state_.caseNames[shaderId], Pass::ShadeCase, shaderId},
+            cases[shaderId], state_.frame.bucketDispatch, 1 + shaderId);
     }
-    passes_.barrier(dependencies().passToPass);
+}
+
+void HitPasses::dispatch(const package::RoleInfo& info) {
+    const bool ofFallback = info.purpose == package::Purpose::Fallback;
+    const PassLabel label{std::string(info.declared->pass) + (ofFallback ? " fallback" : ""), Pass::Shade};
+    switch (info.over) {
+        case package::Over::Nothing:
+            break;
+        case package::Over::Rays:
+            passes_.dispatchList(label, pass(info.role), state_.frame.rayDispatch, 0);
+            break;
+        case package::Over::OrderedHits:
+            passes_.dispatchList(label, pass(info.role), state_.frame.bucketDispatch,
+                                 state_.size.bucketCount);
+            break;
+        case package::Over::Misses:
+            if (!ofFallback || state_.pipelines.shadesUnknown) {
+                passes_.setBucket(0);
+                passes_.dispatchList(label, pass(info.role), state_.frame.bucketDispatch, 0);
+            }
+            break;
+        case package::Over::Buckets:
+            shadeCases(info);
+            break;
+    }
 }
 
 void HitPasses::shade() {
-    switch (state_.choice.strategy) {
-        case package::kStrategyUber:
-            dispatchRays({"uber", Pass::Uber}, ModuleRole::UberShade);
-            break;
-        case package::kStrategySortedUber:
-            passes_.dispatchList({"sorted uber", Pass::SortedUber}, pass(ModuleRole::SortedShade),
-                                 state_.frame.bucketDispatch, state_.size.bucketCount);
-            passes_.barrier(dependencies().passToPass);
-            break;
-        case package::kStrategyHitShaders:
-            dispatchRays({"hit shaders", Pass::HitShaders}, ModuleRole::HitTrace);
-            break;
-        default:
-            shadeBuckets();
+    for (const package::RoleInfo& info : package::rolesOf(state_.choice.strategy)) {
+        dispatch(info);
     }
+    passes_.barrier(dependencies().passToPass);
     if (state_.pipelines.passes.contains(ModuleRole::ShadowTrace)) {
         passes_.dispatchGroups({"shadow dispatch", Pass::ShadowDispatch}, pass(ModuleRole::ShadowDispatch),
                                1);

@@ -24,10 +24,12 @@ private:
         return state_.pipelines.passes.at(role);
     }
     bool ordersHits() const {
-        return (state_.choice.strategy & package::kOrderedStrategies) != 0;
+        return (state_.choice.strategy & package::orderedStrategies()) != 0;
     }
     void dispatchRays(const PassLabel& label, package::ModuleRole role);
-    void shadeBuckets();
+    // Dispatches the pass of a strategy's role, if it has one.
+    void dispatch(const package::RoleInfo& info);
+    void shadeCases(const package::RoleInfo& info);
 
     PassState& state_;
     PassRecorder& passes_;

@@ -220,7 +220,7 @@ Status addPipeline(Context::State& context, const PlannedPipeline& planned, Made
     for (const package::ModuleKey& key : planned.keys) {
         if (key.role == ModuleRole::GBufferVertex) {
             pipelines.gbuffer = pipeline;
-        } else if (key.role == ModuleRole::ShadeCase) {
+        } else if (package::findRole(key.role)->over == package::Over::Buckets) {
             pipelines.cases[key.index].pipeline = pipeline;
             pipelines.cases[key.index].traces = false;
         } else {
@@ -232,17 +232,19 @@ Status addPipeline(Context::State& context, const PlannedPipeline& planned, Made
 
 // Lets the fallback stand in for what is made later.
 void addFallback(const Package& package, const PipelineChoice& choice, Pipelines& pipelines) {
-    const auto standIn = [&](ModuleRole fallback, ModuleRole role) {
-        const auto made = pipelines.passes.find(fallback);
-        if (made != pipelines.passes.end()) {
-            pipelines.passes[role] = made->second;
+    if (!choice.background) {
+        return;
+    }
+    for (const package::RoleInfo& info : package::rolesOf(choice.strategy)) {
+        const auto made = pipelines.passes.find(info.fallback);
+        if (made == pipelines.passes.end()) {
+            continue;
         }
-    };
-    if (choice.background) {
-        standIn(ModuleRole::UberFallback, ModuleRole::UberShade);
-        standIn(ModuleRole::SortedFallback, ModuleRole::SortedShade);
-        const auto made = pipelines.passes.find(ModuleRole::ShadeFallback);
-        for (std::size_t id = 0; made != pipelines.passes.end() && id < pipelines.cases.size(); ++id) {
+        if (info.over != package::Over::Buckets) {
+            pipelines.passes[info.role] = made->second;
+            continue;
+        }
+        for (std::size_t id = 0; id < pipelines.cases.size(); ++id) {
             // A retired shader ID has no hits and no pipeline.
             if (package.cases()[id].keyCount > 0) {
                 pipelines.cases[id] = made->second;
@@ -281,15 +283,17 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
 }
 
 bool isMadeLater(const PipelineChoice& choice, package::ModuleRole role) {
-    return choice.background && (role == ModuleRole::UberShade || role == ModuleRole::ShadeCase ||
-                                 role == ModuleRole::SortedShade || role == ModuleRole::HitTrace);
+    // The hit shaders of a ray generation shader's pipeline have the code of its strategy's cases.
+    const package::RoleInfo& info = *package::findRole(role);
+    return choice.background &&
+           (info.fallback != ModuleRole::None || info.kind == package::ShaderKind::RayGeneration);
 }
 
 bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
-    // The visibility strategy dispatches the fallback for hits whose shader ID no case has. Shaders with a
-    // switch have it in them.
-    return choice.background || role == ModuleRole::ShadeFallback ||
-           package::findRole(role)->purpose != package::Purpose::Fallback;
+    // A fallback with a pass shades hits whose shader ID no case has. Shaders with a switch have it in them.
+    const package::RoleInfo& info = *package::findRole(role);
+    return choice.background || info.purpose != package::Purpose::Fallback ||
+           info.over != package::Over::Nothing;
 }
 
 VkShaderStageFlags pushStages(const Context::State& context) {
@@ -344,7 +348,7 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     if (!made) {
         return made.error();
     }
-    if (choice.strategy == package::kStrategyVisibility) {
+    if (package::infoOf(choice.strategy).dispatchesCases) {
         pipelines.cases.resize(package.caseCount());
     }
     for (std::size_t i = 0; i < plan.size(); ++i) {

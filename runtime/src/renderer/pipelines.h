@@ -19,7 +19,7 @@ namespace glint {
 
 // The choice among a package's modules that a renderer runs. Each field is one value, not a set.
 struct PipelineChoice {
-    package::Strategy strategy = package::kStrategyVisibility;
+    package::Strategy strategy = package::kDefaultStrategy;
     package::Tracer tracer = package::kTracerRayQuery;
     package::Ordering ordering = package::Ordering::GlobalAtomics;
     bool checksOrder = false;
@@ -103,8 +103,8 @@ VkShaderStageFlags pushStages(const Context::State& context);
 std::string pipelineName(const Package& package, const package::ModuleKey& key);
 
 // Makes all pipelines of the choice, or starts threads that make some of them later, which read `package`.
-// `shaderIds` are those of the hit records of the strategy hit-shaders, in their order. Errors: those of
-// buffers, "vulkan-call".
+// `shaderIds` are those of the hit records of strategies with a pipeline of their own, in their order.
+// Errors: those of buffers, "vulkan-call".
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& layout);

@@ -99,7 +99,7 @@ package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount) {
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
                                        const RendererOptions& options) {
     const std::uint32_t strategy = options.strategy;
-    if (!std::has_single_bit(strategy) || strategy > package::kAllStrategies) {
+    if (!std::has_single_bit(strategy) || strategy > package::allStrategies()) {
         return notOne("strategy");
     }
     if (!package.supports(options.strategy)) {
@@ -151,7 +151,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.paths = package::hasPaths(package.shape());
     size.emissiveLights = package.emission() != nullptr;
     size.bounces = size.paths ? choice.bounces : 1;
-    size.ordered = size.sampleCount > 0 && (choice.strategy & package::kOrderedStrategies) != 0;
+    size.ordered = size.sampleCount > 0 && (choice.strategy & package::orderedStrategies()) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;
     size.bucketAlignment =
         (choice.strategy & package::strategiesThat(&package::StrategyInfo::fillsWorkgroups)) != 0

@@ -42,22 +42,12 @@ KnownPipelines knownPipelines(Renderer::State& state) {
 // Whether the pipeline only shades hits whose shader ID no case has, and the scene has none.
 bool isSpare(const PlannedPipeline& planned, bool shadesUnknown) {
     const auto isFallback = [](const package::ModuleKey& key) {
-        return key.role == package::ModuleRole::ShadeFallback;
+        const package::RoleInfo& info = *package::findRole(key.role);
+        return info.purpose == package::Purpose::Fallback && info.over != package::Over::Nothing;
     };
     const bool ofRays = planned.rays && isFallback(planned.rays->key);
     return !shadesUnknown &&
            (ofRays || (!planned.keys.empty() && std::ranges::all_of(planned.keys, isFallback)));
-}
-
-void addCases(const PlannedPipeline& planned, std::vector<std::uint32_t>& cases) {
-    for (const package::ModuleKey& key : planned.keys) {
-        if (key.role == package::ModuleRole::ShadeCase) {
-            cases.push_back(key.index);
-        }
-    }
-    if (planned.rays) {
-        cases.insert(cases.end(), planned.rays->shaderIds.begin(), planned.rays->shaderIds.end());
-    }
 }
 
 // Makes `missing` in this call.
@@ -104,7 +94,7 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next, PackageReplace
         planned.spare = isSpare(planned, pipelines.shadesUnknown);
         const auto kept = known.find(planned.job.identity);
         if (kept == known.end()) {
-            addCases(planned, result.casesMade);
+            std::ranges::copy(casesOf(planned), std::back_inserter(result.casesMade));
             missing.push_back(std::move(planned));
             continue;
         }
@@ -200,7 +190,7 @@ void pauseBackground(Renderer::State& state, bool paused) {
 
 // Lets the passes use the pipelines, which are all there but for spare ones.
 Status joinPasses(Renderer::State& state, NextPackage& next) {
-    if (next.choice.strategy == package::kStrategyVisibility) {
+    if (package::infoOf(next.choice.strategy).dispatchesCases) {
         next.pipelines.cases.resize(next.package->caseCount());
     }
     collect(next);

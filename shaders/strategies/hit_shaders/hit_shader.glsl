@@ -6,7 +6,7 @@
 #extension GL_EXT_ray_tracing_position_fetch : require
 #define GLINT_CORNER(i) gl_HitTriangleVertexPositionsEXT[i]
 #endif
-#include "hit/payload.glsl"
+#include "strategies/hit_shaders/payload.glsl"
 #include "hit/geometry_index.glsl"
 #include "generated/shade.glsl"
 

@@ -37,18 +37,18 @@ TEST(CompilePackage, HasTheModulesOfItsStrategies) {
     settings.strategies = package::kStrategyUber;
     auto uber = countRoles(compileSample(settings));
     EXPECT_EQ(uber.size(), 7U);
-    EXPECT_EQ(uber[ModuleRole::UberShade], 1);
+    EXPECT_EQ(uber[package::roleNamed("UberShade")], 1);
     EXPECT_EQ(uber[ModuleRole::Trace], 0);
     settings.strategies = package::kStrategyVisibility;
     auto visibility = countRoles(compileSample(settings));
     EXPECT_EQ(visibility.size(), 13U);
-    EXPECT_EQ(visibility[ModuleRole::ShadeCase], 4);
+    EXPECT_EQ(visibility[package::roleNamed("ShadeCase")], 4);
     EXPECT_EQ(visibility[ModuleRole::BucketCount], static_cast<int>(package::Ordering::Count));
-    EXPECT_EQ(visibility[ModuleRole::UberShade], 0);
+    EXPECT_EQ(visibility[package::roleNamed("UberShade")], 0);
     settings.strategies = package::kStrategyHitShaders;
     settings.shadows = package::ShadowPlacement::Deferred;
     auto hitShaders = countRoles(compileSample(settings));
-    EXPECT_EQ(hitShaders[ModuleRole::HitCase], 4);
+    EXPECT_EQ(hitShaders[package::roleNamed("HitCase")], 4);
     EXPECT_EQ(hitShaders[ModuleRole::ShadowTrace], 1);
     EXPECT_EQ(hitShaders[ModuleRole::Trace], 0);
 }
@@ -67,7 +67,7 @@ TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
     const compiler::CompiledPackage package = compileSample(settings);
     int casesSeen = 0;
     for (const compiler::CompiledModule& module : package.modules) {
-        if (module.key.role != ModuleRole::ShadeCase) {
+        if (module.key.role != package::roleNamed("ShadeCase")) {
             continue;
         }
         const compiler::Case& shaderCase = package.plan.cases[module.key.index];
@@ -114,7 +114,7 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
             : module.key.role == ModuleRole::GBufferFragment ? compiler::ShaderStage::Fragment
                                                              : compiler::ShaderStage::Compute;
         compiler::ShaderSource source{module.name, stage, readable};
-        if (module.key.role == ModuleRole::UberShade) {
+        if (module.key.role == package::roleNamed("UberShade")) {
             for (const compiler::Case& shaderCase : package.plan.cases) {
                 source.functionsApart.push_back("shade" + shaderCase.name);
             }

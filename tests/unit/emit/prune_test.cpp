@@ -125,7 +125,7 @@ TEST(DropUnused, ReadsContinuedMacrosAndCommentsAsWhatTheyAre) {
 TEST(DropUnused, ChangesNothingTheSecondTime) {
     compiler::CompileSettings settings;
     settings.emitGlsl = true;
-    settings.strategies = package::kAllStrategies;
+    settings.strategies = package::allStrategies();
     const compiler::CompiledPackage package = testing::compileSample(settings);
     ASSERT_FALSE(package.modules.empty());
     for (const compiler::CompiledModule& module : package.modules) {
@@ -147,7 +147,7 @@ TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
     settings.strategies = package::kStrategyVisibility;
     const compiler::CompiledPackage package = testing::compileSample(settings);
     for (const compiler::CompiledModule& module : package.modules) {
-        const bool isCase = module.key.role == package::ModuleRole::ShadeCase;
+        const bool isCase = module.key.role == package::roleNamed("ShadeCase");
         EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_CASE_COUNT")) << module.name;
         EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_HIT_ALWAYS_LOBES")) << module.name;
         EXPECT_FALSE(isCase && has(module.glsl.text(), "GLINT_ALWAYS_LOBES")) << module.name;

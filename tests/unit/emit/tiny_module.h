@@ -22,7 +22,7 @@ inline compiler::GlslUnit makeUnit(std::string_view text, std::string_view file,
 // `body` is the body of main(); it can use the buffer data.x. The text after #version begins in line 10.
 inline compiler::ModuleSource makeTinyModule(int shaderId, const std::string& body) {
     return {
-        {package::ModuleRole::ShadeCase, static_cast<std::uint32_t>(shaderId), 0},
+        {package::roleNamed("ShadeCase"), static_cast<std::uint32_t>(shaderId), 0},
         compiler::ShaderStage::Compute,
         "shade_" + std::to_string(shaderId) + ".comp",
         makeUnit("#version 460\n"

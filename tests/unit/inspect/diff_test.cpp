@@ -12,7 +12,7 @@ namespace {
 using Key = std::vector<std::string>;
 using Kind = inspect::ShaderChangeKind;
 
-constexpr package::ModuleKey kShade{package::ModuleRole::ShadeCase, 0, package::kTracerRayQuery};
+const package::ModuleKey kShade{package::roleNamed("ShadeCase"), 0, package::kTracerRayQuery};
 
 inspect::DiffCase makeCase(const std::string& name, const std::set<Key>& keys, std::uint64_t code) {
     inspect::DiffCase shader{name, keys};

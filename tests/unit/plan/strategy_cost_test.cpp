@@ -32,7 +32,7 @@ compiler::DeviceCosts someDevice() {
     compiler::DeviceCosts device;
     device.device = "Some";
     device.subgroupSize = 32.0;
-    for (const std::string_view name : compiler::kStrategyNames) {
+    for (const std::string_view name : compiler::simplestFirst()) {
         compiler::StrategyCosts& costs = device.strategies.emplace_back();
         costs.strategy = name;
         const bool ordered = hasTerm(name, compiler::CostTerm::Buckets);
@@ -46,7 +46,7 @@ compiler::DeviceCosts someDevice() {
     return device;
 }
 
-const std::vector<std::string> kAll(std::begin(compiler::kStrategyNames), std::end(compiler::kStrategyNames));
+const std::vector<std::string> kAll(compiler::simplestFirst().begin(), compiler::simplestFirst().end());
 
 std::string chosen(const compiler::Round& round, const std::vector<std::string>& available = kAll) {
     const auto choice = chooseStrategy({&round, 1}, someDevice(), available);
@@ -94,7 +94,7 @@ TEST(StrategyCost, OneLaneRunsItsOwnCaseAlone) {
 }
 
 TEST(StrategyCost, GrowsWithRaysWorkAndDivergence) {
-    for (const std::string_view strategy : compiler::kStrategyNames) {
+    for (const std::string_view strategy : compiler::simplestFirst()) {
         EXPECT_LT(ms(makeRound(16, 800, 0.5, 1e6), strategy), ms(makeRound(16, 800, 0.5, 2e6), strategy));
         EXPECT_LT(ms(makeRound(16, 400, 0.5), strategy), ms(makeRound(16, 800, 0.5), strategy));
         EXPECT_LT(ms(makeRound(16, 800, 0.9), strategy), ms(makeRound(16, 800, 0.1), strategy));

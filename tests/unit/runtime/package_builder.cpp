@@ -22,19 +22,19 @@ struct NamedRole {
     const char* name;
 };
 
-constexpr NamedRole kRoles[] = {
+const NamedRole kRoles[] = {
     {ModuleRole::GBufferVertex, "gbuffer.vert"},
     {ModuleRole::GBufferFragment, "gbuffer.frag"},
     {ModuleRole::Lighting, "lighting.comp"},
     {ModuleRole::EffectRays, "effect_rays.comp"},
     {ModuleRole::RayDispatch, "ray_dispatch.comp"},
-    {ModuleRole::UberShade, "uber.comp"},
+    {package::roleNamed("UberShade"), "uber.comp"},
     {ModuleRole::Trace, "trace.comp"},
     {ModuleRole::BucketCount, "bucket_count.comp"},
     {ModuleRole::BucketOffset, "bucket_offset.comp"},
     {ModuleRole::BucketCopy, "bucket_copy.comp"},
-    {ModuleRole::ShadeMiss, "shade_miss.comp"},
-    {ModuleRole::ShadeCase, "shade_case.comp"},
+    {package::roleNamed("ShadeMiss"), "shade_miss.comp"},
+    {package::roleNamed("ShadeCase"), "shade_case.comp"},
     {ModuleRole::Compose, "compose.comp"},
     // This module never runs here.
     {ModuleRole::OrderCheck, "compose.comp"},

@@ -60,8 +60,9 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     PackageSpec spec = makeRichSpec();
     spec.caseCount = 2;
     spec.cases.push_back({0b01, 0b10, "Textured"});
-    spec.modules.push_back(
-        {{ModuleRole::ShadeCase, 1, package::kTracerRayQuery}, "shade_case.comp.spv", spec.modules[0].words});
+    spec.modules.push_back({{package::roleNamed("ShadeCase"), 1, package::kTracerRayQuery},
+                            "shade_case.comp.spv",
+                            spec.modules[0].words});
     spec.primitives[1].shaderId = 1;
     spec.primitives[1].featureLobes = 0b11;
     write(spec);
@@ -79,9 +80,9 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     const PackageScene scene = package.scene(0);
     EXPECT_EQ(test::materialAt(scene.materials, 0).textures[0].textureIndex, 1U);
     EXPECT_EQ(package.spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).size(), 5U);
-    EXPECT_EQ(package.spirv({ModuleRole::ShadeCase, 0, package::kTracerRayQuery}).data(),
-              package.spirv({ModuleRole::ShadeCase, 1, package::kTracerRayQuery}).data());
-    EXPECT_TRUE(package.spirv({ModuleRole::ShadeCase, 2, package::kTracerRayQuery}).empty());
+    EXPECT_EQ(package.spirv({package::roleNamed("ShadeCase"), 0, package::kTracerRayQuery}).data(),
+              package.spirv({package::roleNamed("ShadeCase"), 1, package::kTracerRayQuery}).data());
+    EXPECT_TRUE(package.spirv({package::roleNamed("ShadeCase"), 2, package::kTracerRayQuery}).empty());
     ASSERT_NE(scene.findPrimitive(2, 1), nullptr);
     EXPECT_EQ(scene.findPrimitive(2, 1)->shaderId, 1U);
     EXPECT_EQ(scene.findPrimitive(2, 0), nullptr);
@@ -352,9 +353,9 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"no tracer", [](PackageSpec& s) { s.tracers = 0; }},
         {"unknown tracer", [](PackageSpec& s) { s.tracers |= 4; }},
         {"tracer without modules", [](PackageSpec& s) { s.tracers = package::kAllTracers; }},
-        {"strategy without modules", [](PackageSpec& s) { removeRole(s, ModuleRole::UberShade); }},
+        {"strategy without modules", [](PackageSpec& s) { removeRole(s, package::roleNamed("UberShade")); }},
         {"modules without strategy", [](PackageSpec& s) { s.strategies = package::kStrategyUber; }},
-        {"case without module", [](PackageSpec& s) { removeRole(s, ModuleRole::ShadeCase); }},
+        {"case without module", [](PackageSpec& s) { removeRole(s, package::roleNamed("ShadeCase")); }},
         {"pass without module", [](PackageSpec& s) { removeRole(s, ModuleRole::Lighting); }},
         {"module twice", [](PackageSpec& s) { s.modules.push_back(s.modules[0]); }},
         {"unknown role", [](PackageSpec& s) { s.modules[12].key.role = ModuleRole{99}; }},
@@ -396,7 +397,7 @@ TEST_F(PackageTest, SectionsAreBounded) {
 TEST_F(PackageTest, OneStrategyIsEnough) {
     PackageSpec spec = test::makeSpec();
     spec.strategies = package::kStrategyUber;
-    for (const package::RoleInfo& info : package::kRoles) {
+    for (const package::RoleInfo& info : package::roles()) {
         if ((info.strategies & package::kStrategyUber) == 0) {
             removeRole(spec, info.role);
         }

@@ -56,7 +56,7 @@ PlannedPipeline caseOf(std::uint32_t shaderId, std::function<Result<UniquePipeli
     PlannedPipeline planned;
     planned.job = {"case " + std::to_string(shaderId), 1,
                    [make = std::move(make)](PipelineCreation&) { return make(); }};
-    planned.keys = {{package::ModuleRole::ShadeCase, shaderId, 0}};
+    planned.keys = {{package::roleNamed("ShadeCase"), shaderId, 0}};
     planned.later = true;
     return planned;
 }

@@ -29,14 +29,16 @@ std::vector<std::string> strategiesOf(const measure::CalibrationReport& report) 
 }
 
 // The strategy that the others are compared with.
-constexpr std::string_view kBase = package::kStrategyTable[0].name;
+std::string_view base() {
+    return package::strategyTable().front().name;
+}
 
 std::string cellOf(const measure::CalibrationEntry& entry, const std::string& strategy) {
     const auto found = std::ranges::find(entry.strategies, strategy, &measure::StrategyMeasure::strategy);
     if (found == entry.strategies.end() || found->times.empty()) {
         return "-";
     }
-    if (strategy == kBase) {
+    if (strategy == base()) {
         return fmt::format("{:.3f}", measure::intervalOf(found->times).median);
     }
     if (found->difference.isWrong()) {
@@ -257,7 +259,7 @@ std::string toText(const measure::CalibrationReport& report) {
     std::vector<std::vector<std::string>> rows{
         {"cases", "cost", "hits", "M rays", "hit %", "alike", "instructions"}};
     for (const std::string& name : names) {
-        rows[0].push_back(name == kBase ? name + ", ms" : fmt::format("{} / {}", name, kBase));
+        rows[0].push_back(name == base() ? name + ", ms" : fmt::format("{} / {}", name, base()));
     }
     rows[0].emplace_back("fastest");
     for (const measure::CalibrationEntry& entry : report.entries) {

@@ -131,12 +131,13 @@ void settleSettings(const CLI::App& command, const compiler::Settings& settings)
         settings.frame.occlusionRadius == std::numeric_limits<float>::infinity()) {
         throw CLI::ValidationError("--ao-falloff", "linear needs a radius; give one with --ao-radius");
     }
-    if (settings.strategy && (*settings.strategy & package::kPipelineStrategies) != 0 &&
+    if (settings.strategy && (*settings.strategy & package::pipelineStrategies()) != 0 &&
         settings.renderer.tracer == package::kTracerRayQuery) {
         throw CLI::ValidationError(
-            "--tracer", fmt::format("ray-query can't run --strategy {}, which is a ray tracing pipeline: "
-                                    "leave out --tracer, or use --strategy uber",
-                                    package::nameOf(*settings.strategy)));
+            "--tracer",
+            fmt::format("ray-query can't run --strategy {}, which is a ray tracing pipeline: "
+                        "leave out --tracer, or use --strategy {}",
+                        package::nameOf(*settings.strategy), package::strategyTable().front().name));
     }
 }
 

@@ -8,6 +8,14 @@ namespace glint::cli {
 
 namespace {
 
+// Returns the names of the strategies that count the hits of each case.
+std::string countingStrategies() {
+    return fmt::format(
+        "{}",
+        fmt::join(compiler::strategyNames(package::strategiesThat(&package::StrategyInfo::dispatchesCases)),
+                  " or "));
+}
+
 constexpr const char* kMap = "--environment";
 constexpr const char* kRotation = "--environment-rotation";
 constexpr const char* kMapIntensity = "--environment-intensity";
@@ -78,8 +86,10 @@ void addRenderReports(CLI::App& command, RenderArguments& arguments) {
         .group("Report");
     addText(command, "--profile", arguments.profileOutput, "FILE.json",
             "count the hits of every permutation, for --merge profile\n"
-            "and auto; needs --strategy visibility; the default of\n"
-            "--merge is then none, and no other value works")
+            "and auto; needs --strategy " +
+                countingStrategies() +
+                "; the default of\n"
+                "--merge is then none, and no other value works")
         .group("Report");
 }
 
@@ -100,10 +110,10 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
                                    "its own: leave out --merge " +
                                        command.get_option("--merge")->results().front());
     }
-    if (arguments.strategy != package::kStrategyVisibility) {
-        throw CLI::ValidationError("--profile",
-                                   "needs --strategy visibility, which orders hits by shader, not " +
-                                       compiler::sweptSetting("strategy")->values.text(arguments));
+    if (!arguments.strategy || !package::infoOf(*arguments.strategy).dispatchesCases) {
+        throw CLI::ValidationError(
+            "--profile", "needs --strategy " + countingStrategies() + ", which orders hits by shader, not " +
+                             compiler::sweptSetting("strategy")->values.text(arguments));
     }
     arguments.compile.plan.merge = compiler::MergePolicy::None;
 }

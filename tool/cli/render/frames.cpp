@@ -56,7 +56,7 @@ public:
         const std::uint32_t onScreen = package.shape().effects.screenStarts;
         onScreen_ = onScreen & (0U - onScreen);
         report_.tracer = std::string(package::nameOf(renderer_->tracer()));
-        if ((setup_.renderer.strategy & package::kOrderedStrategies) != 0) {
+        if ((setup_.renderer.strategy & package::orderedStrategies()) != 0) {
             report_.ordering = std::string(package::nameOf(renderer_->ordering()));
         }
         report_.pipelines.making = renderer_->pipelineMaking();

@@ -73,7 +73,7 @@ inline nlohmann::ordered_json strategyChoiceToJson(const StrategyAdvice& advice)
 // Names one of a case's modules by its purpose.
 inline std::string stageName(const package::ModuleKey& key) {
     const auto strategy = static_cast<package::Strategy>(package::findRole(key.role)->strategies);
-    const bool alone = (strategy & package::kPipelineStrategies) != 0;
+    const bool alone = (strategy & package::pipelineStrategies()) != 0;
     const std::string name(package::nameOf(strategy));
     return alone || key.tracer != package::kTracerRayPipeline ? name : name + ", ray-pipeline";
 }

@@ -16,7 +16,7 @@ constexpr std::size_t kMostOfRun = 1U << 17U;
 // The package of the checked scene: as few modules as packages have.
 compiler::CompileSettings checkedSettings() {
     compiler::CompileSettings settings;
-    settings.strategies = package::kStrategyVisibility;
+    settings.strategies = package::kDefaultStrategy;
     settings.tracers = package::kTracerRayQuery;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.effects = {};

@@ -12,7 +12,7 @@ struct HitTimes {
     double dispatch = 0.0;  // makes the indirect arguments of the list of rays
     double trace = 0.0;   // traces rays and writes hit records, in strategies with a pass of its own for that
     double order = 0.0;   // sorts those records by bucket
-    double shade = 0.0;   // shades hits; uber and hit-shaders also trace here
+    double shade = 0.0;   // shades hits; strategies that order none also trace here
     double shadow = 0.0;  // traces deferred shadow rays, and dispatches them
 
     double sum() const {

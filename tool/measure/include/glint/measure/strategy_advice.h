@@ -28,7 +28,7 @@ struct KnownCosts {
 Result<KnownCosts> knownCosts(const std::string& file, bool onCpu);
 
 // Returns the strategies that can be chosen for a device with these tracers (bits), traced by `tracer` if it
-// is given, and contained in the package if there is one. The names are in the order of kStrategyNames.
+// is given, and contained in the package if there is one. The names are in the order of simplestFirst().
 std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
                                             std::optional<package::Tracer> tracer, const Package* package);
 

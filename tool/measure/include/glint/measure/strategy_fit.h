@@ -66,7 +66,7 @@ struct FitQuality {
 };
 
 struct DeviceFit {
-    std::vector<compiler::StrategyCosts> strategies;  // in the order of kStrategyNames
+    std::vector<compiler::StrategyCosts> strategies;  // in the order of simplestFirst()
     FitQuality quality;
     std::vector<std::string> omitted;  // sentences that say which strategy has no constants, or which point
                                        // was not usable

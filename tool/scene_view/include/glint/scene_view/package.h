@@ -20,7 +20,7 @@ std::optional<std::uint32_t> sceneIn(const Package& package, const gltf::Scene& 
 
 // The requirements on a package that was compiled earlier.
 struct PackageDemand {
-    package::Strategy strategy = package::kStrategyVisibility;
+    package::Strategy strategy = package::kDefaultStrategy;
     std::optional<package::Tracer> tracer;  // absent: any
     bool environmentMap = false;
 };

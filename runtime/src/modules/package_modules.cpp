@@ -1,0 +1,245 @@
+#include <glint/package_modules.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace glint::package {
+namespace {
+
+// The numbers of a strategy's roles begin at a multiple of this.
+constexpr std::uint32_t kRolesOfStrategy = 64;
+
+// The roles that strategies share.
+std::vector<RoleInfo> sharedRoles() {
+    const std::uint32_t all = allStrategies();
+    const std::uint32_t ordered = orderedStrategies();
+    return {
+        {ModuleRole::GBufferVertex, all, "GBufferVertex", "passes/gbuffer.vert", ShaderKind::Vertex,
+         Purpose::Picture},
+        {ModuleRole::GBufferFragment, all, "GBufferFragment", "passes/gbuffer.frag", ShaderKind::Fragment,
+         Purpose::Picture},
+        {ModuleRole::Lighting, all, "Lighting", "passes/lighting.comp", ShaderKind::Tracing,
+         Purpose::Picture},
+        {ModuleRole::EffectRays, all, "EffectRays", "effect_rays.comp.mustache", ShaderKind::Compute,
+         Purpose::Hits, Repeated::ByEffect},
+        {ModuleRole::RayDispatch, all, "RayDispatch", "passes/ray_dispatch.comp", ShaderKind::Compute},
+        {ModuleRole::Trace, ordered, "Trace", "passes/trace.comp", ShaderKind::Tracing},
+        {ModuleRole::BucketCount, ordered, "BucketCount", "passes/bucket_count.comp", ShaderKind::Compute,
+         Purpose::Hits, Repeated::ByOrdering},
+        {ModuleRole::BucketOffset, ordered, "BucketOffset", "passes/bucket_offset.comp", ShaderKind::Compute},
+        {ModuleRole::BucketCopy, ordered, "BucketCopy", "passes/bucket_copy.comp", ShaderKind::Compute,
+         Purpose::Hits, Repeated::ByOrdering},
+        {ModuleRole::OrderCheck, ordered, "OrderCheck", "passes/order_check.comp", ShaderKind::Compute},
+        {ModuleRole::Compose, all, "Compose", "passes/compose.comp", ShaderKind::Compute, Purpose::Picture},
+        {ModuleRole::ShadowDispatch, all, "ShadowDispatch", "passes/shadow_dispatch.comp",
+         ShaderKind::Compute, Purpose::Shadows},
+        {ModuleRole::ShadowTrace, all, "ShadowTrace", "passes/shadow_trace.comp", ShaderKind::Tracing,
+         Purpose::Shadows},
+        {ModuleRole::TraceClosestHit, all, "TraceClosestHit", "passes/trace.rchit", ShaderKind::ClosestHit,
+         Purpose::Tracing},
+        {ModuleRole::TraceAnyHit, all, "TraceAnyHit", "passes/trace.rahit", ShaderKind::AnyHit,
+         Purpose::Tracing},
+        {ModuleRole::TraceMiss, all, "TraceMiss", "passes/trace.rmiss", ShaderKind::Miss, Purpose::Tracing},
+        // Its source is the effect's.
+        {ModuleRole::EffectWalk, all, "EffectWalk", "", ShaderKind::Tracing, Purpose::Walks,
+         Repeated::ByWalk},
+        {ModuleRole::PathRays, all, "PathRays", "passes/path_rays.comp", ShaderKind::Compute, Purpose::Paths},
+        {ModuleRole::Deform, all, "Deform", "passes/deform.comp", ShaderKind::Compute, Purpose::Motion},
+    };
+}
+
+// Adds the roles of a strategy's modules and of their fallbacks.
+void addRoles(std::vector<RoleInfo>& roles, const StrategyInfo& strategy, std::uint32_t first) {
+    for (const StrategyModule& module : strategy.modules) {
+        RoleInfo info{.role = static_cast<ModuleRole>(first++),
+                      .strategies = strategy.strategy,
+                      .name = module.name,
+                      .source = module.source,
+                      .kind = module.kind,
+                      .repeated = module.cases == CaseCode::Own ? Repeated::ByCase : Repeated::Once,
+                      .declared = &module,
+                      .over = module.over};
+        const auto fallback = static_cast<ModuleRole>(first++);
+        if (module.fallback.empty()) {
+            roles.push_back(info);
+            continue;
+        }
+        info.fallback = fallback;
+        roles.push_back(info);
+        info.role = fallback;
+        info.name = module.fallback;
+        info.purpose = Purpose::Fallback;
+        info.repeated = Repeated::Once;
+        info.over = module.over == Over::Buckets ? Over::Misses : Over::Nothing;
+        info.fallback = ModuleRole::None;
+        roles.push_back(info);
+    }
+}
+
+// Whether a package of this shape needs modules with this purpose.
+bool hasPurpose(Purpose purpose, const PackageShape& shape) {
+    const bool frame = shape.passes == Passes::Frame;
+    const bool hits = !frame || shape.effects.rays != 0;
+    switch (purpose) {
+        case Purpose::Picture:
+            return frame;
+        case Purpose::Hits:
+            return hits;
+        case Purpose::Shadows:
+            return hits && shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Deferred;
+        case Purpose::Walks:
+            return frame && shape.effects.walks != 0;
+        case Purpose::Paths:
+            return hasPaths(shape);
+        case Purpose::Tracing:
+            return hits || shape.effects.tracesAtSurfaces();
+        case Purpose::Motion:
+            return frame && shape.deforms;
+        case Purpose::Fallback:
+            return hits && shape.fallback;
+    }
+    return false;
+}
+
+// Whether a module traces, given that modules of its kind may do so.
+bool traces(const RoleInfo& info, const PackageShape& shape) {
+    if (info.role == ModuleRole::Lighting) {
+        return shape.effects.tracesAtSurfaces();
+    }
+    return info.kind == ShaderKind::Tracing ||
+           (shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Inline);
+}
+
+// Any-hit shaders test alpha. A strategy has one of its own where its pipeline's shadow rays read more.
+bool isLeftOut(const RoleInfo& info, const PackageShape& shape) {
+    return info.kind == ShaderKind::AnyHit && !shape.shadowsApart &&
+           (info.declared != nullptr || !shape.alphaTested);
+}
+
+// Returns the Tracer values that the modules of a role have: several, one, or {0} if the role traces no rays.
+// The result is empty if the package does not need the role.
+std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const PackageShape& shape) {
+    const std::uint32_t strategies = info.strategies & shape.strategies;
+    if (strategies == 0 || !hasPurpose(info.purpose, shape) || isLeftOut(info, shape)) {
+        return {};
+    }
+    const std::uint32_t tracers = tracersOf(strategies, shape.tracers);
+    const bool pipeline = (tracers & kTracerRayPipeline) != 0;
+    switch (info.kind) {
+        case ShaderKind::Vertex:
+        case ShaderKind::Fragment:
+        case ShaderKind::Compute:
+            return {0};
+        case ShaderKind::Tracing:
+        case ShaderKind::Shading:
+            if (!traces(info, shape)) {
+                return {0};
+            }
+            break;
+        default:
+            return pipeline ? std::vector<std::uint32_t>{kTracerRayPipeline} : std::vector<std::uint32_t>{};
+    }
+    std::vector<std::uint32_t> result;
+    for (const Tracer tracer : kTracers) {
+        if ((tracers & tracer) != 0) {
+            result.push_back(tracer);
+        }
+    }
+    return result;
+}
+
+// Returns the indices that the modules of a role have, ascending.
+std::vector<std::uint32_t> moduleIndices(const RoleInfo& info, const PackageShape& shape) {
+    std::vector<std::uint32_t> indices;
+    switch (info.repeated) {
+        case Repeated::Once:
+            indices.push_back(0);
+            break;
+        case Repeated::ByCase:
+            for (std::uint32_t index = 0; index < shape.caseCount; ++index) {
+                if (!std::ranges::binary_search(shape.retired, index)) {
+                    indices.push_back(index);
+                }
+            }
+            break;
+        case Repeated::ByOrdering:
+            for (std::uint32_t index = 0; index < static_cast<std::uint32_t>(Ordering::Count); ++index) {
+                indices.push_back(index);
+            }
+            break;
+        case Repeated::ByEffect:
+            forEachEffect(shape.effects.rays, [&](std::uint32_t number) { indices.push_back(number); });
+            break;
+        case Repeated::ByWalk:
+            forEachEffect(shape.effects.walks, [&](std::uint32_t number) { indices.push_back(number); });
+            break;
+    }
+    return indices;
+}
+
+}  // namespace
+
+std::span<const RoleInfo> roles() {
+    static const std::vector<RoleInfo> kRoles = [] {
+        std::vector<RoleInfo> roles = sharedRoles();
+        std::uint32_t first = kRolesOfStrategy;
+        for (const StrategyInfo& strategy : strategyTable()) {
+            addRoles(roles, strategy, first);
+            first += kRolesOfStrategy;
+        }
+        return roles;
+    }();
+    return kRoles;
+}
+
+std::span<const RoleInfo> rolesOf(Strategy strategy) {
+    const auto isOwn = [&](const RoleInfo& info) {
+        return info.declared != nullptr && info.strategies == strategy;
+    };
+    const std::span<const RoleInfo> all = roles();
+    const auto first = std::ranges::find_if(all, isOwn);
+    return {first, std::find_if_not(first, all.end(), isOwn)};
+}
+
+const RoleInfo* findRole(ModuleRole role) {
+    const auto found = std::ranges::lower_bound(roles(), role, {}, &RoleInfo::role);
+    return found == roles().end() || found->role != role ? nullptr : &*found;
+}
+
+std::string_view roleName(ModuleRole role) {
+    const RoleInfo* const info = findRole(role);
+    return info == nullptr ? std::string_view("unknown") : info->name;
+}
+
+ModuleRole roleNamed(std::string_view name) {
+    const auto found = std::ranges::find(roles(), name, &RoleInfo::name);
+    return found == roles().end() ? ModuleRole::None : found->role;
+}
+
+std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers) {
+    const bool others = (strategies & ~pipelineStrategies()) != 0;
+    const bool pipelines = (strategies & pipelineStrategies()) != 0;
+    return (others ? tracers : 0U) | (pipelines ? std::uint32_t{kTracerRayPipeline} : 0U);
+}
+
+bool hasPaths(const PackageShape& shape) {
+    return shape.passes == Passes::Frame && shape.effects.rays != 0 && shape.maxBounces > 1;
+}
+
+std::vector<ModuleKey> requiredModules(const PackageShape& shape) {
+    std::vector<ModuleKey> keys;
+    for (const RoleInfo& info : roles()) {
+        const std::vector<std::uint32_t> tracers = moduleTracers(info, shape);
+        if (tracers.empty()) {
+            continue;
+        }
+        for (const std::uint32_t index : moduleIndices(info, shape)) {
+            for (const std::uint32_t tracer : tracers) {
+                keys.push_back({info.role, index, tracer});
+            }
+        }
+    }
+    return keys;
+}
+
+}  // namespace glint::package
