@@ -227,7 +227,8 @@ Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptio
     }
     const package::Strategy chosen = *valueNamed<package::Strategy>(advice->choice.strategy);
     settings.compile.strategies |=
-        chosen | (package::infoOf(chosen).ownPipeline ? std::uint32_t{package::strategyTable().front().strategy} : 0U);
+        chosen |
+        (package::infoOf(chosen).ownPipeline ? std::uint32_t{package::strategyTable().front().strategy} : 0U);
     settings.compile.strategyChoice = std::move(*advice);
     return okStatus();
 }
