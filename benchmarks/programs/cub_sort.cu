@@ -2,7 +2,7 @@
 // without an ordering of their own would call. Keys of 32 bits, and of as few bytes as hold the bucket, over as few bits
 // as needed; values are hit indices of 4 bytes. Prints a row of JSON for each number of hits, of buckets and spread.
 //
-//   nvcc -O3 -std=c++17 -arch=native -o cub_sort benchmarks/cub_sort.cu
+//   nvcc -O3 -std=c++17 -arch=native -o cub_sort benchmarks/programs/cub_sort.cu
 //   cub_sort HITS BUCKETS ROUNDS      lists with commas: cub_sort 1048576,8388608 2,64,1024 11
 #include <cub/device/device_radix_sort.cuh>
 

@@ -1,7 +1,7 @@
 // The copy pass of the ordering tile-sort (shaders/passes/bucket_copy_tile_sort.comp) in CUDA, a tile a block, for
 // NVIDIA's profiler, which reads no counters of Vulkan's shaders. 8 Mi hits, 64 buckets, keys in no order.
 //
-//   nvcc -O3 -std=c++17 -arch=sm_90 benchmarks/tile_sort.cu -o tile_sort
+//   nvcc -O3 -std=c++17 -arch=sm_90 benchmarks/programs/tile_sort.cu -o tile_sort
 //   ncu --clock-control none --set full -k regex:copyTile --launch-skip 2 --launch-count 1 ./tile_sort
 #include <cuda_runtime.h>
 
