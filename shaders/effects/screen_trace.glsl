@@ -135,5 +135,5 @@ vec3 screenRadiance(ivec2 place, vec3 direction) {
     vec3 normal = normalOf(imageLoad(positionImage, place));
     uint target = sampleTarget(GLINT_SLOT_REFLECTION, uint(place.x) + uint(place.y) * GLINT_FRAME.width);
     return imageLoad(radianceImage, place).rgb +
-           GLINT_FRAME.samples.data[target].weight * hostSky(reflect(direction, normal));
+           sampleWeight(target) * hostSky(reflect(direction, normal));
 }

@@ -46,8 +46,9 @@ ShadeResult shadeUnknown() {
 // Stores the light of a ray that ends without a surface to shade.
 void resolveEnd(uint target, vec3 radiance, uint path) {
 #if GLINT_PATHS
-    storeRadiance(target, radiance * GLINT_FRAME.paths.data[target].throughput, path);
-    endPath(target);
+    uint place = samplePlace(target);
+    storeRadiance(target, radiance * GLINT_FRAME.paths.data[place].throughput, path);
+    endPath(place);
 #else
     storeRadiance(target, radiance, path);
 #endif

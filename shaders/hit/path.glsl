@@ -48,20 +48,20 @@ uint dimensionOfBounce(uint dimension) {
     return dimension + kDimensionsOfBounce * (max(GLINT_FRAME.bounce, 1u) - 1u);
 }
 
-PathArrival arrivalOf(uint target, vec3 start, float coneWidth, float coneSpread) {
-    PathState path = GLINT_FRAME.paths.data[target];
+// `place` is that of the sample (samplePlace()).
+PathArrival arrivalOf(uint place, vec3 start, float coneWidth, float coneSpread) {
+    PathState path = GLINT_FRAME.paths.data[place];
     return PathArrival(start, path.throughput, path.medium, coneWidth, coneSpread);
 }
 
 // The path of a sample before its first hit.
-void beginPath(uint target) {
-    GLINT_FRAME.paths.data[target] =
-        PathState(vec3(0.0), 0u, vec3(0.0), 0.0, vec3(1.0), 0.0, 0.0, 0u);
+void beginPath(uint place) {
+    GLINT_FRAME.paths.data[place] = PathState(vec3(1.0), 0u);
 }
 
-void endPath(uint target) {
+void endPath(uint place) {
     if (pathGoesOn()) {
-        GLINT_FRAME.paths.data[target].goesOn = 0u;
+        GLINT_FRAME.sampleStarts.data[place].state = kRayEnded;
     }
 }
 

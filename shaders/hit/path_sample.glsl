@@ -76,13 +76,15 @@ PathStep straightStep(Hit hit, vec3 arriving) {
 
 // Keeps the next ray, for the pass that puts it on the list.
 void storePath(Hit hit, PathStep step) {
+    uint place = samplePlace(hit.target);
     if (step.direction == vec3(0.0)) {
-        endPath(hit.target);
+        endPath(place);
         return;
     }
-    GLINT_FRAME.paths.data[hit.target] =
-        PathState(rayOrigin(hit, step.direction), step.medium, step.direction, step.density, step.throughput,
-                  hit.arrival.coneWidth, step.coneSpread, 1u);
+    GLINT_FRAME.sampleStarts.data[place] = SampleStart(rayOrigin(hit, step.direction), kRaySent);
+    GLINT_FRAME.sampleAims.data[place] = SampleAim(step.direction, hit.arrival.coneWidth);
+    GLINT_FRAME.sampleWeights.data[place].coneSpread = step.coneSpread;
+    GLINT_FRAME.paths.data[place] = PathState(step.throughput, step.medium);
 #if GLINT_EMISSIVE_LIGHTS
     storeLobeRay(hit.target, step.density, step.receiver);
 #endif

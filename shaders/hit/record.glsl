@@ -19,34 +19,19 @@ float unpackConeWidth(uint code) {
 #if GLINT_HIT_RECORD_PACKED
 
 void storeHit(uint index, HitRecord hit) {
-    PackedHitRecord record;
-    record.target = hit.target;
-    if (hit.geometry == kMissGeometry) {
-        vec2 direction = octahedralEncode(
-            vec3(hit.barycentricU_orDirectionX, hit.barycentricV_orDirectionY, hit.distance_orDirectionZ));
-        record.geometry24_coneLog8 = kMissGeometry;
-        record.primitive_orDirectionOctX = floatBitsToUint(direction.x);
-        record.barycentrics2x16_orDirectionOctY = floatBitsToUint(direction.y);
-    } else {
-        record.geometry24_coneLog8 = hit.geometry << 8 | packConeWidth(hit.coneWidth);
-        record.primitive_orDirectionOctX = hit.primitive;
-        record.barycentrics2x16_orDirectionOctY =
-            packUnorm2x16(vec2(hit.barycentricU_orDirectionX, hit.barycentricV_orDirectionY));
-    }
-    GLINT_FRAME.packedHits.data[index] = record;
+    uint geometry = hit.geometry == kMissGeometry ? kMissGeometry : hit.geometry << 8 | packConeWidth(hit.coneWidth);
+    GLINT_FRAME.packedHits.data[index] =
+        PackedHitRecord(geometry, hit.primitive, packUnorm2x16(vec2(hit.barycentricU, hit.barycentricV)));
 }
 
-// The distance of a hit is not stored.
 HitRecord storedHit(uint index) {
     PackedHitRecord record = GLINT_FRAME.packedHits.data[index];
     if (record.geometry24_coneLog8 == kMissGeometry) {
-        vec3 direction = octahedralDecode(uintBitsToFloat(
-            uvec2(record.primitive_orDirectionOctX, record.barycentrics2x16_orDirectionOctY)));
-        return HitRecord(record.target, kMissGeometry, 0u, direction.x, direction.y, direction.z, 0.0, index);
+        return HitRecord(kMissGeometry, 0u, 0.0, 0.0, 0.0);
     }
-    vec2 barycentrics = unpackUnorm2x16(record.barycentrics2x16_orDirectionOctY);
-    return HitRecord(record.target, record.geometry24_coneLog8 >> 8, record.primitive_orDirectionOctX, barycentrics.x,
-                     barycentrics.y, 0.0, unpackConeWidth(record.geometry24_coneLog8 & 0xFFu), index);
+    vec2 barycentrics = unpackUnorm2x16(record.barycentrics2x16);
+    return HitRecord(record.geometry24_coneLog8 >> 8, record.primitive, barycentrics.x, barycentrics.y,
+                     unpackConeWidth(record.geometry24_coneLog8 & 0xFFu));
 }
 
 // Returns the geometry of a stored hit, or kMissGeometry.
@@ -70,11 +55,6 @@ uint storedGeometry(uint index) {
 }
 
 #endif
-
-// Returns the direction of a ray that missed.
-vec3 missDirection(HitRecord record) {
-    return vec3(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY, record.distance_orDirectionZ);
-}
 
 // Returns the bucket of what a ray hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes
 // to the misses; their pass shows it in an error colour and counts it.

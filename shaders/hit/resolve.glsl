@@ -6,31 +6,18 @@
 #include "generated/shade.glsl"
 #include "light/shadow.glsl"
 
-Hit loadHit(HitRecord record, vec3 direction, HostGeometry geometry, Features features) {
-    vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
-    Hit hit = fetchHit(geometry, record.primitive, barycentrics, direction, record.coneWidth, record.target, features);
+Hit loadHit(HitRecord record, RayRecord ray, HostGeometry geometry, Features features) {
+    vec2 barycentrics = vec2(record.barycentricU, record.barycentricV);
+    Hit hit = fetchHit(geometry, record.primitive, barycentrics, ray.direction, record.coneWidth, ray.target, features);
 #if GLINT_PATHS
-    RayRecord ray = GLINT_FRAME.rays.data[record.ray];
-    hit.arrival = arrivalOf(record.target, ray.origin, record.coneWidth, ray.coneSpread);
+    hit.arrival = arrivalOf(samplePlace(ray.target), ray.origin, record.coneWidth, ray.coneSpread);
 #endif
 #if GLINT_EMISSIVE_LIGHTS
     hit.geometry = record.geometry;
     hit.primitive = record.primitive;
-    hit.start = GLINT_FRAME.rays.data[record.ray].origin;
+    hit.start = ray.origin;
 #endif
     return hit;
-}
-
-// Returns the direction of the ray of a stored hit.
-vec3 rayDirection(HitRecord record, HostGeometry geometry) {
-#if GLINT_HIT_RECORD_PACKED && !GLINT_STEPS && !GLINT_PATHS
-    // It points from the start of the ray to the point of the triangle.
-    vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
-    vec3 point = trianglePosition(geometry, record.primitive, barycentrics);
-    return normalize(point - GLINT_FRAME.samples.data[record.target].origin);
-#else
-    return GLINT_FRAME.rays.data[record.ray].direction;
-#endif
 }
 
 #if !GLINT_ANSWERS_SURFACE

@@ -4,6 +4,23 @@
 #include "hit/path.glsl"
 #endif
 
+// Whether light has an array of its own, because the rest of a sample is still needed, or because it is a host's.
+#if GLINT_PATHS || GLINT_STEPS
+#define GLINT_RADIANCE_APART 1
+#else
+#define GLINT_RADIANCE_APART 0
+#endif
+
+// A ray that a primary surface sends for an effect, and the weight of what it finds.
+struct EffectSample {
+    vec3 origin;
+    uint outcome;      // kRaySent, or why there is no ray
+    vec3 direction;    // unit vector
+    float coneWidth;   // width of the ray cone at the origin, metres
+    vec3 weight;       // factor of the radiance that the ray finds
+    float coneSpread;  // growth of the width in a metre
+};
+
 uint pixelCount() {
     return GLINT_FRAME.width * GLINT_FRAME.height;
 }
@@ -13,33 +30,142 @@ uint sampleTarget(uint slot, uint pixel) {
     return slot * pixelCount() + pixel;
 }
 
+// Returns where the records of a sample are.
+uint samplePlace(uint target) {
+#if GLINT_STEPS
+    return target;
+#elif GLINT_RAY_EFFECTS == 1
+    return target - GLINT_FRAME.bandFirst;
+#else
+    return target - GLINT_FRAME.bandFirst - target / pixelCount() * GLINT_FRAME.outsideBands;
+#endif
+}
+
 EffectSample noSample(uint outcome) {
     return EffectSample(vec3(0.0), outcome, vec3(0.0), 0.0, vec3(0.0), 0.0);
 }
 
+// Stores the ray of a sample anew.
+void storeSampleRay(uint place, EffectSample drawn) {
+    GLINT_FRAME.sampleStarts.data[place] = SampleStart(drawn.origin, drawn.outcome);
+    GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
+}
+
 void storeSample(uint target, EffectSample drawn) {
-    GLINT_FRAME.samples.data[target] = drawn;
-    GLINT_FRAME.radiance.data[target] = vec4(0.0, 0.0, 0.0, float(kPathNone));
+    uint place = samplePlace(target);
+    GLINT_FRAME.sampleStarts.data[place] = SampleStart(drawn.origin, drawn.outcome);
+    if (drawn.outcome == kRaySent) {
+        GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
 #if GLINT_PATHS
-    beginPath(target);
+        beginPath(place);
+#endif
+    }
+    // The march in screen space reads the weights of other pixels, whether they sent a ray or not.
+    if (drawn.outcome == kRaySent || GLINT_FRAME.screenSteps != 0u) {
+        GLINT_FRAME.sampleWeights.data[place] = SampleWeight(drawn.weight, drawn.coneSpread);
+    }
+}
+
+// Returns whether a sample sends a ray, or why not. Before light is stored.
+uint sampleOutcome(uint target) {
+    return GLINT_FRAME.sampleStarts.data[samplePlace(target)].state & kOutcomeMask;
+}
+
+// Returns a sample that sends a ray, before light is stored.
+EffectSample storedSample(uint target) {
+    uint place = samplePlace(target);
+    SampleStart start = GLINT_FRAME.sampleStarts.data[place];
+    SampleAim aim = GLINT_FRAME.sampleAims.data[place];
+    SampleWeight weight = GLINT_FRAME.sampleWeights.data[place];
+    return EffectSample(start.origin_orRadiance, start.state & kOutcomeMask, aim.direction, aim.coneWidth,
+                        weight.weight, weight.coneSpread);
+}
+
+vec3 sampleWeight(uint target) {
+    return GLINT_FRAME.sampleWeights.data[samplePlace(target)].weight;
+}
+
+// Returns a ray of the list.
+RayRecord listedRay(uint index) {
+#if GLINT_STEPS
+    return GLINT_FRAME.rays.data[index];
+#else
+    uint target = GLINT_FRAME.listed.data[index];
+    uint place = samplePlace(target);
+    SampleAim aim = GLINT_FRAME.sampleAims.data[place];
+    return RayRecord(GLINT_FRAME.sampleStarts.data[place].origin_orRadiance, target, aim.direction, aim.coneWidth,
+                     GLINT_FRAME.sampleWeights.data[place].coneSpread);
+#endif
+}
+
+// Returns the number of the sample that a ray of the list belongs to.
+uint listedTarget(uint index) {
+#if GLINT_STEPS
+    return GLINT_FRAME.rays.data[index].target;
+#else
+    return GLINT_FRAME.listed.data[index];
 #endif
 }
 
 #if GLINT_EMISSIVE_LIGHTS
 // How the ray of a sample was chosen, for what it finds on emissive lights.
 void storeLobeRay(uint target, float density, uint normal) {
-    GLINT_FRAME.lobeRays.data[target] = LobeRay(density, normal);
+    GLINT_FRAME.lobeRays.data[samplePlace(target)] = LobeRay(density, normal);
 }
 #endif
 
 // path is one of kPath*. It is that of the first bounce; further bounces add their light.
 void storeRadiance(uint target, vec3 radiance, uint path) {
+    uint place = samplePlace(target);
 #if GLINT_PATHS
     if (GLINT_FRAME.bounce > 1u) {
         // A sample has one ray at a time, so no other thread writes here.
-        GLINT_FRAME.radiance.data[target].rgb += radiance;
+        GLINT_FRAME.radiance.data[place].rgb += radiance;
         return;
     }
 #endif
-    GLINT_FRAME.radiance.data[target] = vec4(radiance, float(path));
+#if GLINT_RADIANCE_APART
+    GLINT_FRAME.radiance.data[place] = vec4(radiance, float(path));
+#else
+    GLINT_FRAME.sampleStarts.data[place] = SampleStart(radiance, kRaySent | path << kPathShift);
+#endif
+}
+
+// Ends a sample with a known radiance, so that no ray joins the list.
+void endSample(uint target, vec3 weight, vec3 radiance) {
+    uint place = samplePlace(target);
+    GLINT_FRAME.sampleWeights.data[place].weight = weight;
+#if GLINT_RADIANCE_APART
+    GLINT_FRAME.sampleStarts.data[place].state = kRayEnded;
+    GLINT_FRAME.radiance.data[place] = vec4(radiance, float(kPathMiss));
+#else
+    GLINT_FRAME.sampleStarts.data[place] = SampleStart(radiance, kRayEnded | kPathMiss << kPathShift);
+#endif
+}
+
+// Adds the light of a deferred shadow ray to that of its sample. A sample has one ray, and its hit has one shadow ray,
+// so no other thread writes there.
+void addRadiance(uint target, vec3 light) {
+    uint place = samplePlace(target);
+#if GLINT_RADIANCE_APART
+    vec4 radiance = GLINT_FRAME.radiance.data[place];
+    GLINT_FRAME.radiance.data[place] = vec4(radiance.rgb + light, radiance.w);
+#else
+    SampleStart stored = GLINT_FRAME.sampleStarts.data[place];
+    GLINT_FRAME.sampleStarts.data[place] = SampleStart(stored.origin_orRadiance + light, stored.state);
+#endif
+}
+
+// Returns the light of a sample, and in the last component how it was found (kPath*).
+vec4 sampleRadiance(uint target) {
+    uint place = samplePlace(target);
+#if GLINT_RADIANCE_APART
+    uint outcome = GLINT_FRAME.sampleStarts.data[place].state & kOutcomeMask;
+    return outcome == kRaySent || outcome == kRayEnded ? GLINT_FRAME.radiance.data[place]
+                                                       : vec4(0.0, 0.0, 0.0, float(kPathNone));
+#else
+    SampleStart stored = GLINT_FRAME.sampleStarts.data[place];
+    uint path = stored.state >> kPathShift;
+    return path != kPathNone ? vec4(stored.origin_orRadiance, float(path)) : vec4(0.0, 0.0, 0.0, float(kPathNone));
+#endif
 }

@@ -1,4 +1,5 @@
-// The threads of passes that may trace, in compute shaders or in ray generation shaders.
+// The threads of passes that may trace, in compute shaders or in ray generation shaders. Passes over pixels are at the
+// rows of a band.
 #ifndef GLINT_TRACER
 #define GLINT_TRACER 1  // 0: none, 1: ray queries, 2: ray tracing pipeline
 #endif
@@ -10,9 +11,9 @@
 #extension GL_EXT_ray_tracing : require
 #define GLINT_RAY_WORKGROUP
 #define GLINT_PIXEL_WORKGROUP
-#define GLINT_PIXEL_OF_THREAD gl_LaunchIDEXT.xy
+#define GLINT_PIXEL_OF_THREAD (gl_LaunchIDEXT.xy + uvec2(0u, GLINT_FRAME.firstRow))
 #else
 #define GLINT_RAY_WORKGROUP layout(local_size_x = kRayGroupSize) in;
 #define GLINT_PIXEL_WORKGROUP layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;
-#define GLINT_PIXEL_OF_THREAD gl_GlobalInvocationID.xy
+#define GLINT_PIXEL_OF_THREAD (gl_GlobalInvocationID.xy + uvec2(0u, GLINT_FRAME.firstRow))
 #endif

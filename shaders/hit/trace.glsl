@@ -6,13 +6,26 @@
 #include "hit/stage.glsl"
 #include "hit/tlas.glsl"
 
-HitRecord missRecord(RayRecord ray, uint rayIndex) {
-    return HitRecord(ray.target, kMissGeometry, 0u, ray.direction.x, ray.direction.y, ray.direction.z, 0.0, rayIndex);
+// What a ray meets first.
+struct TracedHit {
+    uint geometry;  // kMissGeometry if it leaves the scene
+    uint primitive;
+    vec2 barycentrics;
+    float distance;   // metres
+    float coneWidth;  // width of the ray cone there, metres
+};
+
+TracedHit tracedMiss() {
+    return TracedHit(kMissGeometry, 0u, vec2(0.0), 0.0, 0.0);
 }
 
-HitRecord hitRecord(RayRecord ray, uint rayIndex, TracePayload found) {
-    return HitRecord(ray.target, found.geometry, found.primitive, found.barycentrics.x, found.barycentrics.y,
-                     found.distance, ray.coneWidth + ray.coneSpread * found.distance, rayIndex);
+TracedHit tracedHit(RayRecord ray, TracePayload found) {
+    return TracedHit(found.geometry, found.primitive, found.barycentrics, found.distance,
+                     ray.coneWidth + ray.coneSpread * found.distance);
+}
+
+HitRecord recordOf(TracedHit hit) {
+    return HitRecord(hit.geometry, hit.primitive, hit.barycentrics.x, hit.barycentrics.y, hit.coneWidth);
 }
 
 #if GLINT_TRACER == 1
@@ -41,13 +54,13 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 #endif
 
 // Returns the closest hit of a ray.
-HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
+TracedHit traceRay(RayRecord ray, uint flags) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, ray.origin, 0.0,
                           ray.direction, kFarDistance);
     GLINT_PROCEED(query, ray.origin, ray.direction);
     if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
-        return missRecord(ray, rayIndex);
+        return tracedMiss();
     }
 #ifdef GLINT_KEEPS_CORNERS
     rayQueryGetIntersectionTriangleVertexPositionsEXT(query, true, tracedCorners);
@@ -59,7 +72,7 @@ HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
     found.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
     found.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
     found.distance = rayQueryGetIntersectionTEXT(query, true);
-    return hitRecord(ray, rayIndex, found);
+    return tracedHit(ray, found);
 }
 
 // Returns whether nothing stands in the way, seen from either side. What light keeps on its way from a light is for
@@ -109,10 +122,10 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
 #endif
 
 // Does the same as the function for ray queries above.
-HitRecord traceRay(RayRecord ray, uint rayIndex, uint flags) {
+TracedHit traceRay(RayRecord ray, uint flags) {
     traceRayEXT(GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
                 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
-    return traced.geometry == kMissGeometry ? missRecord(ray, rayIndex) : hitRecord(ray, rayIndex, traced);
+    return traced.geometry == kMissGeometry ? tracedMiss() : tracedHit(ray, traced);
 }
 
 bool isVisible(vec3 origin, vec3 direction, float distance) {

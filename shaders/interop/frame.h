@@ -40,20 +40,34 @@ GLINT_CONSTANT(kNoHit, 0xFFFFFFFFu);
 GLINT_CONSTANT(kNoSurface, 0xFFFFFFFFu);
 
 // The number of what an effect sends from a primary surface: slot * width * height + x + y * width, where slot is that
-// of the effect among the package's effects that send rays. Samples, their results, rays and hits are found by this
-// number.
+// of the effect among the package's effects that send rays. Samples, rays and random numbers go by this number. A frame
+// may be lit in bands of rows, one after the other, which share memory. The records of a sample then lie at its place
+// in its band (samplePlace() in hit/samples.glsl).
 
-// A ray of an effect, and the weight of what it finds. 48 bytes.
-struct EffectSample {
-    vec3 origin;
-    uint outcome;      // kRaySent, or why there is no ray
-    vec3 direction;    // unit vector
-    float coneWidth;   // width of the ray cone at the origin, metres
-    vec3 weight;       // factor of the radiance that the ray finds
-    float coneSpread;  // growth of the width in a metre
+// A sample of an effect is a ray and the weight of what it finds. Three records hold it, so that each pass reads what
+// it needs. The second and the third are written only if the ray is sent or the march in screen space may read them.
+
+// 16 bytes. In packages with paths of one bounce, light takes the place of the origin when the ray is shaded.
+struct SampleStart {
+    vec3 origin_orRadiance;
+    uint state;  // kRaySent, or why there is no ray; in the bits from kPathShift on how the light was found, kPath*
+};
+GLINT_CONSTANT(kPathShift, 8u);
+GLINT_CONSTANT(kOutcomeMask, 0xFFu);
+
+// 16 bytes.
+struct SampleAim {
+    vec3 direction;   // unit vector
+    float coneWidth;  // width of the ray cone at the origin, metres
 };
 
-// A ray that waits in the list. 36 bytes.
+// 16 bytes.
+struct SampleWeight {
+    vec3 weight;       // factor of the radiance that the ray finds
+    float coneSpread;  // growth of the cone's width in a metre
+};
+
+// A ray as a host lists it. 36 bytes. The lists of a frame have the number of each ray's sample instead.
 struct RayRecord {
     vec3 origin;
     uint target;  // number of the sample
@@ -62,37 +76,28 @@ struct RayRecord {
     float coneSpread;  // growth of the width in a metre
 };
 
-// How the path of a sample goes on. There is one for each sample, in packages with paths of several bounces. 56 bytes.
+// How the path of a sample goes on. There is one for each sample, in packages with paths of several bounces. The next
+// ray takes the place of the last one in the sample's records. 16 bytes.
 struct PathState {
-    vec3 origin;
-    uint medium;        // 1 + index of the material whose volume the ray is in; 0 for none
-    vec3 direction;     // unit vector
-    float density;      // with which the direction was sampled, by solid angle; 0 on the ray of the primary surface
-    vec3 throughput;    // factor of the radiance that the ray finds, since the primary surface
-    float coneWidth;    // width of the ray cone at the origin, metres
-    float coneSpread;   // growth of the width in a metre
-    uint goesOn;        // 1 if the ray is to be traced
+    vec3 throughput;  // factor of the radiance that the ray finds, since the primary surface
+    uint medium;      // 1 + index of the material whose volume the ray is in; 0 for none
 };
 
-// The result of a ray. 32 bytes.
+// What a ray hit. Its index is that of the ray in the list. 20 bytes.
 struct HitRecord {
-    uint target;     // number of the sample
     uint geometry;   // GeometryRecord index, or kMissGeometry
     uint primitive;  // triangle within the geometry
-    float barycentricU_orDirectionX;
-    float barycentricV_orDirectionY;
-    float distance_orDirectionZ;
+    float barycentricU;
+    float barycentricV;
     float coneWidth;  // width of the ray cone at the hit, metres
-    uint ray;         // RayRecord index
 };
 
-// The same in 16 bytes. A miss has 0xFFFFFFFF in its second word, which no hit can have.
+// The same in 12 bytes. A miss has 0xFFFFFFFF in its first word, which no hit can have.
 struct PackedHitRecord {
-    uint target;
-    uint geometry24_coneLog8;           // top 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0
-                                        // for no width
-    uint primitive_orDirectionOctX;     // for a miss: the bits of a float
-    uint barycentrics2x16_orDirectionOctY;  // unorm; for a miss: the bits of a float
+    uint geometry24_coneLog8;  // top 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0 for no
+                               // width
+    uint primitive;
+    uint barycentrics2x16;  // unorm
 };
 
 // A shadow ray that waits, with the light that arrives if nothing is in the way. 48 bytes.
@@ -150,7 +155,10 @@ struct DispatchArguments {
 GLINT_INTEROP_END
 
 #ifndef __cplusplus
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleArray { EffectSample data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleStartArray { SampleStart data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleAimArray { SampleAim data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleWeightArray { SampleWeight data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TargetArray { uint data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RadianceArray { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PathArray { PathState data[]; };
@@ -251,9 +259,13 @@ struct FrameConstants {
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
     GLINT_ADDRESS(LightNode) lightNodes;  // in packages with --lights K: the tree, then the lights without bounds
-    GLINT_ADDRESS(Sample) samples;    // samples of every pixel, effect by effect
-    GLINT_ADDRESS(Radiance) radiance;  // the radiance that the rays bring, in the same order; kPath* as a float
-    GLINT_ADDRESS(Ray) rays;
+    GLINT_ADDRESS(SampleStart) sampleStarts;  // samples of every pixel of a band, effect by effect
+    GLINT_ADDRESS(SampleAim) sampleAims;
+    GLINT_ADDRESS(SampleWeight) sampleWeights;
+    GLINT_ADDRESS(Radiance) radiance;  // the radiance that rays bring, with paths of several bounces in the order of
+                                       // samples, and by slot if the rays are a host's; kPath* as a float
+    GLINT_ADDRESS(Ray) rays;           // the list, if it is a host's
+    GLINT_ADDRESS(Target) listed;      // the list otherwise: the numbers of the samples that send the rays
     GLINT_ADDRESS(Hit) hits;
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
@@ -280,8 +292,8 @@ struct FrameConstants {
     uint lightTreeNodes;   // nodes of the tree
     uint unboundedLights;  // leaves after them
     // In packages with paths of several bounces:
-    GLINT_ADDRESS(Ray) nextRays;  // the list of the next bounce
-    GLINT_ADDRESS(Path) paths;    // of every sample, in the order of the samples
+    GLINT_ADDRESS(Target) nextListed;  // the list of the next bounce
+    GLINT_ADDRESS(Path) paths;         // of every sample, in the order of the samples
     uint bounce;      // of the hits that are being shaded, from 1; 0 on primary surfaces
     uint lastBounce;  // hits of this bounce send no further ray
     // In packages with emissive lights:
@@ -289,6 +301,12 @@ struct FrameConstants {
     GLINT_ADDRESS(Uint) firstEmitters;  // of every geometry: the emitter of its first triangle, or kNoEmitter
     GLINT_ADDRESS(LobeRay) lobeRays;    // of every sample, in the order of the samples
     uint emitterCount;
+    uint accumulates;  // 1: the residual of the mean has an image
+    // The band of rows that the passes over pixels are at:
+    uint firstRow;
+    uint endRow;        // the row after its last one
+    uint bandFirst;     // the number of its first pixel
+    uint outsideBands;  // pixels of the frame that samples of a band have no memory for
 };
 
 GLINT_INTEROP_END
@@ -317,10 +335,11 @@ GLINT_CONSTANT(kSetFrame, 1u);
 GLINT_CONSTANT(kBindingSurface, 0u);      // rg32ui: geometry, primitive; also a colour attachment
 GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the primary surface, without effects that have
                                           // rays; distance along the camera's axis, 0 for none
-GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over the samples so far, linear
-GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding leaves out of that mean
+GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over the samples so far, linear. The same image as before if
+                                          // frames do not accumulate
+GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding leaves out of that mean, if frames accumulate
 GLINT_CONSTANT(kBindingPosition, 4u);     // rgba32f: ray origin off the surface; geometric normal, octahedral, bits
-                                          // 2x16snorm. In packages with an effect that starts on the screen
+                                          // 2x16snorm. If frames may march in screen space
 GLINT_CONSTANT(kFrameImageCount, 5u);
 // The set also holds:
 GLINT_CONSTANT(kBindingEnvironment, 5u);  // sampler2D: the environment map

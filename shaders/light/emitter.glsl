@@ -3,6 +3,7 @@
 // heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
 #include "hit/alpha.glsl"
 #include "hit/material.glsl"
+#include "hit/samples.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
 
@@ -218,7 +219,7 @@ float emitterDensity(LightReceiver receiver, Hit hit) {
 
 // The share of the emission of a hit that its ray brings. The lights of the surface that sent it bring the rest.
 float emissionOfRay(Hit hit) {
-    LobeRay ray = GLINT_FRAME.lobeRays.data[hit.target];
+    LobeRay ray = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)];
     if (ray.density <= 0.0) {
         return 1.0;
     }

@@ -7,8 +7,8 @@
 layout(local_size_x = kPixelGroupSize, local_size_y = kPixelGroupSize) in;
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.height) {
+    uvec2 pixel = gl_GlobalInvocationID.xy + uvec2(0u, GLINT_FRAME.firstRow);
+    if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.endRow) {
         return;
     }
     ivec2 place = ivec2(pixel);
@@ -24,5 +24,7 @@ void main() {
         mean = includeSample(last, radiance, GLINT_FRAME.sampleIndex);
     }
     imageStore(accumulatedImage, place, vec4(mean.mean, 1.0));
-    imageStore(residualImage, place, vec4(mean.residual, 0.0));
+    if (GLINT_FRAME.accumulates != 0u) {
+        imageStore(residualImage, place, vec4(mean.residual, 0.0));
+    }
 }

@@ -80,7 +80,7 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
 
 void main() {
     uvec2 pixel = GLINT_PIXEL_OF_THREAD;
-    if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.height) {
+    if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.endRow) {
         return;
     }
     ivec2 place = ivec2(pixel);
@@ -112,6 +112,8 @@ void main() {
     }
     imageStore(radianceImage, place, radianceDepth);
 #if GLINT_STARTS_ON_SCREEN
-    imageStore(positionImage, place, position);
+    if (GLINT_FRAME.screenSteps != 0u) {
+        imageStore(positionImage, place, position);
+    }
 #endif
 }

@@ -3,23 +3,22 @@
 #include "order/append.glsl"
 #include "order/binning.glsl"
 #include "hit/list.glsl"
+#include "hit/samples.glsl"
 
 layout(local_size_x = kRayGroupSize) in;
 
 void main() {
     uint index = listIndex();
     bool inside = index < GLINT_FRAME.rayDispatch.data[0].elementCount;
-    uint target = GLINT_FRAME.rays.data[inside ? index : 0u].target;
-    bool goesOn = inside && GLINT_FRAME.paths.data[target].goesOn != 0u;
-    PathState path = GLINT_FRAME.paths.data[target];
+    uint target = GLINT_FRAME.listed.data[inside ? index : 0u];
+    bool goesOn = inside && sampleOutcome(target) == kRaySent;
     uint slot;
     if (GLINT_FRAME.binning == kBinningNone) {
         slot = appendedSlot(goesOn);
     } else {
-        slot = binnedSlot(goesOn, path.direction);
+        slot = binnedSlot(goesOn, GLINT_FRAME.sampleAims.data[samplePlace(target)].direction);
     }
     if (goesOn) {
-        GLINT_FRAME.nextRays.data[slot] =
-            RayRecord(path.origin, target, path.direction, path.coneWidth, path.coneSpread);
+        GLINT_FRAME.nextListed.data[slot] = target;
     }
 }

@@ -3,6 +3,7 @@
 #include "hit/count.glsl"
 #include "light/ray.glsl"
 #include "hit/list.glsl"
+#include "hit/samples.glsl"
 
 GLINT_RAY_WORKGROUP
 
@@ -15,8 +16,6 @@ void main() {
     bool visible = lightArrivesTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance, shadow.light);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     if (visible) {
-        // A sample has one ray, and its hit has one shadow ray, so no other thread writes here.
-        vec4 radiance = GLINT_FRAME.radiance.data[shadow.target];
-        GLINT_FRAME.radiance.data[shadow.target] = vec4(radiance.rgb + shadow.light, radiance.w);
+        addRadiance(shadow.target, shadow.light);
     }
 }

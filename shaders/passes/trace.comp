@@ -15,9 +15,9 @@ GLINT_RAY_WORKGROUP
 void main() {
     uint index = listIndex();
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        RayRecord ray = GLINT_FRAME.rays.data[index];
-        HitRecord hit = traceRay(ray, index, rayFlags(ray.target));
-        storeHit(index, hit);
+        RayRecord ray = listedRay(index);
+        TracedHit hit = traceRay(ray, rayFlags(ray.target));
+        storeHit(index, recordOf(hit));
         storeKey(index, bucketOfGeometry(hit.geometry));
     }
 }

@@ -6,6 +6,7 @@
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
+#include "render/traced_frame.h"
 #include "renderer/pass_dependencies.h"
 #include "renderer/renderer_state.h"
 #include "support/temporary_folder.h"
@@ -44,6 +45,9 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     settings.tracers = package::kAllTracers;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    // Rays keep their origins in packages for several bounces. The frame has one.
+    settings.maxBounces = 2;
+    settings.emissiveLights = compiler::EmissiveLights::Off;
     const LoadedScene loaded(scene, settings);
     KnownRays known;
     if (!loaded.ok()) {
@@ -60,11 +64,17 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     }
     Renderer::State& state = (*renderer)->state();
     Result<CommandRunner> runner = CommandRunner::create(state.context);
-    const auto rays = readFrameBuffer(state, *runner, state.frame.rays);
+    const auto rays = readRays(**renderer, (*renderer)->counters()->rays);
     const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
     EXPECT_TRUE(rays && radiance);
-    known.rays = arrayOf<EngineRay>(*rays, (*renderer)->counters()->rays);
-    known.answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
+    known.rays.resize(rays->size());
+    std::memcpy(known.rays.data(), rays->data(), rays->size() * sizeof(EngineRay));
+    // Samples without a ray have no radiance.
+    const auto answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
+    known.answers.resize(answers.size());
+    for (const EngineRay& ray : known.rays) {
+        known.answers[ray.slot] = answers[ray.slot];
+    }
     return known;
 }
 

@@ -204,6 +204,7 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
     addBox(scene, addMaterial(scene, unlitMaterial(kRed)), {-1.0F, 0.5F, -6.0F}, {2.0F, 1.5F, 1.0F});
     compiler::CompileSettings settings;
     settings.hitRecord = package::HitRecordFormat::Packed;
+    settings.maxBounces = 2;  // rays then keep their origins, as frames have one bounce
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, GetParam());

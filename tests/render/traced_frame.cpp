@@ -1,7 +1,6 @@
 #include "render/traced_frame.h"
 
-#include "context/commands.h"
-#include "context/resources.h"
+#include "context/readback.h"
 #include "renderer/renderer_state.h"
 #include "support/effect_bits.h"
 
@@ -13,38 +12,51 @@
 namespace glint::testing {
 namespace {
 
-Result<std::vector<gpu::RayRecord>> readRays(Renderer::State& state, std::uint32_t count) {
-    std::vector<gpu::RayRecord> rays(count);
-    if (count == 0) {
-        return rays;
+template <typename Value>
+Status statusOf(const Result<Value>& result) {
+    return result ? okStatus() : Status(result.error());
+}
+
+template <typename Record>
+Result<std::vector<Record>> readRecords(Renderer::State& state, CommandRunner& runner, const Buffer& buffer) {
+    const Result<std::vector<std::uint8_t>> bytes = readFrameBuffer(state, runner, buffer);
+    if (!bytes) {
+        return bytes.error();
     }
-    const VkDeviceSize bytes = count * sizeof(gpu::RayRecord);
-    MemoryPool pool(state.context);
-    Result<Buffer> buffer =
-        createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
-    if (!buffer) {
-        return buffer.error();
-    }
+    std::vector<Record> records(bytes->size() / sizeof(Record));
+    std::memcpy(records.data(), bytes->data(), records.size() * sizeof(Record));
+    return records;
+}
+
+}  // namespace
+
+Result<std::vector<gpu::RayRecord>> readRays(Renderer& renderer, std::uint32_t count) {
+    Renderer::State& state = renderer.state();
     Result<CommandRunner> runner = CommandRunner::create(state.context);
     if (!runner) {
         return runner.error();
     }
-    const Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
+    const FrameResources& frame = state.frame;
+    const auto listed = readRecords<std::uint32_t>(state, *runner, frame.listed);
+    const auto starts = readRecords<gpu::SampleStart>(state, *runner, frame.sampleStarts);
+    const auto aims = readRecords<gpu::SampleAim>(state, *runner, frame.sampleAims);
+    const auto weights = readRecords<gpu::SampleWeight>(state, *runner, frame.sampleWeights);
+    for (const Status& status :
+         {statusOf(listed), statusOf(starts), statusOf(aims), statusOf(weights)}) {
+        if (!status) {
+            return status.error();
+        }
     }
-    const VkBufferCopy region{0, 0, bytes};
-    state.context.vk.CmdCopyBuffer(*commands, state.frame.rays.handle.get(), buffer->handle.get(), 1,
-                                   &region);
-    recordDependency(state.context, *commands,
-                     {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                      VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-    if (Status status = runner->submitAndWait(); !status) {
-        return status.error();
+    std::vector<gpu::RayRecord> rays;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t target = (*listed)[i];
+        rays.push_back({(*starts)[target].origin_orRadiance, target, (*aims)[target].direction,
+                        (*aims)[target].coneWidth, (*weights)[target].coneSpread});
     }
-    std::memcpy(rays.data(), buffer->mapped, bytes);
     return rays;
 }
+
+namespace {
 
 // Renders and reads back. The image has no size if that fails.
 Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
@@ -62,7 +74,7 @@ Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
         return paths.error();
     }
     frame.paths = std::move(*paths);
-    Result<std::vector<gpu::RayRecord>> rays = readRays(renderer.state(), frame.counters.rays);
+    Result<std::vector<gpu::RayRecord>> rays = readRays(renderer, frame.counters.rays);
     if (!rays) {
         return rays.error();
     }
@@ -96,6 +108,7 @@ TracedFrame traceFrame(const LoadedScene& scene, package::Strategy strategy, con
     options.strategy = strategy;
     options.width = setup.width;
     options.height = setup.height;
+    options.screenMarch = setup.frame.screenSteps > 0;
     const Result<std::unique_ptr<Renderer>> renderer =
         Renderer::create(sharedContext(), scene.package(), scene.gpuScene(), options);
     TracedFrame frame;

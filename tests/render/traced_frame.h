@@ -12,8 +12,12 @@ struct TracedFrame {
     LinearImage image;
     FrameCounters counters;            // of the last sample, as all that follows
     std::vector<PixelPath> paths;      // of each pixel
-    std::vector<gpu::RayRecord> rays;  // the list; as many as counted
+    std::vector<gpu::RayRecord> rays;  // the list, as readRays() has it
 };
+
+// Reads the list of the last recording and the samples that it names. Their origins are known in packages with paths
+// of several bounces, if the frame has one; in others light has taken their place.
+Result<std::vector<gpu::RayRecord>> readRays(Renderer& renderer, std::uint32_t count);
 
 // Renders with the validation layers on and reads back. If that fails, the test fails and the image has no
 // size. Expects for every frame that each pixel has one path, and that paths and counters agree.

@@ -3,6 +3,7 @@
 #include "cli/commands.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "cli/traffic.h"
 #include "emit/package/json.h"
 #include "inspect/package.h"
 #include "plan/plan.h"
@@ -219,6 +220,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"bytesPerMaterial", package.scene(0).materials.recordBytes},
           {"modules", package.modules().size()},
           {"uniqueSpirv", inspected.uniqueFiles()}}},
+        {"traffic", package.passes() == package::Passes::Frame ? trafficToJson(package) : base::Json::array()},
         {"spirvBytes", inspected.spirvBytes()},
         {"shaders", shadersToJson(inspected)},
         {"modules", modulesToJson(inspected)}};
@@ -256,7 +258,9 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"cases", fmt::format("{}", inspected.caseCount())},
          {"SPIR-V", fmt::format("{} modules, {} unique, {}", package.modules().size(),
                                 inspected.uniqueFiles(), formatBytes(inspected.spirvBytes()))}});
-    return summary + "\n" + sceneTable(inspected) + "\n" + shaderTable(inspected, detail) + "\n" +
+    const std::string traffic =
+        package.passes() == package::Passes::Frame ? trafficTable(package) + "\n" : std::string();
+    return summary + "\n" + traffic + sceneTable(inspected) + "\n" + shaderTable(inspected, detail) + "\n" +
            moduleTable(inspected, detail);
 }
 

@@ -258,6 +258,10 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     }
     console.progress("rendering " + arguments.scene);
     RendererOptions options = measure::rendererOptions(arguments);
+    options.accumulate = arguments.samples > 1;
+    if (!arguments.coverage.empty()) {
+        options.bands = 1;  // the coverage is that of all pixels at once
+    }
     options.pipelineStatistics = arguments.pipelineStatistics && (*context)->handles().pipelineStatistics;
     if (arguments.pipelineStatistics && !options.pipelineStatistics) {
         console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,

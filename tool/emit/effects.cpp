@@ -63,6 +63,7 @@ std::string effectDefines(const materials::MaterialModel& model, const package::
         bits += fmt::format("const uint kEffect{} = {}u;\n", effect.function(), bit);
     }
     text += fmt::format("#define GLINT_EFFECT_COUNT {}u\n", package::countedEffects(effects));
+    text += fmt::format("#define GLINT_RAY_EFFECTS {}\n", package::effectSlots(effects));
     text += fmt::format("#define GLINT_STARTS_ON_SCREEN {}\n", effects.screenStarts != 0 ? 1 : 0);
     return text + bits;
 }

@@ -144,6 +144,7 @@ RendererOptions rendererOptions(const compiler::Settings& settings) {
     options.strategy = settings.strategy.value_or(options.strategy);
     options.bounces = settings.compile.maxBounces;
     options.checkOrder = settings.validate;
+    options.screenMarch = settings.frame.screenSteps > 0;
     return options;
 }
 

@@ -50,8 +50,8 @@ enum class ShadowThrough : std::uint32_t {
 
 // How a hit is stored between passes.
 enum class HitRecordFormat : std::uint32_t {
-    Full = 0,    // 32 bytes, gpu::HitRecord
-    Packed = 1,  // 16 bytes, gpu::PackedHitRecord
+    Full = 0,    // 20 bytes, gpu::HitRecord
+    Packed = 1,  // 12 bytes, gpu::PackedHitRecord
 };
 
 // The most bounces that a path may have. It stands for "unlimited": paths that carry little light end

@@ -95,8 +95,8 @@ inline constexpr Named<ShadowThrough> kShadowThroughNames[] = {
     {ShadowThrough::Glass, "glass", "coloured light passes glass and BLEND"},
 };
 inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
-    {HitRecordFormat::Full, "full", "32 bytes"},
-    {HitRecordFormat::Packed, "packed", "16 bytes, with less precision"},
+    {HitRecordFormat::Full, "full", "20 bytes"},
+    {HitRecordFormat::Packed, "packed", "12 bytes, with less precision"},
 };
 inline constexpr Named<ShadingPrecision> kPrecisionNames[] = {
     {ShadingPrecision::Single, "32", "everything in 32-bit float"},

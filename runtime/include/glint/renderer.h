@@ -282,7 +282,8 @@ public:
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
     // Says for each pixel how it got the light of an effect that sends rays, row by row from the top. Waits
-    // for the device. Error "effect-missing" if the package lacks the effect.
+    // for the device. Errors: "effect-missing" if the package lacks the effect, "frame-options" if the frame
+    // was lit in several bands.
     Result<std::vector<PixelPath>> readCoverage(package::Effect effect);
     // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
     // by row from the top. Waits for the device.

@@ -29,6 +29,16 @@ struct RendererOptions {
     // Puts the rays of all effects into one list, so that their hits are ordered and shaded together. This
     // makes fewer, larger dispatches and takes more memory.
     bool batchEffects = false;
+    // Lets frames add their sample to the mean of earlier ones (FrameOptions::sampleIndex). It takes two
+    // images more, 32 bytes a pixel. A program whose frames are all samples of their own does without.
+    bool accumulate = true;
+    // Lets frames look for the ends of rays in screen space (FrameOptions::screenSteps). It takes an image more
+    // in packages with such effects, 16 bytes a pixel, and frames in one band.
+    bool screenMarch = false;
+    // Lights the frame in that many bands of rows, one after the other. Samples, rays and hits then take
+    // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses:
+    // bands of at most kPixelsOfBand pixels, but no more of them than keep the passes of a frame few.
+    std::uint32_t bands = 0;
     // The most bounces of a path in this renderer's frames: 1 to what the package was compiled for
     // (PackageShape::maxBounces). With 1, the hits of the effects' rays send no further rays.
     std::uint32_t bounces = 1;
@@ -43,6 +53,9 @@ struct RendererOptions {
     // without DeviceHandles::pipelineStatistics.
     bool pipelineStatistics = false;
 };
+
+// The most pixels of a band if RendererOptions::bands is 0. A ray of each keeps large GPUs busy.
+inline constexpr std::uint32_t kPixelsOfBand = 1U << 19;
 
 // The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the direction,
 // or cells of the direction's octahedral map.
@@ -111,7 +124,8 @@ struct FrameOptions {
     Binning binning = Binning::None;
     // The bounces of a path: up to RendererOptions::bounces. 0 means that many.
     std::uint32_t bounces = 0;
-    // The number of steps of the march in screen space that precedes a ray. 0 means no march.
+    // The number of steps of the march in screen space that precedes a ray. 0 means no march. Others need
+    // RendererOptions::screenMarch.
     std::uint32_t screenSteps = 0;
     // The thickness that the march assumes behind the depth of a surface, as a share of the surface's
     // distance.
@@ -119,7 +133,8 @@ struct FrameOptions {
     // Effect bits that switch effects on. They apply to the package's effects with rays and to ambient
     // occlusion.
     std::uint32_t effects = package::kAllEffects;
-    std::uint32_t sampleIndex = 0;  // 0 restarts the accumulation
+    // 0 restarts the accumulation. Others need RendererOptions::accumulate.
+    std::uint32_t sampleIndex = 0;
     // The number of samples of a pixel that the picture will average. Each sample stands for that share of
     // the pixel's area, so the cones by which textures are filtered are 1 / sqrt(averagedSamples) as wide. A
     // program that accumulates until something moves should give the number that it usually reaches. With 0,

@@ -20,19 +20,19 @@ void recordCopy(const Renderer::State& state, VkCommandBuffer commands, std::uin
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {state.size.width, state.size.height, 1};
-    state.context.vk.CmdCopyImageToBuffer(commands, state.frame.images[binding].handle.get(),
+    state.context.vk.CmdCopyImageToBuffer(commands, imageOf(state.frame, binding).handle.get(),
                                           VK_IMAGE_LAYOUT_GENERAL, target.handle.get(), 1, &region);
     recordDependency(state.context, commands, kCopyToHost);
 }
 
-PixelPath pathOf(float path, std::uint32_t outcome) {
-    if (path == static_cast<float>(gpu::kPathScreen)) {
+PixelPath pathOf(std::uint32_t path, std::uint32_t outcome) {
+    if (path == gpu::kPathScreen) {
         return PixelPath::Screen;
     }
-    if (path == static_cast<float>(gpu::kPathHit)) {
+    if (path == gpu::kPathHit) {
         return PixelPath::Hit;
     }
-    if (path == static_cast<float>(gpu::kPathMiss)) {
+    if (path == gpu::kPathMiss) {
         return PixelPath::Miss;
     }
     return outcome == gpu::kRayNoSurface ? PixelPath::NoSurface : PixelPath::NoRay;
@@ -40,10 +40,13 @@ PixelPath pathOf(float path, std::uint32_t outcome) {
 
 }  // namespace
 
-Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
-                                                         std::uint32_t binding) {
+namespace {
+
+template <typename Pixel>
+Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner& runner,
+                                     std::uint32_t binding) {
     MemoryPool pool(state.context);
-    std::vector<std::array<float, 4>> pixels(std::size_t{state.size.width} * state.size.height);
+    std::vector<Pixel> pixels(std::size_t{state.size.width} * state.size.height);
     const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
     Result<Buffer> buffer =
         createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
@@ -60,6 +63,13 @@ Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state,
     }
     std::memcpy(pixels.data(), buffer->mapped, bytes);
     return pixels;
+}
+
+}  // namespace
+
+Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
+                                                         std::uint32_t binding) {
+    return readImage<std::array<float, 4>>(state, runner, binding);
 }
 
 Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
@@ -92,15 +102,14 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     if (!runner) {
         return runner.error();
     }
-    // The last channel of the image is the distance along the camera's axis. It is 0 where there is no
-    // surface.
-    const auto radiance = readFrameImage(*state_, *runner, gpu::kBindingRadiance);
-    if (!radiance) {
-        return radiance.error();
+    using Identity = std::array<std::uint32_t, 2>;
+    const auto identities = readImage<Identity>(*state_, *runner, gpu::kBindingSurface);
+    if (!identities) {
+        return identities.error();
     }
-    std::vector<std::uint8_t> surfaces(radiance->size());
-    std::ranges::transform(*radiance, surfaces.begin(), [](const std::array<float, 4>& pixel) {
-        return static_cast<std::uint8_t>(pixel[3] != 0.0F ? 1 : 0);
+    std::vector<std::uint8_t> surfaces(identities->size());
+    std::ranges::transform(*identities, surfaces.begin(), [](const Identity& pixel) {
+        return static_cast<std::uint8_t>(pixel[0] != gpu::kNoSurface ? 1 : 0);
     });
     return surfaces;
 }
@@ -117,22 +126,35 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     if (!runner) {
         return runner.error();
     }
-    const auto samples = readFrameBuffer(*state_, *runner, state_->frame.samples);
-    if (!samples) {
-        return samples.error();
+    if (state_->size.bandRows > 0) {
+        return makeError("frame-options", "",
+                         "the frame was lit in bands, which share the memory that says how pixels found light",
+                         "make the renderer with RendererOptions::bands at 1");
     }
-    const auto radiance = readFrameBuffer(*state_, *runner, state_->frame.radiance);
-    if (!radiance) {
-        return radiance.error();
+    const auto starts = readFrameBuffer(*state_, *runner, state_->frame.sampleStarts);
+    if (!starts) {
+        return starts.error();
+    }
+    Result<std::vector<std::uint8_t>> radiance = std::vector<std::uint8_t>{};
+    if (state_->size.paths) {
+        radiance = readFrameBuffer(*state_, *runner, state_->frame.radiance);
+        if (!radiance) {
+            return radiance.error();
+        }
     }
     std::vector<PixelPath> paths(std::size_t{state_->size.width} * state_->size.height);
     const std::size_t first = paths.size() * package::effectSlot(state_->size.effects, effect);
     for (std::size_t i = 0; i < paths.size(); ++i) {
-        gpu::EffectSample sample{};
-        std::memcpy(&sample, samples->data() + (first + i) * sizeof(sample), sizeof(sample));
-        gpu::vec4 found{};
-        std::memcpy(&found, radiance->data() + (first + i) * sizeof(found), sizeof(found));
-        paths[i] = pathOf(found.w, sample.outcome);
+        gpu::SampleStart start{};
+        std::memcpy(&start, starts->data() + (first + i) * sizeof(start), sizeof(start));
+        const std::uint32_t outcome = start.state & gpu::kOutcomeMask;
+        std::uint32_t path = start.state >> gpu::kPathShift;
+        if (state_->size.paths && (outcome == gpu::kRaySent || outcome == gpu::kRayEnded)) {
+            gpu::vec4 found{};
+            std::memcpy(&found, radiance->data() + (first + i) * sizeof(found), sizeof(found));
+            path = static_cast<std::uint32_t>(found.w);
+        }
+        paths[i] = pathOf(path, outcome);
     }
     return paths;
 }

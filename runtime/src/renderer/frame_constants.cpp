@@ -68,10 +68,12 @@ void fillOutside(const Outside& outside, gpu::FrameConstants& constants) {
 void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameConstants& constants) {
     constants.bucketCount = size.bucketCount;
     constants.bucketAlignment = size.bucketAlignment;
-    constants.samples = frame.samples.address;
+    constants.sampleStarts = frame.sampleStarts.address;
+    constants.sampleAims = frame.sampleAims.address;
+    constants.sampleWeights = frame.sampleWeights.address;
     constants.radiance = frame.radiance.address;
-    constants.rays = frame.rays.address;
-    constants.nextRays = frame.nextRays.address;
+    constants.listed = frame.listed.address;
+    constants.nextListed = frame.nextListed.address;
     constants.paths = frame.paths.address;
     constants.lobeRays = frame.lobeRays.address;
     constants.hits = frame.hits.address;
@@ -87,6 +89,14 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.rayDispatch = frame.rayDispatch.address;
     constants.bucketDispatch = frame.bucketDispatch.address;
     constants.counters = frame.counters.address;
+}
+
+void setBand(const FrameSize& size, std::uint32_t band, gpu::FrameConstants& constants) {
+    constants.firstRow = band * size.rowsOfBand();
+    constants.endRow = std::min(constants.firstRow + size.rowsOfBand(), size.height);
+    constants.bandFirst = constants.firstRow * size.width;
+    constants.outsideBands = static_cast<std::uint32_t>(VkDeviceSize{size.width} * size.height -
+                                                        size.pixelsOfBand());
 }
 
 }  // namespace glint

@@ -23,4 +23,7 @@ void fillOutside(const Outside& outside, gpu::FrameConstants& constants);
 // Sets the addresses of the frame's own lists, and what describes their buckets.
 void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameConstants& constants);
 
+// Sets the rows of a band.
+void setBand(const FrameSize& size, std::uint32_t band, gpu::FrameConstants& constants);
+
 }  // namespace glint

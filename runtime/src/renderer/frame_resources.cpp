@@ -13,7 +13,7 @@
 namespace glint {
 
 VkDeviceSize listRays(const FrameSize& size) {
-    return VkDeviceSize{size.width} * size.height * size.batchCount;
+    return size.pixelsOfBand() * size.batchCount;
 }
 
 VkDeviceSize listSlots(const FrameSize& size) {
@@ -51,8 +51,7 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const std::uint64_t samples = std::uint64_t{size.width} * size.height * std::max(size.sampleCount, 1U);
     // There is a sample for every pixel and effect, and 32 bits number the samples.
     if (samples > std::numeric_limits<std::uint32_t>::max() ||
-        samples * std::max(sizeof(gpu::EffectSample), sizeof(gpu::PathState)) >
-            context.limits.maxBufferBytes) {
+        size.pixelsOfBand() * size.sampleCount * sizeof(gpu::SampleStart) > context.limits.maxBufferBytes) {
         return makeError("render-size", "",
                          "the rays of " + asked + " pixels do not fit a buffer of the device",
                          "render a smaller image");
@@ -69,8 +68,22 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
 
 namespace {
 
-bool hasImage(const FrameSize& size, std::uint32_t binding) {
+// Whether the shaders of the frame's package know an image.
+bool bindsImage(const FrameSize& size, std::uint32_t binding) {
     return binding != gpu::kBindingPosition || size.effects.screenStarts != 0;
+}
+
+// Whether an image has memory of its own. The others are not written, or written before the picture is.
+bool hasImage(const FrameSize& size, std::uint32_t binding) {
+    switch (binding) {
+        case gpu::kBindingRadiance:
+        case gpu::kBindingResidual:
+            return size.accumulates;
+        case gpu::kBindingPosition:
+            return size.effects.screenStarts != 0 && size.marchesScreen;
+        default:
+            return true;
+    }
 }
 
 Status createImages(Context::State& context, const FrameSize& size, FrameResources& frame) {
@@ -121,10 +134,10 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    constexpr VkBufferUsageFlags kRead = kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
     // These numbers are 0 if no effect sends rays.
-    const VkDeviceSize samples =
-        size.hostRays ? 0 : VkDeviceSize{size.width} * size.height * size.sampleCount;
+    const VkDeviceSize samples = size.hostRays ? 0 : size.pixelsOfBand() * size.sampleCount;
     const VkDeviceSize rays = listRays(size);
     const VkDeviceSize ownRays = size.hostRays ? 0 : rays;
     const VkDeviceSize hits = size.ordered ? rays : 0;
@@ -142,13 +155,12 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     using Frame = FrameResources;
     return {{
         {&Frame::constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
-        {&Frame::samples, samples * sizeof(gpu::EffectSample), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-         MemoryUse::Device},
-        {&Frame::radiance, samples * sizeof(gpu::vec4), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-         MemoryUse::Device},
-        {&Frame::rays, ownRays * sizeof(gpu::RayRecord), kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-         MemoryUse::Device},
-        {&Frame::nextRays, size.paths ? ownRays * sizeof(gpu::RayRecord) : 0, kStorage, MemoryUse::Device},
+        {&Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead, MemoryUse::Device},
+        {&Frame::sampleAims, samples * sizeof(gpu::SampleAim), kRead, MemoryUse::Device},
+        {&Frame::sampleWeights, samples * sizeof(gpu::SampleWeight), kRead, MemoryUse::Device},
+        {&Frame::listed, ownRays * sizeof(std::uint32_t), kRead, MemoryUse::Device},
+        {&Frame::radiance, size.paths ? samples * sizeof(gpu::vec4) : 0, kRead, MemoryUse::Device},
+        {&Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage, MemoryUse::Device},
         {&Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
         {&Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
          MemoryUse::Device},
@@ -186,7 +198,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
 Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        if (hasImage(size, binding)) {
+        if (bindsImage(size, binding)) {
             bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
         }
     }
@@ -233,12 +245,12 @@ Status createSet(Context::State& context, const FrameSize& size, FrameResources&
     return okStatus();
 }
 
-void fillSet(Context::State& context, const FrameResources& frame) {
+void fillSet(Context::State& context, const FrameSize& size, const FrameResources& frame) {
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        if (frame.images[binding].handle.get() == VK_NULL_HANDLE) {
+        if (!bindsImage(size, binding)) {
             continue;
         }
-        const VkDescriptorImageInfo image{VK_NULL_HANDLE, frame.images[binding].view.get(),
+        const VkDescriptorImageInfo image{VK_NULL_HANDLE, imageOf(frame, binding).view.get(),
                                           VK_IMAGE_LAYOUT_GENERAL};
         VkWriteDescriptorSet write{};
         write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -288,6 +300,11 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
 
 }  // namespace
 
+const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding) {
+    const DeviceImage& own = frame.images[binding];
+    return own.handle.get() != VK_NULL_HANDLE ? own : frame.images[gpu::kBindingAccumulated];
+}
+
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame) {
     if (size.hostRays) {
         return createBuffers(context, size, frame);
@@ -301,13 +318,28 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
     if (Status status = createSet(context, size, frame); !status) {
         return status;
     }
-    fillSet(context, frame);
+    fillSet(context, size, frame);
     return clearImages(context, frame);
+}
+
+VkDeviceSize frameBytes(const FrameSize& size) {
+    VkDeviceSize bytes = 0;
+    for (const WantedBuffer& buffer : wantedBuffers(size)) {
+        bytes += buffer.bytes;
+    }
+    VkDeviceSize ofPixel = size.hostRays ? 0 : sizeof(float);  // the depth
+    for (std::uint32_t binding = 0; !size.hostRays && binding < gpu::kFrameImageCount; ++binding) {
+        if (hasImage(size, binding)) {
+            ofPixel += binding == gpu::kBindingSurface ? 2 * sizeof(std::uint32_t) : sizeof(gpu::vec4);
+        }
+    }
+    return bytes + ofPixel * size.width * size.height;
 }
 
 bool haveSameImages(const FrameSize& first, const FrameSize& second) {
     const auto sameImage = [&](std::uint32_t binding) {
-        return hasImage(first, binding) == hasImage(second, binding);
+        return bindsImage(first, binding) == bindsImage(second, binding) &&
+               hasImage(first, binding) == hasImage(second, binding);
     };
     bool same = first.width == second.width && first.height == second.height &&
                 first.environmentMap == second.environmentMap;

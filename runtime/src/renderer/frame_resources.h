@@ -31,15 +31,19 @@ struct FrameResources {
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
     // others is `pool`.
-    static constexpr std::size_t kBufferCount = 20;
+    static constexpr std::size_t kBufferCount = 22;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
-    std::array<DeviceImage, gpu::kFrameImageCount> images;  // by binding; layout GENERAL
+    // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
+    std::array<DeviceImage, gpu::kFrameImageCount> images;
     DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
     Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
-    Buffer samples;    // this buffer and those below serve all effects with rays
-    Buffer radiance;
-    Buffer rays;
-    Buffer nextRays;  // this buffer and the next are present if paths have several bounces
+    // These buffers and those below serve all effects with rays. Samples are those of a band.
+    Buffer sampleStarts;
+    Buffer sampleAims;
+    Buffer sampleWeights;
+    Buffer listed;      // the list of rays: the numbers of their samples
+    Buffer radiance;    // this buffer and the next two are present if paths have several bounces
+    Buffer nextListed;
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer hits;         // full or packed records; present if hits are ordered
@@ -62,10 +66,12 @@ struct FrameResources {
     // All buffers, with names for reports.
     std::array<std::pair<const char*, const Buffer*>, kBufferCount> buffers() const {
         return {{{"constants", &constants},
-                 {"samples", &samples},
-                 {"radiance of effects", &radiance},
-                 {"rays", &rays},
-                 {"next rays", &nextRays},
+                 {"starts of samples", &sampleStarts},
+                 {"directions of samples", &sampleAims},
+                 {"weights of samples", &sampleWeights},
+                 {"rays", &listed},
+                 {"radiance of paths", &radiance},
+                 {"next rays", &nextListed},
                  {"paths", &paths},
                  {"rays of lobes", &lobeRays},
                  {"hits", &hits},
@@ -106,11 +112,32 @@ struct FrameSize {
     bool emissiveLights = false;
     std::uint32_t bounces = 1;  // the most of a path
 
-    // The number of lists in a frame: one for each bounce of each round of effects.
+    bool accumulates = true;     // the picture is a mean over frames
+    bool marchesScreen = false;  // frames may look for the ends of rays in screen space
+    // The frame is lit in bands of that many rows, one after the other; 0 if it is lit as a whole.
+    std::uint32_t bandRows = 0;
+
+    std::uint32_t rowsOfBand() const {
+        return bandRows > 0 ? bandRows : height;
+    }
+    std::uint32_t bandCount() const {
+        return (height + rowsOfBand() - 1) / rowsOfBand();
+    }
+    // The pixels that samples have memory for.
+    VkDeviceSize pixelsOfBand() const {
+        return VkDeviceSize{width} * rowsOfBand();
+    }
+
+    // The number of lists in a frame: one for each bounce of each round of effects of each band.
     std::uint32_t roundCount() const {
-        return batchCount > 0 ? sampleCount / batchCount * bounces : 0;
+        return batchCount > 0 ? sampleCount / batchCount * bounces * bandCount() : 0;
     }
 };
+
+// Returns the size of a hit's key. It agrees with order/bucket_key.glsl.
+inline std::uint32_t keyBytesOf(std::uint32_t bucketCount) {
+    return bucketCount <= 0x100 ? 1 : bucketCount <= 0x10000 ? 2 : 4;
+}
 
 // Returns the size of the counters.
 VkDeviceSize counterBytes(const FrameSize& size);
@@ -118,7 +145,7 @@ VkDeviceSize counterBytes(const FrameSize& size);
 // Returns the offset at which a round of rays is read back. For the number of rounds it returns the end.
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);
 
-// Returns the largest number of rays in the list: one for each pixel and effect of a round.
+// Returns the largest number of rays in the list: one for each pixel of a band and effect of a round.
 VkDeviceSize listRays(const FrameSize& size);
 
 // Error "render-size": the frame has no pixels, or more than the device supports.
@@ -130,6 +157,10 @@ VkDeviceSize listSlots(const FrameSize& size);
 
 // Returns the largest number of rays that one dispatch of a list can have.
 std::uint64_t maxRayDispatch(const DeviceLimits& limits);
+
+// Returns the image that a binding leads to: its own, or that of the picture. Frames that do not accumulate
+// write the light of the primary surfaces there, and compose() adds to it.
+const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding);
 
 // Makes all resources, or with FrameSize::hostRays the lists and counters alone, clears the images and waits
 // for the device.
@@ -147,6 +178,9 @@ struct NextBuffers {
     std::uint32_t kept = 0;  // buffers that stay
     std::uint32_t made = 0;
 };
+
+// Returns the bytes of the images and buffers of a frame of that size, without what a device adds to an image. Pure.
+VkDeviceSize frameBytes(const FrameSize& size);
 
 // Whether frames of both sizes have the same images and the same layout of set 1.
 bool haveSameImages(const FrameSize& first, const FrameSize& second);

@@ -16,7 +16,8 @@ PassRecorder::PassRecorder(PassState& state, VkCommandBuffer commands, Timing ti
       commands_(commands),
       pushStages_(state.pipelines.pushStages),
       dependencies_(stagesOf(state.choice)),
-      timesPasses_(timing == Timing::Passes) {
+      timesPasses_(timing == Timing::Passes),
+      rows_(state.size.height) {
     pushed_.frame = state.frame.constants.address;
     pushed_.tlasIndex = state.tlasIndex;
 }
@@ -148,11 +149,11 @@ void PassRecorder::dispatchPixels(const PassLabel& label, const PassPipeline& pa
     bindPass(pass);
     if (pass.traces) {
         vk_.CmdTraceRaysKHR(commands_, &pass.rayGeneration, &pass.miss, &pass.hit, &kNoCallables,
-                            state_.size.width, state_.size.height, 1);
+                            state_.size.width, rows_, 1);
     } else {
         constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
         vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile,
-                        (state_.size.height + kTile - 1) / kTile, 1);
+                        (rows_ + kTile - 1) / kTile, 1);
     }
     endPass();
 }
@@ -177,6 +178,10 @@ void PassRecorder::dispatchList(const PassLabel& label, const PassPipeline& pass
         vk_.CmdDispatchIndirect(commands_, arguments.handle.get(), offset);
     }
     endPass();
+}
+
+void PassRecorder::setRows(std::uint32_t rows) {
+    rows_ = rows;
 }
 
 void PassRecorder::setBucket(std::uint32_t bucket) {

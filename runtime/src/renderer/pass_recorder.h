@@ -28,7 +28,9 @@ public:
     // Begins and ends a label around several passes.
     void beginLabel(const std::string& name);
     void endLabel();
-    // Dispatches the pass over the pixels of the image.
+    // Sets the number of rows that passes over pixels have: those of the image, unless told otherwise.
+    void setRows(std::uint32_t rows);
+    // Dispatches the pass over the pixels of these rows.
     void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
     // Dispatches `groups` workgroups.
     void dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups);
@@ -60,6 +62,7 @@ private:
     PassDependencies dependencies_;
     gpu::PushConstants pushed_{};
     bool timesPasses_;
+    std::uint32_t rows_;
 };
 
 }  // namespace glint

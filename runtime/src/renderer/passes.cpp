@@ -1,4 +1,5 @@
 // The passes of a frame in order.
+#include "renderer/frame_constants.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_state.h"
 
@@ -15,7 +16,9 @@ using package::ModuleRole;
 class FrameRecorder {
 public:
     FrameRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing)
-        : state_(state), vk_(state.context.vk), commands_(commands), passes_(state, commands, timing) {}
+        : state_(state), vk_(state.context.vk), commands_(commands), passes_(state, commands, timing) {
+        setBand(state.size, 0, band_);
+    }
 
     void record(const FrameOptions& frame, const gpu::FrameConstants& constants) {
         state_.timed.clear();
@@ -30,11 +33,14 @@ public:
         passes_.drawScene(state_.scene.batches, sets);
         passes_.barrier(dependencies().rasterToPasses);
         passes_.bindSets(sets);
-        passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
-        passes_.barrier(dependencies().passToPass);
         bounces_ = bouncesOf(state_.size, frame);
-        recordEffects(frame.effects & state_.size.effects.rays, constants);
-        passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
+        state_.rounds.clear();
+        for (std::uint32_t band = 0; band < state_.size.bandCount(); ++band) {
+            if (band > 0) {
+                startBand(band, constants);
+            }
+            recordBand(frame, constants);
+        }
         passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
@@ -61,6 +67,26 @@ private:
         vk_.CmdCopyBuffer(commands_, source.handle.get(), state_.frame.readback.handle.get(), 1, &region);
     }
 
+    // Lights the rows of a band.
+    void recordBand(const FrameOptions& frame, const gpu::FrameConstants& constants) {
+        passes_.setRows(band_.endRow - band_.firstRow);
+        passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
+        passes_.barrier(dependencies().passToPass);
+        recordEffects(frame.effects & state_.size.effects.rays, constants);
+        passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
+    }
+
+    // Leads the passes to the rows of another band. The band before used the same memory.
+    void startBand(std::uint32_t band, const gpu::FrameConstants& constants) {
+        setBand(state_.size, band, band_);
+        passes_.barrier(dependencies().passToClear);
+        updateConstant(offsetof(gpu::FrameConstants, firstRow), band_.firstRow);
+        updateConstant(offsetof(gpu::FrameConstants, endRow), band_.endRow);
+        updateConstant(offsetof(gpu::FrameConstants, bandFirst), band_.bandFirst);
+        startRound(constants);
+        passes_.barrier(dependencies().passToPass);
+    }
+
     void clear(const FrameOptions& frame) {
         // This counter belongs to the accumulated picture, so it is reset with the picture only.
         constexpr VkDeviceSize kKept = gpu::kCounterNonFinite * sizeof(std::uint32_t);
@@ -82,15 +108,16 @@ private:
 
     // Records the rays of all effects that are on, either together or effect by effect.
     void recordEffects(std::uint32_t withRays, const gpu::FrameConstants& constants) {
-        state_.rounds.clear();
+        bool first = true;        // no list of the band has been traced yet
         std::uint32_t listed = 0;  // effects whose rays are in the list
         for (const EffectName& info : state_.effects) {
             if ((withRays & info.effect) == 0) {
                 continue;
             }
-            if (listed == 0 && !state_.rounds.empty()) {
+            if (listed == 0 && !first) {
                 startRound(constants);
             }
+            first = false;
             recordRays(info);
             listed |= info.effect;
             if (state_.choice.batchEffects && listed != withRays) {
@@ -131,18 +158,21 @@ private:
         setBounce(constants, bounce);
     }
 
+    template <typename Value>
+    void updateConstant(std::size_t offset, const Value& value) {
+        vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), offset, sizeof(value), &value);
+    }
+
     // Tells the passes which bounce they shade, and which list has its rays: odd bounces have the list that
     // the effects fill. What the passes before wrote is visible to those that follow.
     void setBounce(const gpu::FrameConstants& constants, std::uint32_t bounce) {
         const bool swapped = bounce > 0 && bounce % 2 == 0;
-        const Buffer& target = state_.frame.constants;
-        const auto update = [&](std::size_t offset, const auto& value) {
-            vk_.CmdUpdateBuffer(commands_, target.handle.get(), offset, sizeof(value), &value);
-        };
         passes_.barrier(dependencies().passToClear);
-        update(offsetof(gpu::FrameConstants, rays), swapped ? constants.nextRays : constants.rays);
-        update(offsetof(gpu::FrameConstants, nextRays), swapped ? constants.rays : constants.nextRays);
-        update(offsetof(gpu::FrameConstants, bounce), bounce);
+        updateConstant(offsetof(gpu::FrameConstants, listed),
+                       swapped ? constants.nextListed : constants.listed);
+        updateConstant(offsetof(gpu::FrameConstants, nextListed),
+                       swapped ? constants.listed : constants.nextListed);
+        updateConstant(offsetof(gpu::FrameConstants, bounce), bounce);
         passes_.barrier(dependencies().clearToPasses);
         passes_.barrier(dependencies().passToPass);
     }
@@ -193,6 +223,7 @@ private:
     VkCommandBuffer commands_;
     PassRecorder passes_;
     std::uint32_t bounces_ = 1;
+    gpu::FrameConstants band_{};  // of these, the rows of the band that is being recorded
 };
 
 }  // namespace

@@ -20,8 +20,20 @@ constexpr float kFarDistance = 1e18F;
 constexpr std::uint32_t kMaxSurfaceSamples = 4096;
 constexpr std::uint32_t kMaxInterfaces = 64;
 
-// `most` is the number of bounces that the renderer was made for.
-Status checkFrame(const FrameOptions& frame, std::uint32_t most) {
+// `made` are the options that the renderer was made with.
+Status checkFrame(const FrameOptions& frame, const RendererOptions& made) {
+    const std::uint32_t most = made.bounces;
+    if (frame.sampleIndex > 0 && !made.accumulate) {
+        return makeError("frame-options", "",
+                         "sample " + std::to_string(frame.sampleIndex) +
+                             " of a picture is asked of a renderer that does not accumulate",
+                         "set RendererOptions::accumulate, or use 0 for sampleIndex");
+    }
+    if (frame.screenSteps > 0 && !made.screenMarch) {
+        return makeError("frame-options", "",
+                         "screenSteps is asked of a renderer that was made without the march in screen space",
+                         "set RendererOptions::screenMarch, or use 0 for screenSteps");
+    }
     if (Status status = checkCamera(frame.camera); !status) {
         return status;
     }
@@ -109,7 +121,9 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.firstEmitters = state.scene.firstEmitters.address;
     constants.emitterCount = static_cast<std::uint32_t>(state.scene.emitters.records.size());
     constants.lastBounce = bouncesOf(state.size, options);
+    constants.accumulates = state.size.accumulates ? 1 : 0;
     fillLists(state.frame, state.size, constants);
+    setBand(state.size, 0, constants);
     return constants;
 }
 
@@ -173,7 +187,7 @@ Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Renderer::~Renderer() = default;
 
 Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
-    if (Status status = checkFrame(frame, state_->choice.bounces); !status) {
+    if (Status status = checkFrame(frame, state_->options); !status) {
         return status;
     }
     if (Status status = checkOutside(state_->size, outsideOf(frame)); !status) {

@@ -139,6 +139,30 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     return choice;
 }
 
+namespace {
+
+// The most dispatches of cases that bands may bring to a round of rays.
+constexpr std::uint32_t kCasesOfBands = 256;
+
+}  // namespace
+
+std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted) {
+    if (size.hostRays || size.sampleCount == 0 || size.marchesScreen) {
+        return 0;
+    }
+    std::uint64_t bands = wanted;
+    if (wanted == 0) {
+        bands = (std::uint64_t{size.width} * size.height + kPixelsOfBand - 1) / kPixelsOfBand;
+        if (strategy == package::kStrategyVisibility) {
+            bands = std::min<std::uint64_t>(bands, std::max(kCasesOfBands / size.bucketCount, 1U));
+        }
+    }
+    constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
+    const std::uint64_t rows = (size.height + bands - 1) / bands;
+    const auto whole = static_cast<std::uint32_t>((rows + kTile - 1) / kTile * kTile);
+    return whole < size.height ? whole : 0;
+}
+
 FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options) {
     FrameSize size;
     size.width = options.width;
@@ -159,12 +183,14 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
             : 1;
     size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
                                                                             : sizeof(gpu::HitRecord);
-    // This agrees with order/bucket_key.glsl.
-    size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
+    size.keyBytes = keyBytesOf(size.bucketCount);
     size.environmentMap = package.environmentMap();
     size.deferredShadows =
         size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
+    size.accumulates = options.accumulate;
+    size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
+    size.bandRows = chooseBandRows(size, choice.strategy, options.bands);
     return size;
 }
 

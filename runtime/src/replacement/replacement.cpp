@@ -229,7 +229,7 @@ std::vector<std::string> caseNamesOf(const Package& package) {
 
 std::uint32_t timerCapacity(const Package& package, const FrameSize& size) {
     const std::uint32_t rounds = std::max(package::effectSlots(size.effects), 1U);
-    return rounds * size.bounces * (kMaxFixedPasses + package.caseCount());
+    return size.bandCount() * rounds * size.bounces * (kMaxFixedPasses + package.caseCount());
 }
 
 bool Leftovers::isBusy() const {

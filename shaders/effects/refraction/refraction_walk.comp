@@ -15,11 +15,11 @@ GLINT_PIXEL_WORKGROUP
 
 void main() {
     uvec2 pixel = GLINT_PIXEL_OF_THREAD;
-    bool inside = pixel.x < GLINT_FRAME.width && pixel.y < GLINT_FRAME.height;
+    bool inside = pixel.x < GLINT_FRAME.width && pixel.y < GLINT_FRAME.endRow;
     uint segments = 0u;
     if (inside) {
         uint target = sampleTarget(GLINT_SLOT_REFRACTION, pixel.x + pixel.y * GLINT_FRAME.width);
-        if (GLINT_FRAME.samples.data[target].outcome == kRaySent) {
+        if (sampleOutcome(target) == kRaySent) {
             segments = walk(pixel, target);
         }
     }

@@ -203,13 +203,6 @@ void passInterface(Hit hit, Features features, uint place, inout Media media) {
     }
 }
 
-// Ends the walk with a known radiance, so that no ray joins the list.
-void endWith(uint target, vec3 weight, vec3 radiance) {
-    GLINT_FRAME.samples.data[target].weight = weight;
-    GLINT_FRAME.samples.data[target].outcome = kRayEnded;
-    storeRadiance(target, radiance, kPathMiss);
-}
-
 // Returns the number of rays traced.
 uint walk(uvec2 pixel, uint target) {
     uvec2 surfaceId = imageLoad(surfaceImage, ivec2(pixel)).xy;
@@ -223,7 +216,7 @@ uint walk(uvec2 pixel, uint target) {
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
     walker.media.count = 0u;
-    walker.weight = vec3(GLINT_FRAME.samples.data[target].coneSpread);  // see the comment in refraction.glsl
+    walker.weight = vec3(storedSample(target).coneSpread);  // see the comment in refraction.glsl
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
     bool meets = true;  // the ray meets a surface that affects it
@@ -239,7 +232,7 @@ uint walk(uvec2 pixel, uint target) {
                 break;
             }
             if (outcome == kAbsorbs || luminance(walker.weight) <= 0.0) {
-                endWith(target, vec3(0.0), vec3(0.0));
+                endSample(target, vec3(0.0), vec3(0.0));
                 return segments;
             }
             if (outcome == kPasses && volume) {
@@ -250,24 +243,23 @@ uint walk(uvec2 pixel, uint target) {
         walker.coneWidth += GLINT_FRAME.pixelSpread * travelled;
         if (depth + 1u >= GLINT_FRAME.maxInterfaces) {
             // The sky stands in for further interfaces.
-            endWith(target, walker.weight, hostSky(walker.direction));
+            endSample(target, walker.weight, hostSky(walker.direction));
             return segments;
         }
         // Continues to the next surface. Within a medium, its back is seen too.
         RayRecord ray = RayRecord(walker.origin, target, walker.direction, walker.coneWidth, GLINT_FRAME.pixelSpread);
         bool within = walker.media.count > 0u;
-        HitRecord record = traceRay(ray, 0u, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
+        TracedHit record = traceRay(ray, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
         segments += 1u;
         if (record.geometry == kMissGeometry) {
-            endWith(target, walker.weight, hostSky(walker.direction));
+            endSample(target, walker.weight, hostSky(walker.direction));
             return segments;
         }
         geometry = hostGeometry(record.geometry);
         features = walkFeatures(geometry);
-        hit = fetchHit(geometry, record.primitive,
-                       vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY), walker.direction,
-                       record.coneWidth, target, features);
-        travelled = record.distance_orDirectionZ;
+        hit = fetchHit(geometry, record.primitive, record.barycentrics, walker.direction, record.coneWidth, target,
+                       features);
+        travelled = record.distance;
         if (within) {
             uint medium = walker.media.material[walker.media.count - 1u];
             walker.weight *= volumeTransmittance(GLINT_RECORD_ABSORPTION(hostMaterials().data[medium]), travelled);
@@ -287,11 +279,11 @@ uint walk(uvec2 pixel, uint target) {
     drawn.weight = walker.weight;
     drawn.coneWidth = walker.coneWidth;
     drawn.coneSpread = GLINT_FRAME.pixelSpread;
-    GLINT_FRAME.samples.data[target] = drawn;
+    storeSample(target, drawn);
 #if GLINT_PATHS
     // What the ray meets is in the innermost medium, and sends its next ray there.
     if (walker.media.count > 0u) {
-        GLINT_FRAME.paths.data[target].medium = walker.media.material[walker.media.count - 1u] + 1u;
+        GLINT_FRAME.paths.data[samplePlace(target)].medium = walker.media.material[walker.media.count - 1u] + 1u;
     }
 #endif
     return segments;

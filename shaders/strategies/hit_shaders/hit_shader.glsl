@@ -23,7 +23,7 @@ Hit shadedHit(HostGeometry geometry, Features features) {
     Hit hit = fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
                        features);
 #if GLINT_PATHS
-    hit.arrival = arrivalOf(target, gl_WorldRayOriginEXT, coneWidth, shaded.radiance.z);
+    hit.arrival = arrivalOf(samplePlace(target), gl_WorldRayOriginEXT, coneWidth, shaded.radiance.z);
 #endif
 #if GLINT_EMISSIVE_LIGHTS
     hit.geometry = hitGeometry();

@@ -7,11 +7,14 @@ void main() {
 #if GLINT_ANSWERS_SURFACE
     storeSurface(floatBitsToUint(shaded.radiance.x), shadeUnknown().surface);
 #else
+#if GLINT_PATHS
     uint target = floatBitsToUint(shaded.radiance.x);
+#endif
     shaded.radiance = shadeUnknown().radiance;
 #if GLINT_PATHS
-    shaded.radiance *= GLINT_FRAME.paths.data[target].throughput;
-    endPath(target);
+    uint place = samplePlace(target);
+    shaded.radiance *= GLINT_FRAME.paths.data[place].throughput;
+    endPath(place);
 #endif
 #endif
     shaded.shadowDistance = 0.0;

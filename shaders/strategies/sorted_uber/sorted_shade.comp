@@ -31,14 +31,15 @@ void main() {
         return;
     }
     HitRecord record = storedHit(slot);
+    RayRecord ray = listedRay(slot);
     if (record.geometry == kMissGeometry) {
-        resolveMiss(record.target, missDirection(record));
+        resolveMiss(ray.target, ray.direction);
         return;
     }
     // The first hit of a workgroup gives the case of all its hits.
     uint first = storedGeometry(GLINT_FRAME.orderedHits.data[firstSlot()]);
     uint shaderId = first == kMissGeometry ? kNoShader : hostShaderId(first);
     HostGeometry geometry = hostGeometry(record.geometry);
-    Hit hit = loadHit(record, rayDirection(record, geometry), geometry, GLINT_HIT_FEATURES(geometry));
+    Hit hit = loadHit(record, ray, geometry, GLINT_HIT_FEATURES(geometry));
     resolveHit(hit, shadeHit(shaderId, hit, geometry));
 }

@@ -16,13 +16,13 @@ void main() {
     if (index >= GLINT_FRAME.rayDispatch.data[0].elementCount) {
         return;
     }
-    RayRecord ray = GLINT_FRAME.rays.data[index];
-    HitRecord record = traceRay(ray, index, rayFlags(ray.target));
-    if (record.geometry == kMissGeometry) {
-        resolveMiss(record.target, ray.direction);
+    RayRecord ray = listedRay(index);
+    TracedHit found = traceRay(ray, rayFlags(ray.target));
+    if (found.geometry == kMissGeometry) {
+        resolveMiss(ray.target, ray.direction);
     } else {
-        HostGeometry geometry = hostGeometry(record.geometry);
-        Hit hit = loadHit(record, ray.direction, geometry, GLINT_HIT_FEATURES(geometry));
+        HostGeometry geometry = hostGeometry(found.geometry);
+        Hit hit = loadHit(recordOf(found), ray, geometry, GLINT_HIT_FEATURES(geometry));
         resolveHit(hit, shadeHit(geometry.shaderId, hit, geometry));
     }
 }

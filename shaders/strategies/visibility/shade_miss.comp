@@ -12,13 +12,14 @@ void main() {
     if (index >= GLINT_FRAME.bucketCounts.data[0]) {
         return;
     }
-    HitRecord hit = storedHit(GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[0] + index]);
-    if (hit.geometry == kMissGeometry) {
-        resolveMiss(hit.target, missDirection(hit));
+    uint hit = GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[0] + index];
+    RayRecord ray = listedRay(hit);
+    if (storedGeometry(hit) == kMissGeometry) {
+        resolveMiss(ray.target, ray.direction);
     } else {
 #if !GLINT_FALLBACK
         atomicAdd(GLINT_FRAME.counters.data[kCounterUnknownShader], 1u);
-        resolveUnknown(hit.target);
+        resolveUnknown(ray.target);
 #endif
     }
 }

@@ -10,7 +10,7 @@ void main() {
     if (index >= GLINT_FRAME.width) {
         return;
     }
-    HitRecord record = traceRay(GLINT_FRAME.rays.data[index], index, 0u);
+    TracedHit record = traceRay(GLINT_FRAME.rays.data[index], 0u);
     GLINT_FRAME.counters.data[2u * index] = record.geometry;
     GLINT_FRAME.counters.data[2u * index + 1u] = record.primitive;
 }

@@ -28,7 +28,7 @@ vec3 offsetByUnits(vec3 position, vec3 n) {
 
 // Returns whether a ray meets the triangle of `record`. Every candidate counts, even hidden ones. No point of
 // the triangle is farther from the origin than `reach`.
-bool meets(HitRecord record, vec3 origin, vec3 direction, float reach) {
+bool meets(TracedHit record, vec3 origin, vec3 direction, float reach) {
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], gl_RayFlagsNoOpaqueEXT | gl_RayFlagsSkipAABBEXT, 0xFFu,
                           origin, 0.0, direction, reach);
@@ -54,13 +54,12 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
-    HitRecord record = traceRay(ray, index, gl_RayFlagsCullBackFacingTrianglesEXT);
+    TracedHit record = traceRay(ray, gl_RayFlagsCullBackFacingTrianglesEXT);
     if (record.geometry == kMissGeometry) {
         return;
     }
     GeometryRecord geometry = GLINT_FRAME.geometries.data[record.geometry];
-    vec2 barycentrics = vec2(record.barycentricU_orDirectionX, record.barycentricV_orDirectionY);
-    Hit hit = fetchHit(geometry, record.primitive, barycentrics, ray.direction, 0.0, index,
+    Hit hit = fetchHit(geometry, record.primitive, record.barycentrics, ray.direction, 0.0, index,
                        GLINT_PRIMARY_FEATURES(geometry));
     vec3 tangent;
     vec3 bitangent;

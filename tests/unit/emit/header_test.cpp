@@ -23,7 +23,7 @@ static_assert(static_cast<unsigned>(tables::ShaderId::kUnlit_BaseTex_Uv0) < tabl
 static_assert((tables::kShaderFeatures[static_cast<unsigned>(tables::ShaderId::kUnlit_BaseTex_Uv0)].always &
                tables::kFeatureUnlit) != 0);
 static_assert(tables::kMaterialNames0[1][8] == '\n' && tables::kMaterialNames0[1][9] == '"');
-static_assert(sizeof(glint::gpu::HitRecord) == 32);
+static_assert(sizeof(glint::gpu::HitRecord) == 20);
 int main() { return 0; }
 )";
 

@@ -73,6 +73,8 @@ public:
                           gpuScene_->allocatedBytes()};
         report_.hasDetails = !setup_.arguments.stats.empty();
         report_.countsLight = !setup_.arguments.stats.empty();
+        report_.traffic.shape = trafficShape(package, setup_.renderer);
+        report_.traffic.shape.binsRays = setup_.arguments.frame.binning != Binning::None;
         return okStatus();
     }
 
@@ -175,6 +177,8 @@ private:
         }
         report_.passes = std::move(*passes);
         report_.counters = std::move(*counters);
+        report_.traffic.counts = trafficCounts(report_.counters, report_.traffic.shape,
+                                               static_cast<double>(report_.width) * report_.height);
         if (!setup_.arguments.coverage.empty()) {
             Result<std::vector<PixelPath>> paths = renderer_->readCoverage(onScreen_);
             if (!paths) {

@@ -247,7 +247,8 @@ base::Json toJson(const RenderReport& report) {
               {"images", report.footprint.images},
               {"buffers", report.footprint.buffers},
               {"bytes", report.footprint.bytes}}},
-            {"memory", toJson(report.memory)}};
+            {"memory", toJson(report.memory)},
+            {"traffic", toJson(report.traffic)}};
 }
 
 std::string toText(const RenderReport& report, Detail detail) {
@@ -293,6 +294,7 @@ std::string toText(const RenderReport& report, Detail detail) {
     rows.push_back(
         {"memory", fmt::format("{} in {} images and {} buffers", formatBytes(report.footprint.bytes),
                                report.footprint.images, report.footprint.buffers)});
+    rows.push_back({"bytes moved", summaryOf(report.traffic)});
     if (scene.narrowedTextures > 0) {
         rows.push_back(
             {"textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",
@@ -313,6 +315,8 @@ std::string toText(const RenderReport& report, Detail detail) {
     if (report.hasDetails) {
         text += '\n';
         text += toText(report.memory);
+        text += '\n';
+        text += toText(report.traffic);
     }
     if (report.pipelines.statistics) {
         text += '\n';

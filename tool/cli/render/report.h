@@ -4,6 +4,7 @@
 #include "cli/render/device_report.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "cli/traffic.h"
 #include "plan/strategy_choice.h"
 
 #include <glint/environment.h>
@@ -67,6 +68,7 @@ struct RenderReport {
     StartReport start;
     double renderMs = 0.0;            // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;   // of the last sample, of the last frame
+    TrafficReport traffic;            // of the last sample
     FrameCounters counters;           // of the last sample, of the last frame; nonFinite: of all
     std::vector<FrameReport> frames;  // with --frames
     std::vector<PixelPath> paths;     // of the last sample, row by row; for --coverage only

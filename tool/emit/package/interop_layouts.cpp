@@ -45,10 +45,19 @@ constexpr MemberLayout kLightRecord[] = {
     GLINT_MEMBER(LightRecord, spotOffset), GLINT_MEMBER(LightRecord, size),
 };
 
-constexpr MemberLayout kEffectSample[] = {
-    GLINT_MEMBER(EffectSample, origin),    GLINT_MEMBER(EffectSample, outcome),
-    GLINT_MEMBER(EffectSample, direction), GLINT_MEMBER(EffectSample, coneWidth),
-    GLINT_MEMBER(EffectSample, weight),    GLINT_MEMBER(EffectSample, coneSpread),
+constexpr MemberLayout kSampleStart[] = {
+    GLINT_MEMBER(SampleStart, origin_orRadiance),
+    GLINT_MEMBER(SampleStart, state),
+};
+
+constexpr MemberLayout kSampleAim[] = {
+    GLINT_MEMBER(SampleAim, direction),
+    GLINT_MEMBER(SampleAim, coneWidth),
+};
+
+constexpr MemberLayout kSampleWeight[] = {
+    GLINT_MEMBER(SampleWeight, weight),
+    GLINT_MEMBER(SampleWeight, coneSpread),
 };
 
 constexpr MemberLayout kRayRecord[] = {
@@ -58,28 +67,20 @@ constexpr MemberLayout kRayRecord[] = {
 };
 
 constexpr MemberLayout kPathState[] = {
-    GLINT_MEMBER(PathState, origin),     GLINT_MEMBER(PathState, medium),
-    GLINT_MEMBER(PathState, direction),  GLINT_MEMBER(PathState, density),
-    GLINT_MEMBER(PathState, throughput), GLINT_MEMBER(PathState, coneWidth),
-    GLINT_MEMBER(PathState, coneSpread), GLINT_MEMBER(PathState, goesOn),
+    GLINT_MEMBER(PathState, throughput),
+    GLINT_MEMBER(PathState, medium),
 };
 
 constexpr MemberLayout kHitRecord[] = {
-    GLINT_MEMBER(HitRecord, target),
-    GLINT_MEMBER(HitRecord, geometry),
-    GLINT_MEMBER(HitRecord, primitive),
-    GLINT_MEMBER(HitRecord, barycentricU_orDirectionX),
-    GLINT_MEMBER(HitRecord, barycentricV_orDirectionY),
-    GLINT_MEMBER(HitRecord, distance_orDirectionZ),
+    GLINT_MEMBER(HitRecord, geometry),     GLINT_MEMBER(HitRecord, primitive),
+    GLINT_MEMBER(HitRecord, barycentricU), GLINT_MEMBER(HitRecord, barycentricV),
     GLINT_MEMBER(HitRecord, coneWidth),
-    GLINT_MEMBER(HitRecord, ray),
 };
 
 constexpr MemberLayout kPackedHitRecord[] = {
-    GLINT_MEMBER(PackedHitRecord, target),
     GLINT_MEMBER(PackedHitRecord, geometry24_coneLog8),
-    GLINT_MEMBER(PackedHitRecord, primitive_orDirectionOctX),
-    GLINT_MEMBER(PackedHitRecord, barycentrics2x16_orDirectionOctY),
+    GLINT_MEMBER(PackedHitRecord, primitive),
+    GLINT_MEMBER(PackedHitRecord, barycentrics2x16),
 };
 
 constexpr MemberLayout kShadowRecord[] = {
@@ -140,9 +141,12 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, materials),
     GLINT_MEMBER(FrameConstants, lights),
     GLINT_MEMBER(FrameConstants, lightNodes),
-    GLINT_MEMBER(FrameConstants, samples),
+    GLINT_MEMBER(FrameConstants, sampleStarts),
+    GLINT_MEMBER(FrameConstants, sampleAims),
+    GLINT_MEMBER(FrameConstants, sampleWeights),
     GLINT_MEMBER(FrameConstants, radiance),
     GLINT_MEMBER(FrameConstants, rays),
+    GLINT_MEMBER(FrameConstants, listed),
     GLINT_MEMBER(FrameConstants, hits),
     GLINT_MEMBER(FrameConstants, packedHits),
     GLINT_MEMBER(FrameConstants, orderedHits),
@@ -164,7 +168,7 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, tlasAddress),
     GLINT_MEMBER(FrameConstants, lightTreeNodes),
     GLINT_MEMBER(FrameConstants, unboundedLights),
-    GLINT_MEMBER(FrameConstants, nextRays),
+    GLINT_MEMBER(FrameConstants, nextListed),
     GLINT_MEMBER(FrameConstants, paths),
     GLINT_MEMBER(FrameConstants, bounce),
     GLINT_MEMBER(FrameConstants, lastBounce),
@@ -172,6 +176,11 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, firstEmitters),
     GLINT_MEMBER(FrameConstants, lobeRays),
     GLINT_MEMBER(FrameConstants, emitterCount),
+    GLINT_MEMBER(FrameConstants, accumulates),
+    GLINT_MEMBER(FrameConstants, firstRow),
+    GLINT_MEMBER(FrameConstants, endRow),
+    GLINT_MEMBER(FrameConstants, bandFirst),
+    GLINT_MEMBER(FrameConstants, outsideBands),
 };
 
 constexpr MemberLayout kLightNode[] = {
@@ -200,7 +209,8 @@ constexpr MemberLayout kPushConstants[] = {
 
 constexpr StructLayout kStructs[] = {
     GLINT_STRUCT(GeometryRecord),  GLINT_STRUCT(InstanceRecord), GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(LightNode),       GLINT_STRUCT(LightRecord),    GLINT_STRUCT(EffectSample),
+    GLINT_STRUCT(LightNode),       GLINT_STRUCT(LightRecord),    GLINT_STRUCT(SampleStart),
+    GLINT_STRUCT(SampleAim),       GLINT_STRUCT(SampleWeight),
     GLINT_STRUCT(RayRecord),       GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),
     GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments),
     GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),  GLINT_STRUCT(EmitterRecord),

@@ -13,7 +13,7 @@ void main() {
     }
     ivec2 place = ivec2(pixel);
     vec4 radiance = imageLoad(radianceImage, place);
-    vec4 reflection = FRAME.radiance.data[pixel.x + pixel.y * FRAME.width];
+    vec3 reflection = FRAME.sampleStarts.data[pixel.x + pixel.y * FRAME.width].origin_orRadiance;
     vec4 value = vec4(radiance.x, reflection.x, radiance.z, reflection.z);
     vec4 mean = value;
     if (FRAME.sampleIndex > 0u) {

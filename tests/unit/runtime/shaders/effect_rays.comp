@@ -13,11 +13,10 @@ void main() {
     vec2 unit = (vec2(pixel) + 0.5 + FRAME.jitter) / vec2(FRAME.width, FRAME.height);
     vec2 p = vec2(2.0 * unit.x - 1.0, 1.0 - 2.0 * unit.y);
     vec3 across = p.x * FRAME.cameraRight + p.y * FRAME.cameraUp;
-    RayRecord ray;
-    ray.target = pixel.x + pixel.y * FRAME.width;
-    ray.origin = FRAME.cameraPosition + (FRAME.orthographic != 0u ? across : vec3(0.0));
-    ray.direction = FRAME.orthographic != 0u ? FRAME.cameraForward : normalize(FRAME.cameraForward + across);
-    ray.coneWidth = 0.0;
-    ray.coneSpread = 0.0;
-    FRAME.rays.data[atomicAdd(FRAME.counters.data[kCounterRays], 1u)] = ray;
+    uint target = pixel.x + pixel.y * FRAME.width;
+    vec3 origin = FRAME.cameraPosition + (FRAME.orthographic != 0u ? across : vec3(0.0));
+    vec3 direction = FRAME.orthographic != 0u ? FRAME.cameraForward : normalize(FRAME.cameraForward + across);
+    FRAME.sampleStarts.data[target] = SampleStart(origin, kRaySent);
+    FRAME.sampleAims.data[target] = SampleAim(direction, 0.0);
+    FRAME.listed.data[atomicAdd(FRAME.counters.data[kCounterRays], 1u)] = target;
 }

@@ -22,5 +22,4 @@ void main() {
         radiance = vec4(float(surface.x) + 1.0, float(surface.y), texel.r, 1.0);
     }
     imageStore(radianceImage, ivec2(pixel), radiance);
-    FRAME.radiance.data[pixel.x + pixel.y * FRAME.width] = vec4(0.0);
 }

@@ -8,7 +8,7 @@ layout(local_size_x = kRayGroupSize) in;
 
 void main() {
     if (gl_GlobalInvocationID.x < FRAME.bucketCounts.data[pushed.bucket]) {
-        HitRecord hit = FRAME.hits.data[FRAME.orderedHits.data[FRAME.bucketBegins.data[pushed.bucket] + gl_GlobalInvocationID.x]];
-        FRAME.radiance.data[hit.target] = describe(hit);
+        uint index = FRAME.orderedHits.data[FRAME.bucketBegins.data[pushed.bucket] + gl_GlobalInvocationID.x];
+        FRAME.sampleStarts.data[FRAME.listed.data[index]] = describe(FRAME.hits.data[index]);
     }
 }

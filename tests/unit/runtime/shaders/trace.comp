@@ -8,6 +8,6 @@ layout(local_size_x = kRayGroupSize) in;
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < FRAME.rayDispatch.data[0].elementCount) {
-        FRAME.hits.data[index] = traceRay(FRAME.rays.data[index], index);
+        FRAME.hits.data[index] = traceRay(FRAME.listed.data[index]);
     }
 }

@@ -3,24 +3,26 @@
 
 layout(set = kSetScene, binding = kBindingTlas) uniform accelerationStructureEXT sceneTlas[];
 
-HitRecord traceRay(RayRecord ray, uint index) {
+// The distance stands in the place of the cone's width.
+HitRecord traceRay(uint target) {
+    vec3 direction = FRAME.sampleAims.data[target].direction;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex],
                           gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu,
-                          ray.origin, 0.0, ray.direction, 1e18);
+                          FRAME.sampleStarts.data[target].origin_orRadiance, 0.0, direction, 1e18);
     rayQueryProceedEXT(query);
-    HitRecord hit = HitRecord(ray.target, kMissGeometry, 0u, 0.0, 0.0, 0.0, 0.0, index);
+    HitRecord hit = HitRecord(kMissGeometry, 0u, 0.0, 0.0, 0.0);
     if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT) {
         hit.geometry = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true) +
                             rayQueryGetIntersectionGeometryIndexEXT(query, true));
         hit.primitive = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
-        hit.distance_orDirectionZ = rayQueryGetIntersectionTEXT(query, true);
+        hit.coneWidth = rayQueryGetIntersectionTEXT(query, true);
     }
     return hit;
 }
 
 // Returns geometry + 1, primitive, distance; 0 for a miss.
-vec4 describe(HitRecord hit) {
-    return hit.geometry == kMissGeometry ? vec4(0.0)
-                                         : vec4(float(hit.geometry) + 1.0, float(hit.primitive), hit.distance_orDirectionZ, 1.0);
+SampleStart describe(HitRecord hit) {
+    vec3 value = vec3(float(hit.geometry) + 1.0, float(hit.primitive), hit.coneWidth);
+    return SampleStart(hit.geometry == kMissGeometry ? vec3(0.0) : value, kRaySent);
 }

@@ -9,7 +9,7 @@ layout(local_size_x = kRayGroupSize) in;
 void main() {
     uint index = gl_GlobalInvocationID.x;
     if (index < FRAME.rayDispatch.data[0].elementCount) {
-        RayRecord ray = FRAME.rays.data[index];
-        FRAME.radiance.data[ray.target] = describe(traceRay(ray, index));
+        uint target = FRAME.listed.data[index];
+        FRAME.sampleStarts.data[target] = describe(traceRay(target));
     }
 }

@@ -1,0 +1,93 @@
+// The bytes that the passes of a frame move: what they read and write of the frame's own images, samples and lists.
+// Every other pass reads from memory what the one before wrote to it, so these bytes are what a device with little
+// bandwidth has to carry for each pixel. Vertices, textures, acceleration structures and the few bytes of counters
+// and buckets are not in them, and caches and tiles on the chip may save part of them.
+#pragma once
+
+#include <glint/names.h>
+#include <glint/package_format.h>
+
+#include <cstdint>
+#include <iterator>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace glint {
+
+class Package;
+struct FrameCounters;
+struct RendererOptions;
+
+// What a pass moves bytes for.
+enum class TrafficUnit : std::uint32_t {
+    Pixel,
+    Sample,    // a pixel and an effect that sends rays
+    Sent,      // a sample that sends a ray, or whose light is found without the list
+    Ray,       // a ray of a list
+    Hit,       // a ray of a list that hits, where hits are ordered
+    Miss,      // one that leaves the scene
+    FurtherRay,  // a ray of a path's second bounce or a later one
+    ShadowRay,   // a deferred one
+};
+inline constexpr Named<TrafficUnit> kTrafficUnitNames[] = {
+    {TrafficUnit::Pixel, "pixel", ""},
+    {TrafficUnit::Sample, "sample", "a pixel and an effect that sends rays"},
+    {TrafficUnit::Sent, "sent", "a sample that sends a ray"},
+    {TrafficUnit::Ray, "ray", "a ray of a list"},
+    {TrafficUnit::Hit, "hit", "a ray of a list that hits"},
+    {TrafficUnit::Miss, "miss", "a ray of a list that leaves the scene"},
+    {TrafficUnit::FurtherRay, "further-ray", "a ray of a path's second bounce or a later one"},
+    {TrafficUnit::ShadowRay, "shadow-ray", "a deferred shadow ray"},
+};
+constexpr std::span<const Named<TrafficUnit>> namesOf(TrafficUnit /*type*/) {
+    return kTrafficUnitNames;
+}
+
+// What decides how many bytes there are.
+struct TrafficShape {
+    package::Strategy strategy = package::kStrategyVisibility;
+    package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
+    std::uint32_t effects = 0;  // those that send rays
+    std::uint32_t walks = 0;    // those of them with a pass that follows their rays first
+    std::uint32_t bucketCount = 1;
+    bool paths = false;            // of several bounces
+    bool emissiveLights = false;
+    bool deferredShadows = false;
+    bool accumulates = false;      // the frame adds its sample to a mean
+    bool marchesScreen = false;
+    bool binsRays = false;
+};
+
+// The shape of frames of a package.
+TrafficShape trafficShape(const Package& package, const RendererOptions& options);
+
+// The bytes that a pass reads and writes for one unit.
+struct TrafficRow {
+    std::string_view pass;  // as in docs/architecture.md
+    TrafficUnit unit = TrafficUnit::Pixel;
+    std::uint32_t read = 0;
+    std::uint32_t written = 0;
+};
+
+// Pure. A pass with several units has several rows. Rows without bytes are left out.
+std::vector<TrafficRow> trafficRows(const TrafficShape& shape);
+
+// How many of each unit a frame had.
+struct TrafficCounts {
+    double of[std::size(kTrafficUnitNames)] = {};
+
+    double operator[](TrafficUnit unit) const {
+        return of[static_cast<std::size_t>(unit)];
+    }
+};
+TrafficCounts trafficCounts(const FrameCounters& counters, const TrafficShape& shape, double pixels);
+
+// The sum of the rows.
+struct TrafficSum {
+    double read = 0.0;
+    double written = 0.0;
+};
+TrafficSum sumTraffic(std::span<const TrafficRow> rows, const TrafficCounts& counts);
+
+}  // namespace glint

@@ -1,0 +1,152 @@
+#include "interop/frame.h"
+#include "renderer/frame_resources.h"
+
+#include <glint/frame_traffic.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+
+#include <algorithm>
+#include <bit>
+
+namespace glint {
+namespace {
+
+using Unit = TrafficUnit;
+
+constexpr std::uint32_t kWord = sizeof(std::uint32_t);
+constexpr std::uint32_t kVector = sizeof(gpu::vec3);
+constexpr std::uint32_t kPixel = sizeof(gpu::vec4);  // of an image with light
+constexpr std::uint32_t kIdentity = 2 * kWord;       // of the surface that a pixel sees
+constexpr std::uint32_t kStart = sizeof(gpu::SampleStart);
+constexpr std::uint32_t kAim = sizeof(gpu::SampleAim);
+constexpr std::uint32_t kWeight = sizeof(gpu::SampleWeight);
+constexpr std::uint32_t kPath = sizeof(gpu::PathState);
+// A ray as listedRay() reads it: its number, the origin, the aim, and how its cone grows.
+constexpr std::uint32_t kRay = kWord + kVector + kAim + kWord;
+
+// What a pass that shades a hit writes: light, and the next ray of the path or that there is none.
+std::uint32_t answerBytes(const TrafficShape& shape) {
+    return shape.paths ? kPixel + kStart + kAim + kWord + kPath : kStart;
+}
+
+// What it reads of the ray.
+std::uint32_t arrivalBytes(const TrafficShape& shape) {
+    const std::uint32_t direction = kWord + kVector;
+    return direction + (shape.paths ? kVector + kWord + kPath : 0) +
+           (shape.emissiveLights ? (shape.paths ? 0 : kVector) + static_cast<std::uint32_t>(sizeof(gpu::LobeRay))
+                                 : 0);
+}
+
+void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
+    const std::uint32_t lobe = shape.emissiveLights ? sizeof(gpu::LobeRay) : 0;
+    rows.push_back({"lighting", Unit::Sample, 0, kStart + lobe + (shape.marchesScreen ? kWeight : 0)});
+    rows.push_back({"lighting", Unit::Sent, 0,
+                    kAim + (shape.marchesScreen ? 0 : kWeight) + (shape.paths ? kPath : 0)});
+    if (shape.walks > 0) {
+        // The counts tell effects apart no further, so all that is sent is taken for walked.
+        rows.push_back({"effect walk", Unit::Sample, kWord, 0});
+        rows.push_back({"effect walk", Unit::Sent, kIdentity + kWord, kStart + kAim + kWeight});
+    }
+    rows.push_back({"effect rays", Unit::Sample, kWord, 0});
+    rows.push_back({"effect rays", Unit::Sent,
+                    (shape.binsRays || shape.marchesScreen ? kAim : 0) + (shape.marchesScreen ? kVector : 0), 0});
+    rows.push_back({"effect rays", Unit::Ray, 0, kWord});
+}
+
+void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
+    const std::uint32_t hit = shape.hitRecord == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
+                                                                                  : sizeof(gpu::HitRecord);
+    const std::uint32_t key = keyBytesOf(shape.bucketCount);
+    const std::uint32_t answer = answerBytes(shape);
+    if ((shape.strategy & package::kOrderedStrategies) == 0) {
+        const bool uber = shape.strategy == package::kStrategyUber;
+        rows.push_back({uber ? "uber" : "hit shaders", Unit::Ray,
+                        kRay + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0), answer});
+        return;
+    }
+    const bool sorted = shape.strategy == package::kStrategySortedUber;
+    rows.push_back({"trace", Unit::Ray, kRay + (shape.paths ? kWord : 0), hit + key});
+    rows.push_back({"count", Unit::Ray, key, 0});
+    rows.push_back({"copy", Unit::Ray, key, kWord});
+    // A miss needs of its record only that it is one.
+    rows.push_back({sorted ? "sorted uber" : "shade miss", Unit::Miss,
+                    kWord + kWord + kWord + kVector + (shape.paths ? kVector : 0),
+                    shape.paths ? kPixel + kWord : kStart});
+    rows.push_back({sorted ? "sorted uber" : "shade case", Unit::Hit, kWord + hit + arrivalBytes(shape), answer});
+}
+
+}  // namespace
+
+TrafficShape trafficShape(const Package& package, const RendererOptions& options) {
+    const package::EffectSet& effects = package.shape().effects;
+    TrafficShape shape;
+    shape.strategy = options.strategy;
+    shape.hitRecord = package.hitRecord();
+    shape.effects = package::effectSlots(effects);
+    shape.walks = static_cast<std::uint32_t>(std::popcount(effects.walks));
+    shape.bucketCount = package.bucketCount();
+    shape.paths = package::hasPaths(package.shape());
+    shape.emissiveLights = package.emission() != nullptr;
+    shape.deferredShadows =
+        effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
+    shape.accumulates = options.accumulate;
+    shape.marchesScreen = options.screenMarch && effects.screenStarts != 0;
+    return shape;
+}
+
+std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
+    std::vector<TrafficRow> rows;
+    rows.push_back({"gbuffer", Unit::Pixel, 0, kIdentity + kWord});  // and the depth
+    rows.push_back({"lighting", Unit::Pixel, kIdentity, kPixel + (shape.marchesScreen ? kPixel : 0)});
+    if (shape.effects > 0) {
+        addSamples(shape, rows);
+        addShading(shape, rows);
+        if (shape.deferredShadows) {
+            rows.push_back({"shadow", Unit::ShadowRay, sizeof(gpu::ShadowRecord) + kPixel,
+                            sizeof(gpu::ShadowRecord) + kPixel});
+        }
+        if (shape.paths) {
+            rows.push_back({"path rays", Unit::Ray, kWord + kWord, 0});
+            rows.push_back({"path rays", Unit::FurtherRay, 0, kWord});
+        }
+        rows.push_back({"compose", Unit::Sample, shape.paths ? kWord : kStart, 0});
+        rows.push_back({"compose", Unit::Sent, kVector + (shape.paths ? kPixel : 0), 0});
+    }
+    const std::uint32_t mean = shape.accumulates ? 2 * kPixel : 0;
+    rows.push_back({"compose", Unit::Pixel, kPixel + mean, shape.accumulates ? mean : kPixel});
+    std::erase_if(rows, [](const TrafficRow& row) { return row.read + row.written == 0; });
+    return rows;
+}
+
+TrafficCounts trafficCounts(const FrameCounters& counters, const TrafficShape& shape, double pixels) {
+    TrafficCounts counts;
+    const auto at = [&](Unit unit) -> double& { return counts.of[static_cast<std::size_t>(unit)]; };
+    at(Unit::Pixel) = pixels;
+    at(Unit::Sample) = pixels * shape.effects;
+    for (const EffectCounters& effect : counters.effects) {
+        if (effect.kind == package::EffectKind::Rays) {
+            at(Unit::Sent) += static_cast<double>(effect.rays) + effect.screenHits;
+        }
+    }
+    at(Unit::Ray) = counters.rays;
+    at(Unit::ShadowRay) = counters.shadowRays;
+    for (std::size_t i = 1; i < counters.raysOfBounces.size(); ++i) {
+        at(Unit::FurtherRay) += counters.raysOfBounces[i];
+    }
+    if (!counters.bucketCounts.empty()) {
+        at(Unit::Miss) = counters.bucketCounts.front();
+        at(Unit::Hit) = at(Unit::Ray) - at(Unit::Miss);
+    }
+    return counts;
+}
+
+TrafficSum sumTraffic(std::span<const TrafficRow> rows, const TrafficCounts& counts) {
+    TrafficSum sum;
+    for (const TrafficRow& row : rows) {
+        sum.read += row.read * counts[row.unit];
+        sum.written += row.written * counts[row.unit];
+    }
+    return sum;
+}
+
+}  // namespace glint

@@ -1,0 +1,120 @@
+// The memory of a frame, and the bytes that its passes move, stay within bounds. docs/memory.md states them.
+#include "renderer/frame_resources.h"
+#include "renderer/renderer_choice.h"
+
+#include <glint/frame_traffic.h>
+#include <glint/strategies.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+
+constexpr std::uint32_t kBuckets = 35;
+
+// A frame as a program draws it that shows each as it comes. `effects` send rays.
+FrameSize realTimeFrame(package::Strategy strategy, std::uint32_t effects, std::uint32_t bands) {
+    FrameSize size;
+    size.width = 1920;
+    size.height = 1080;
+    size.bucketCount = kBuckets;
+    size.sampleCount = effects;
+    size.batchCount = 1;
+    size.effects.rays = (1U << effects) - 1U;
+    size.effects.screenStarts = 1;
+    size.ordered = (strategy & package::kOrderedStrategies) != 0;
+    size.bucketAlignment = strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
+    size.keyBytes = keyBytesOf(kBuckets);
+    size.accumulates = false;
+    size.bandRows = chooseBandRows(size, strategy, bands);
+    return size;
+}
+
+double bytesOfPixel(const FrameSize& size) {
+    return static_cast<double>(frameBytes(size)) / (static_cast<double>(size.width) * size.height);
+}
+
+TEST(FrameMemory, IsAtMost64BytesAPixelForOneEffectWithRays) {
+    for (const package::Strategy strategy : package::kStrategies) {
+        EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 1, 0)), 64.0) << nameOf(strategy);
+    }
+}
+
+TEST(FrameMemory, IsAtMost96BytesAPixelForThree) {
+    for (const package::Strategy strategy : package::kStrategies) {
+        EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 3, 0)), 96.0) << nameOf(strategy);
+    }
+}
+
+TEST(FrameMemory, OfAFrameLitAsAWholeIsHalfOfWhatItWas) {
+    // Each sample, its ray and its light had records of their own, and each frame added to a mean.
+    EXPECT_LE(bytesOfPixel(realTimeFrame(package::kStrategyVisibility, 1, 1)), 106.0);
+}
+
+TEST(FrameBands, CoverTheFrameInWholeTiles) {
+    FrameSize size = realTimeFrame(package::kStrategyUber, 1, 7);
+    EXPECT_EQ(size.rowsOfBand() % gpu::kPixelGroupSize, 0U);
+    EXPECT_GE(size.bandCount() * size.rowsOfBand(), size.height);
+    EXPECT_LT((size.bandCount() - 1) * size.rowsOfBand(), size.height);
+    EXPECT_EQ(size.roundCount(), size.bandCount());
+    // As many as asked for would leave bands without rows.
+    size.height = 9;
+    size.bandRows = chooseBandRows(size, package::kStrategyUber, 7);
+    EXPECT_EQ(size.bandCount(), 2U);
+    EXPECT_EQ(chooseBandRows(size, package::kStrategyUber, 0), 0U);
+}
+
+TEST(FrameBands, AreFewWhereEachHasADispatchForEveryCase) {
+    FrameSize size = realTimeFrame(package::kStrategyVisibility, 1, 1);
+    size.bucketCount = 257;
+    EXPECT_EQ(chooseBandRows(size, package::kStrategyVisibility, 0), 0U);
+    EXPECT_NE(chooseBandRows(size, package::kStrategySortedUber, 0), 0U);
+    size.marchesScreen = true;
+    EXPECT_EQ(chooseBandRows(size, package::kStrategySortedUber, 4), 0U) << "the march reads every pixel";
+}
+
+// Every pixel sends a ray, and every ray hits.
+double bytesMoved(TrafficShape shape) {
+    shape.bucketCount = kBuckets;
+    TrafficCounts counts;
+    for (double& count : counts.of) {
+        count = shape.effects;
+    }
+    counts.of[static_cast<std::size_t>(TrafficUnit::Pixel)] = 1.0;
+    for (const TrafficUnit none : {TrafficUnit::Miss, TrafficUnit::FurtherRay, TrafficUnit::ShadowRay}) {
+        counts.of[static_cast<std::size_t>(none)] = 0.0;
+    }
+    const TrafficSum sum = sumTraffic(trafficRows(shape), counts);
+    return sum.read + sum.written;
+}
+
+TEST(FrameTraffic, IsWithinItsBounds) {
+    TrafficShape shape;
+    shape.effects = 1;
+    EXPECT_LE(bytesMoved(shape), 272.0);
+    shape.strategy = package::kStrategyUber;
+    EXPECT_LE(bytesMoved(shape), 210.0);
+    shape.strategy = package::kStrategyVisibility;
+    shape.hitRecord = package::HitRecordFormat::Packed;
+    EXPECT_LE(bytesMoved(shape), 256.0);
+    shape.effects = 0;
+    EXPECT_EQ(bytesMoved(shape), 12.0 + 24.0 + 32.0) << "visibility and depth, light, and the picture";
+}
+
+TEST(FrameTraffic, GrowsWithWhatAFrameDoes) {
+    TrafficShape plain;
+    plain.effects = 1;
+    for (bool TrafficShape::*const member :
+         {&TrafficShape::paths, &TrafficShape::emissiveLights, &TrafficShape::accumulates,
+          &TrafficShape::marchesScreen, &TrafficShape::binsRays}) {
+        TrafficShape more = plain;
+        more.*member = true;
+        EXPECT_GT(bytesMoved(more), bytesMoved(plain));
+    }
+}
+
+}  // namespace
