@@ -1,4 +1,5 @@
-// Attributes of triangles. Here they are those of Glint's scene: vertices and indices of 32 bits, by address.
+// Attributes of triangles. Here they are those of Glint's scene, by address.
+#include "hit/geometry.glsl"
 #include "host/resources.glsl"
 
 // What the host knows of the geometry that was hit. Glint reads its members shaderId, materialIndex, featureLobes,
@@ -38,26 +39,55 @@ vec3 hostPosition(HostGeometry geometry, uint vertex) {
 
 // The following are asked for only if featureInputs says that the geometry has them.
 
+// Attributes are read in the form that their flag says.
+
 // A unit vector in the mesh's space.
 vec3 hostNormal(HostGeometry geometry, uint vertex) {
+    if ((geometry.flags & kGeometryPackedNormals) != 0u) {
+        return octahedralDecode(unpackSnorm2x16(UintArray(geometry.normals).data[vertex]));
+    }
     return geometry.normals.data[vertex];
 }
 
 // A unit vector in the mesh's space; w = ±1 is the sign of the bitangent.
 vec4 hostTangent(HostGeometry geometry, uint vertex) {
+    if ((geometry.flags & kGeometryPackedTangents) != 0u) {
+        uint word = UintArray(geometry.tangents).data[vertex];
+        vec2 code = vec2(float(bitfieldExtract(int(word), 0, 16)) / 32767.0, float(int(word) >> 17) / 16383.0);
+        return vec4(octahedralDecode(code), (word & 0x10000u) != 0u ? -1.0 : 1.0);
+    }
     return geometry.tangents.data[vertex];
 }
 
+// Two coordinates of 16 bits behind their range.
+vec2 packedTexCoord(UintArray words, uint vertex) {
+    vec2 least = uintBitsToFloat(uvec2(words.data[0], words.data[1]));
+    vec2 step = uintBitsToFloat(uvec2(words.data[2], words.data[3]));
+    uint word = words.data[4u + vertex];
+    return least + step * vec2(float(word & 0xFFFFu), float(word >> 16));
+}
+
 vec2 hostTexCoord0(HostGeometry geometry, uint vertex) {
-    return geometry.texCoords0.data[vertex];
+    return (geometry.flags & kGeometryPackedTexCoords0) != 0u
+               ? packedTexCoord(UintArray(geometry.texCoords0), vertex)
+               : geometry.texCoords0.data[vertex];
 }
 
 vec2 hostTexCoord1(HostGeometry geometry, uint vertex) {
-    return geometry.texCoords1.data[vertex];
+    return (geometry.flags & kGeometryPackedTexCoords1) != 0u
+               ? packedTexCoord(UintArray(geometry.texCoords1), vertex)
+               : geometry.texCoords1.data[vertex];
 }
 
 // Linear RGBA.
 vec4 hostColor(HostGeometry geometry, uint vertex) {
+    UintArray words = UintArray(geometry.colors);
+    if ((geometry.flags & kGeometryColors8) != 0u) {
+        return unpackUnorm4x8(words.data[vertex]);
+    }
+    if ((geometry.flags & kGeometryColors16) != 0u) {
+        return vec4(unpackUnorm2x16(words.data[2u * vertex]), unpackUnorm2x16(words.data[2u * vertex + 1u]));
+    }
     return geometry.colors.data[vertex];
 }
 

@@ -23,6 +23,14 @@ GLINT_CONSTANT(kGeometryBlended, 8u);      // alphaMode BLEND: alpha is compared
 GLINT_CONSTANT(kGeometryEmitter, 16u);     // its triangles are lights, in packages with emissive lights
 // Shadow rays keep a share of their light on their way through it: non-opaque in the acceleration structure.
 GLINT_CONSTANT(kGeometryPassesLight, 32u);
+// Compact forms of attributes (host/geometry.glsl). Without its flag an attribute has the form that GeometryRecord
+// says.
+GLINT_CONSTANT(kGeometryPackedNormals, 64u);     // octahedral, 2 x 16 bits
+GLINT_CONSTANT(kGeometryPackedTangents, 128u);   // octahedral, 16 and 15 bits, and the sign
+GLINT_CONSTANT(kGeometryPackedTexCoords0, 256u);  // four floats with least and step of u and v, then 2 x 16 bits
+GLINT_CONSTANT(kGeometryPackedTexCoords1, 512u);
+GLINT_CONSTANT(kGeometryColors8, 1024u);   // 4 x 8 bits, unorm
+GLINT_CONSTANT(kGeometryColors16, 2048u);  // 4 x 16 bits, unorm
 GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are the host's own
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing

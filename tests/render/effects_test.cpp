@@ -106,6 +106,104 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
     }
 }
 
+// In bands of rows, or as a frame of its own, a sample is the same to the bit. Compact vertices change it
+// hardly.
+TEST(AllEffects, BandsAndFramesWithoutAMeanChangeNothing) {
+    const gltf::Scene scene = roomBehindGlass();
+    compiler::CompileSettings settings = allEffects();
+    settings.tracers = package::kTracerRayQuery;
+    settings.strategies = package::kStrategyUber | package::kStrategyVisibility;
+    settings.plan.merge = compiler::MergePolicy::All;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = smallSetup(scene);
+    setup.samples = 1;
+    for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
+        RendererOptions options = optionsOf(strategy, package::kTracerRayQuery);
+        FrameCounters whole;
+        const LinearImage reference = loaded.render(options, setup, &whole);
+        options.bands = 3;
+        options.accumulate = false;
+        options.batchEffects = strategy == package::kStrategyUber;
+        FrameCounters counters;
+        const LinearImage image = loaded.render(options, setup, &counters);
+        EXPECT_EQ(image.pixels, reference.pixels);
+        EXPECT_EQ(counters.rays, whole.rays);
+        EXPECT_EQ(counters.orderErrors, 0U);
+        EXPECT_EQ(counters.bucketCounts, whole.bucketCounts);
+        for (const EffectCounters& effect : counters.effects) {
+            EXPECT_EQ(effect.rays, whole.of(effect.effect).rays) << effect.name;
+            EXPECT_EQ(effect.hits, whole.of(effect.effect).hits) << effect.name;
+            EXPECT_EQ(effect.skippedSky, whole.of(effect.effect).skippedSky) << effect.name;
+        }
+    }
+}
+
+TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
+    const gltf::Scene scene = roomOfMaterials();
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    const RenderSetup setup = smallSetup(scene);
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = setup.width;
+    options.height = setup.height;
+    options.accumulate = false;
+    options.bands = 2;
+    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
+    EXPECT_EQ(idOf((*renderer)->render(setup.frame, 2)), "frame-options");
+    EXPECT_TRUE((*renderer)->render(setup.frame, 1));
+    EXPECT_EQ(idOf((*renderer)->readCoverage(package::kEffectReflection)), "frame-options");
+    EXPECT_TRUE((*renderer)->readSurfaces());
+    FrameOptions marching = setup.frame;
+    marching.screenSteps = 8;
+    EXPECT_EQ(idOf((*renderer)->render(marching, 1)), "frame-options");
+    for (const MemoryItem& item : (*renderer)->memory()) {
+        EXPECT_TRUE(item.name != "radiance" && item.name != "residual" && item.name != "position")
+            << item.name;
+    }
+}
+
+TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
+    const gltf::Scene scene = roomOfMaterials();
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    const auto load = [&](VertexForm form) {
+        return LoadedScene(scene, settings,
+                           [form](scene_view::SceneViewData& data) { data.vertices = form; });
+    };
+    const LoadedScene full = load(VertexForm::Full);
+    const LoadedScene compact = load(VertexForm::Compact);
+    ASSERT_TRUE(full.ok() && compact.ok());
+    const auto bytesOf = [](const LoadedScene& loaded) {
+        std::uint64_t bytes = 0;
+        for (const MemoryItem& item : loaded.gpuScene().memory()) {
+            bytes += item.name == "vertices and indices" ? item.bytes : 0;
+        }
+        return bytes;
+    };
+    EXPECT_LT(bytesOf(compact), bytesOf(full));
+    const RenderSetup setup = smallSetup(scene);
+    const LinearImage a = full.render(package::kStrategyUber, setup);
+    const LinearImage b = compact.render(package::kStrategyUber, setup);
+    ASSERT_EQ(a.pixels.size(), b.pixels.size());
+    // A ray that meets another surface, or a shadow's edge, may change a few pixels.
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            different += std::abs(a.pixels[i][channel] - b.pixels[i][channel]) >
+                         0.005F * std::max(1.0F, a.pixels[i][channel]);
+        }
+    }
+    EXPECT_LT(different, a.pixels.size() / 50);
+}
+
 TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
     const gltf::Scene scene = roomBehindGlass();
     RenderSetup setup = smallSetup(scene);

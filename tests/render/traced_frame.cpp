@@ -41,8 +41,7 @@ Result<std::vector<gpu::RayRecord>> readRays(Renderer& renderer, std::uint32_t c
     const auto starts = readRecords<gpu::SampleStart>(state, *runner, frame.sampleStarts);
     const auto aims = readRecords<gpu::SampleAim>(state, *runner, frame.sampleAims);
     const auto weights = readRecords<gpu::SampleWeight>(state, *runner, frame.sampleWeights);
-    for (const Status& status :
-         {statusOf(listed), statusOf(starts), statusOf(aims), statusOf(weights)}) {
+    for (const Status& status : {statusOf(listed), statusOf(starts), statusOf(aims), statusOf(weights)}) {
         if (!status) {
             return status.error();
         }

@@ -15,8 +15,8 @@ struct TracedFrame {
     std::vector<gpu::RayRecord> rays;  // the list, as readRays() has it
 };
 
-// Reads the list of the last recording and the samples that it names. Their origins are known in packages with paths
-// of several bounces, if the frame has one; in others light has taken their place.
+// Reads the list of the last recording and the samples that it names. Their origins are known in packages
+// with paths of several bounces, if the frame has one; in others light has taken their place.
 Result<std::vector<gpu::RayRecord>> readRays(Renderer& renderer, std::uint32_t count);
 
 // Renders with the validation layers on and reads back. If that fails, the test fails and the image has no

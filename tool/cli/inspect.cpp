@@ -220,7 +220,8 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"bytesPerMaterial", package.scene(0).materials.recordBytes},
           {"modules", package.modules().size()},
           {"uniqueSpirv", inspected.uniqueFiles()}}},
-        {"traffic", package.passes() == package::Passes::Frame ? trafficToJson(package) : base::Json::array()},
+        {"traffic",
+         package.passes() == package::Passes::Frame ? trafficToJson(package) : base::Json::array()},
         {"spirvBytes", inspected.spirvBytes()},
         {"shaders", shadersToJson(inspected)},
         {"modules", modulesToJson(inspected)}};

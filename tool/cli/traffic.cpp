@@ -72,9 +72,10 @@ std::string toText(const TrafficReport& report) {
         {"bytes moved by", "for each", "of which", "read", "written", "a pixel"}};
     for (const TrafficRow& row : trafficRows(report.shape)) {
         const double count = report.counts[row.unit];
-        rows.push_back({std::string(row.pass), std::string(nameOf(row.unit)), fmt::format("{:.0f}", count),
-                        fmt::format("{}", row.read), fmt::format("{}", row.written),
-                        fmt::format("{:.1f}", bytesOfPixel(count * (row.read + row.written), report.counts))});
+        rows.push_back(
+            {std::string(row.pass), std::string(nameOf(row.unit)), fmt::format("{:.0f}", count),
+             fmt::format("{}", row.read), fmt::format("{}", row.written),
+             fmt::format("{:.1f}", bytesOfPixel(count * (row.read + row.written), report.counts))});
     }
     return formatTable(rows);
 }

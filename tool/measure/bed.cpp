@@ -234,8 +234,9 @@ Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, cons
     render.package = package;
     const std::string key =
         fmt::format("{} {}", package, decided(render, [](const compiler::Descriptor& row) {
-                        // With --effects auto, the limit of roughness decides too.
-                        return isCompiled(row) || row.name == "max-roughness";
+                        // With --effects auto, the limit of roughness decides too. The form of vertices
+                        // decides about the scene on the device.
+                        return isCompiled(row) || row.name == "max-roughness" || row.name == "vertices";
                     }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {

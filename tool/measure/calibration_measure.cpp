@@ -141,6 +141,7 @@ private:
         }
         rendering.width = entry_.width;
         rendering.height = entry_.height;
+        rendering.bands = 1;  // the model is that of one list
         Result<std::unique_ptr<Renderer>> renderer =
             Renderer::create(context_, *group_.package, *scene_.scene, rendering);
         if (!renderer) {

@@ -144,7 +144,7 @@ void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData
 }
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights, packageScene, moves, materials, traversalOrder};
+    return {primitives, instances, images, lights, packageScene, moves, materials, traversalOrder, vertices};
 }
 
 MotionView SceneViewData::motion() const {

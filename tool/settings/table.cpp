@@ -528,7 +528,8 @@ constexpr Descriptor kRows[] = {
      .commands = kOfRender,
      .stage = SettingStage::Renderer,
      .group = kEffectOptions,
-     .what = "light the picture in N bands of rows, one after the other: less memory, more dispatches; 0: bands of "
+     .what = "light the picture in N bands of rows, one after the other: less memory, more dispatches; 0: "
+             "bands of "
              "at most 2^19 pixels",
      .values = number<&Settings::renderer, &RendererOptions::bands>(0, 1024),
      .bench = changesTime(withoutRays, "1 4"),
@@ -540,6 +541,14 @@ constexpr Descriptor kRows[] = {
      .what = "how triangles and instances come in acceleration structures",
      .values = enumerator<&Settings::traversalOrder>(),
      .document = "performance.md#traversal-on-a-cpu-driver"},
+    {.name = "vertices",
+     .commands = kOfRender,
+     .stage = SettingStage::Renderer,
+     .group = "Device",
+     .what = "how vertices lie in memory",
+     .values = enumerator<&Settings::vertices>(),
+     .bench = approximates("full"),
+     .document = "memory.md#vertices"},
     {.name = "pipeline-threads",
      .commands = kOfRender,
      .stage = SettingStage::Renderer,

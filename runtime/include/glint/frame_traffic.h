@@ -1,7 +1,7 @@
-// The bytes that the passes of a frame move: what they read and write of the frame's own images, samples and lists.
-// Every other pass reads from memory what the one before wrote to it, so these bytes are what a device with little
-// bandwidth has to carry for each pixel. Vertices, textures, acceleration structures and the few bytes of counters
-// and buckets are not in them, and caches and tiles on the chip may save part of them.
+// The bytes that the passes of a frame move: what they read and write of the frame's own images, samples and
+// lists. Every other pass reads from memory what the one before wrote to it, so these bytes are what a device
+// with little bandwidth has to carry for each pixel. Vertices, textures, acceleration structures and the few
+// bytes of counters and buckets are not in them, and caches and tiles on the chip may save part of them.
 #pragma once
 
 #include <glint/names.h>
@@ -22,11 +22,11 @@ struct RendererOptions;
 // What a pass moves bytes for.
 enum class TrafficUnit : std::uint32_t {
     Pixel,
-    Sample,    // a pixel and an effect that sends rays
-    Sent,      // a sample that sends a ray, or whose light is found without the list
-    Ray,       // a ray of a list
-    Hit,       // a ray of a list that hits, where hits are ordered
-    Miss,      // one that leaves the scene
+    Sample,      // a pixel and an effect that sends rays
+    Sent,        // a sample that sends a ray, or whose light is found without the list
+    Ray,         // a ray of a list
+    Hit,         // a ray of a list that hits, where hits are ordered
+    Miss,        // one that leaves the scene
     FurtherRay,  // a ray of a path's second bounce or a later one
     ShadowRay,   // a deferred one
 };
@@ -51,10 +51,10 @@ struct TrafficShape {
     std::uint32_t effects = 0;  // those that send rays
     std::uint32_t walks = 0;    // those of them with a pass that follows their rays first
     std::uint32_t bucketCount = 1;
-    bool paths = false;            // of several bounces
+    bool paths = false;  // of several bounces
     bool emissiveLights = false;
     bool deferredShadows = false;
-    bool accumulates = false;      // the frame adds its sample to a mean
+    bool accumulates = false;  // the frame adds its sample to a mean
     bool marchesScreen = false;
     bool binsRays = false;
 };

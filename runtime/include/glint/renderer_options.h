@@ -32,8 +32,8 @@ struct RendererOptions {
     // Lets frames add their sample to the mean of earlier ones (FrameOptions::sampleIndex). It takes two
     // images more, 32 bytes a pixel. A program whose frames are all samples of their own does without.
     bool accumulate = true;
-    // Lets frames look for the ends of rays in screen space (FrameOptions::screenSteps). It takes an image more
-    // in packages with such effects, 16 bytes a pixel, and frames in one band.
+    // Lets frames look for the ends of rays in screen space (FrameOptions::screenSteps). It takes an image
+    // more in packages with such effects, 16 bytes a pixel, and frames in one band.
     bool screenMarch = false;
     // Lights the frame in that many bands of rows, one after the other. Samples, rays and hits then take
     // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses:

@@ -132,6 +132,20 @@ constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/
     return kTraversalOrderNames;
 }
 
+// How the vertices of a scene lie in memory.
+enum class VertexForm : std::uint32_t {
+    Compact,
+    Full,
+};
+inline constexpr Named<VertexForm> kVertexFormNames[] = {
+    {VertexForm::Compact, "compact",
+     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that keeps the values nearly"},
+    {VertexForm::Full, "full", "32 bits"},
+};
+constexpr std::span<const Named<VertexForm>> namesOf(VertexForm /*type*/) {
+    return kVertexFormNames;
+}
+
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
     std::span<const InstanceView> instances;
@@ -144,6 +158,9 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
+    // What a vertex has besides its position takes 20 bytes or less in the compact form and up to 60 in the
+    // full one. docs/memory.md says what becomes of its values.
+    VertexForm vertices = VertexForm::Compact;
     // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;
     // How many textures and samplers an editable scene may have at a time, those of the upload included. The

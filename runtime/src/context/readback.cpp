@@ -127,9 +127,10 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
         return runner.error();
     }
     if (state_->size.bandRows > 0) {
-        return makeError("frame-options", "",
-                         "the frame was lit in bands, which share the memory that says how pixels found light",
-                         "make the renderer with RendererOptions::bands at 1");
+        return makeError(
+            "frame-options", "",
+            "the frame was lit in bands, which share the memory that says how pixels found light",
+            "make the renderer with RendererOptions::bands at 1");
     }
     const auto starts = readFrameBuffer(*state_, *runner, state_->frame.sampleStarts);
     if (!starts) {

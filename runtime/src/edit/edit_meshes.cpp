@@ -93,7 +93,7 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, std::
         declared = joinAllAttributes(package, view);
     }
     Result<GpuPrimitive> device =
-        uploadPrimitive(scene.context, scene.pool, *state.uploader, view, indices, declared);
+        uploadPrimitive(scene.context, scene.pool, *state.uploader, view, indices, declared, state.vertices);
     if (!device) {
         return device.error();
     }

@@ -81,9 +81,10 @@ struct SceneEditor::State {
     MaterialTable layout;  // of material records, without records
     BlasCapacity capacity;
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
-    bool dataAccess = false;        // BLASes let shaders read positions
-    bool passesLight = false;       // a ray meets each triangle at most once
-    bool buildsTree = false;        // the package chooses lights by a hierarchy
+    VertexForm vertices = VertexForm::Compact;
+    bool dataAccess = false;   // BLASes let shaders read positions
+    bool passesLight = false;  // a ray meets each triangle at most once
+    bool buildsTree = false;   // the package chooses lights by a hierarchy
 
     Slots<EditedTexture, TextureHandle> textures;
     Slots<EditedMaterial, MaterialHandle> materialSlots;

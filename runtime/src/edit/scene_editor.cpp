@@ -23,6 +23,7 @@ SceneEditor::State::State(GpuScene::State& owner, const Package& package, const 
       layout(package.scene(0).materials.part(0, 0)),
       capacity(orderedCapacity(blasCapacity(owner.context))),
       leafOrder(leafOrderFor(owner.context, view.traversalOrder)),
+      vertices(view.vertices),
       dataAccess(package.positionFetch()),
       passesLight(package.shadowThrough() == package::ShadowThrough::Glass),
       buildsTree(package.lightSamples() > 0),

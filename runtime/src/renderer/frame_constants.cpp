@@ -95,8 +95,8 @@ void setBand(const FrameSize& size, std::uint32_t band, gpu::FrameConstants& con
     constants.firstRow = band * size.rowsOfBand();
     constants.endRow = std::min(constants.firstRow + size.rowsOfBand(), size.height);
     constants.bandFirst = constants.firstRow * size.width;
-    constants.outsideBands = static_cast<std::uint32_t>(VkDeviceSize{size.width} * size.height -
-                                                        size.pixelsOfBand());
+    constants.outsideBands =
+        static_cast<std::uint32_t>(VkDeviceSize{size.width} * size.height - size.pixelsOfBand());
 }
 
 }  // namespace glint

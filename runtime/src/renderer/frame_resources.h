@@ -35,14 +35,14 @@ struct FrameResources {
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
-    DeviceImage depth;                                      // layout DEPTH_ATTACHMENT_OPTIMAL
-    Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
+    DeviceImage depth;  // layout DEPTH_ATTACHMENT_OPTIMAL
+    Buffer constants;   // FrameConstants; every pass reads them, so this is not host memory
     // These buffers and those below serve all effects with rays. Samples are those of a band.
     Buffer sampleStarts;
     Buffer sampleAims;
     Buffer sampleWeights;
-    Buffer listed;      // the list of rays: the numbers of their samples
-    Buffer radiance;    // this buffer and the next two are present if paths have several bounces
+    Buffer listed;    // the list of rays: the numbers of their samples
+    Buffer radiance;  // this buffer and the next two are present if paths have several bounces
     Buffer nextListed;
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
@@ -179,7 +179,8 @@ struct NextBuffers {
     std::uint32_t made = 0;
 };
 
-// Returns the bytes of the images and buffers of a frame of that size, without what a device adds to an image. Pure.
+// Returns the bytes of the images and buffers of a frame of that size, without what a device adds to an
+// image. Pure.
 VkDeviceSize frameBytes(const FrameSize& size);
 
 // Whether frames of both sizes have the same images and the same layout of set 1.

@@ -33,15 +33,16 @@ std::uint32_t answerBytes(const TrafficShape& shape) {
 std::uint32_t arrivalBytes(const TrafficShape& shape) {
     const std::uint32_t direction = kWord + kVector;
     return direction + (shape.paths ? kVector + kWord + kPath : 0) +
-           (shape.emissiveLights ? (shape.paths ? 0 : kVector) + static_cast<std::uint32_t>(sizeof(gpu::LobeRay))
-                                 : 0);
+           (shape.emissiveLights
+                ? (shape.paths ? 0 : kVector) + static_cast<std::uint32_t>(sizeof(gpu::LobeRay))
+                : 0);
 }
 
 void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const std::uint32_t lobe = shape.emissiveLights ? sizeof(gpu::LobeRay) : 0;
     rows.push_back({"lighting", Unit::Sample, 0, kStart + lobe + (shape.marchesScreen ? kWeight : 0)});
-    rows.push_back({"lighting", Unit::Sent, 0,
-                    kAim + (shape.marchesScreen ? 0 : kWeight) + (shape.paths ? kPath : 0)});
+    rows.push_back(
+        {"lighting", Unit::Sent, 0, kAim + (shape.marchesScreen ? 0 : kWeight) + (shape.paths ? kPath : 0)});
     if (shape.walks > 0) {
         // The counts tell effects apart no further, so all that is sent is taken for walked.
         rows.push_back({"effect walk", Unit::Sample, kWord, 0});
@@ -49,13 +50,15 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     }
     rows.push_back({"effect rays", Unit::Sample, kWord, 0});
     rows.push_back({"effect rays", Unit::Sent,
-                    (shape.binsRays || shape.marchesScreen ? kAim : 0) + (shape.marchesScreen ? kVector : 0), 0});
+                    (shape.binsRays || shape.marchesScreen ? kAim : 0) + (shape.marchesScreen ? kVector : 0),
+                    0});
     rows.push_back({"effect rays", Unit::Ray, 0, kWord});
 }
 
 void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
-    const std::uint32_t hit = shape.hitRecord == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
-                                                                                  : sizeof(gpu::HitRecord);
+    const std::uint32_t hit = shape.hitRecord == package::HitRecordFormat::Packed
+                                  ? sizeof(gpu::PackedHitRecord)
+                                  : sizeof(gpu::HitRecord);
     const std::uint32_t key = keyBytesOf(shape.bucketCount);
     const std::uint32_t answer = answerBytes(shape);
     if ((shape.strategy & package::kOrderedStrategies) == 0) {
@@ -72,7 +75,8 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     rows.push_back({sorted ? "sorted uber" : "shade miss", Unit::Miss,
                     kWord + kWord + kWord + kVector + (shape.paths ? kVector : 0),
                     shape.paths ? kPixel + kWord : kStart});
-    rows.push_back({sorted ? "sorted uber" : "shade case", Unit::Hit, kWord + hit + arrivalBytes(shape), answer});
+    rows.push_back(
+        {sorted ? "sorted uber" : "shade case", Unit::Hit, kWord + hit + arrivalBytes(shape), answer});
 }
 
 }  // namespace

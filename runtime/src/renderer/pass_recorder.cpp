@@ -152,8 +152,7 @@ void PassRecorder::dispatchPixels(const PassLabel& label, const PassPipeline& pa
                             state_.size.width, rows_, 1);
     } else {
         constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
-        vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile,
-                        (rows_ + kTile - 1) / kTile, 1);
+        vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile, (rows_ + kTile - 1) / kTile, 1);
     }
     endPass();
 }

@@ -108,7 +108,7 @@ private:
 
     // Records the rays of all effects that are on, either together or effect by effect.
     void recordEffects(std::uint32_t withRays, const gpu::FrameConstants& constants) {
-        bool first = true;        // no list of the band has been traced yet
+        bool first = true;         // no list of the band has been traced yet
         std::uint32_t listed = 0;  // effects whose rays are in the list
         for (const EffectName& info : state_.effects) {
             if ((withRays & info.effect) == 0) {

@@ -14,7 +14,8 @@ namespace glint {
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
                                        const RendererOptions& options);
 
-// Returns the rows of a band, or 0 for a frame that is lit as a whole. `wanted` is RendererOptions::bands. Pure.
+// Returns the rows of a band, or 0 for a frame that is lit as a whole. `wanted` is RendererOptions::bands.
+// Pure.
 std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted);
 
 FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options);

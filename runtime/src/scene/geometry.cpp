@@ -1,6 +1,7 @@
 #include "scene/geometry.h"
 
 #include "scene/instance_math.h"
+#include "scene/vertex_format.h"
 
 #include <algorithm>
 #include <map>
@@ -21,15 +22,56 @@ struct AttributeUpload {
     VkDeviceSize offset = 0;
 };
 
-std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<const std::uint32_t> indices,
+// The words of attributes in a compact form. Those of the others are empty.
+struct CompactWords {
+    std::vector<std::uint32_t> normals;
+    std::vector<std::uint32_t> tangents;
+    std::vector<std::uint32_t> texCoords0;
+    std::vector<std::uint32_t> texCoords1;
+    std::vector<std::uint32_t> colors;
+    std::uint32_t forms = 0;
+};
+
+CompactWords compactWords(const PrimitiveView& view) {
+    CompactWords compact;
+    const auto keep = [&](std::optional<std::vector<std::uint32_t>> words, std::uint32_t form,
+                          std::vector<std::uint32_t>& target) {
+        if (words && !words->empty()) {
+            target = std::move(*words);
+            compact.forms |= form;
+        }
+    };
+    const bool deforms = !view.joints.empty() || !view.targets.empty();
+    if (!deforms) {
+        keep(packNormals(view.normals), gpu::kGeometryPackedNormals, compact.normals);
+        keep(packTangents(view.tangents), gpu::kGeometryPackedTangents, compact.tangents);
+    }
+    if (!view.texCoords0.empty()) {
+        keep(packTexCoords(view.texCoords0), gpu::kGeometryPackedTexCoords0, compact.texCoords0);
+    }
+    if (!view.texCoords1.empty()) {
+        keep(packTexCoords(view.texCoords1), gpu::kGeometryPackedTexCoords1, compact.texCoords1);
+    }
+    if (std::optional<PackedColors> colors = packColors(view.colors)) {
+        keep(std::move(colors->words), colors->bits == 8 ? gpu::kGeometryColors8 : gpu::kGeometryColors16,
+             compact.colors);
+    }
+    return compact;
+}
+
+std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, const CompactWords& compact,
+                                          std::span<const std::uint32_t> indices,
                                           std::span<const float> attributes) {
+    const auto either = [](const std::vector<std::uint32_t>& words, const auto& values) {
+        return words.empty() ? bytesOf(values) : bytesOf(std::span(words));
+    };
     return {{bytesOf(indices), &GpuPrimitive::indices},
             {bytesOf(view.positions), &GpuPrimitive::positions},
-            {bytesOf(view.normals), &GpuPrimitive::normals},
-            {bytesOf(view.tangents), &GpuPrimitive::tangents},
-            {bytesOf(view.texCoords0), &GpuPrimitive::texCoords0},
-            {bytesOf(view.texCoords1), &GpuPrimitive::texCoords1},
-            {bytesOf(view.colors), &GpuPrimitive::colors},
+            {either(compact.normals, view.normals), &GpuPrimitive::normals},
+            {either(compact.tangents, view.tangents), &GpuPrimitive::tangents},
+            {either(compact.texCoords0, view.texCoords0), &GpuPrimitive::texCoords0},
+            {either(compact.texCoords1, view.texCoords1), &GpuPrimitive::texCoords1},
+            {either(compact.colors, view.colors), &GpuPrimitive::colors},
             {bytesOf(attributes), &GpuPrimitive::attributes}};
 }
 
@@ -37,14 +79,16 @@ std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, std::span<c
 
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                      const PrimitiveView& view, std::span<const std::uint32_t> indices,
-                                     std::span<const float> declared) {
+                                     std::span<const float> declared, VertexForm form) {
     GpuPrimitive primitive;
     primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
     primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
     if (primitive.triangleCount == 0) {
         return primitive;
     }
-    std::vector<AttributeUpload> attributes = attributesOf(view, indices, declared);
+    const CompactWords compact = form == VertexForm::Compact ? compactWords(view) : CompactWords{};
+    primitive.forms = compact.forms;
+    std::vector<AttributeUpload> attributes = attributesOf(view, compact, indices, declared);
     VkDeviceSize bytes = 0;
     for (AttributeUpload& attribute : attributes) {
         attribute.offset = bytes;
@@ -83,7 +127,7 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
     record.featureLobes = entry.featureLobes;
     record.featureInputs = entry.featureInputs;
     record.instanceIndex = instance;
-    record.flags = entry.geometryFlags;
+    record.flags = entry.geometryFlags | primitive.forms;
     record.indices = primitive.indices + firstTriangle * kTriangleIndexBytes;
     record.positions = primitive.positions;
     record.normals = primitive.normals;
@@ -184,6 +228,7 @@ void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, st
         record.positions = found->second.positions;
         record.normals = found->second.normals;
         record.tangents = found->second.tangents;
+        record.flags &= ~(gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
     }
 }
 
@@ -225,7 +270,7 @@ std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader, const Package& package,
                                                    const PackageScene& known,
-                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const PrimitiveView> primitives, VertexForm form,
                                                    std::span<const std::vector<std::uint32_t>> ordered) {
     std::vector<GpuPrimitive> uploaded;
     uploaded.reserve(primitives.size());
@@ -234,7 +279,8 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
         const std::span<const std::uint32_t> indices = ordered.empty() ? view.indices : std::span(ordered[i]);
         const std::vector<float> attributes =
             joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
-        Result<GpuPrimitive> primitive = uploadPrimitive(context, pool, uploader, view, indices, attributes);
+        Result<GpuPrimitive> primitive =
+            uploadPrimitive(context, pool, uploader, view, indices, attributes, form);
         if (!primitive) {
             return primitive.error();
         }

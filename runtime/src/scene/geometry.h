@@ -32,6 +32,7 @@ struct GpuPrimitive {
     VkDeviceAddress attributes = 0;  // of packs, as AttributeEntry describes
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
+    std::uint32_t forms = 0;  // kGeometryPacked* and kGeometryColors*: which attributes are in a compact form
 };
 
 // Returns the values of the package's attributes vertex by vertex; none if the primitive's key reads none.
@@ -43,17 +44,18 @@ std::vector<float> joinAttributes(const Package& package, const package::Primiti
 std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
 
 // Queues the copies in `uploader`. `declared` are the joined attributes. A primitive without triangles gets
-// no buffer.
+// no buffer. With the compact form an attribute gets one that keeps its values nearly
+// (scene/vertex_format.h), if there is one; what joints and morph targets change stays as it is.
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                      const PrimitiveView& view, std::span<const std::uint32_t> indices,
-                                     std::span<const float> declared);
+                                     std::span<const float> declared, VertexForm form);
 
 // Queues the copies in `uploader`. Primitives without triangles get no buffer. `ordered` holds the indices of
 // each primitive in another order of its triangles; if it is empty, the primitives' own indices are used.
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader, const Package& package,
                                                    const PackageScene& known,
-                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const PrimitiveView> primitives, VertexForm form,
                                                    std::span<const std::vector<std::uint32_t>> ordered = {});
 
 // Makes the record of a geometry: triangles of `primitive` from `firstTriangle` on.

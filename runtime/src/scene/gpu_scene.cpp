@@ -77,8 +77,8 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         ordered = orderedTriangles(scene.primitives, capacity, leafOrder);
         state.statistics.orderMs = millisecondsSince(begin);
     }
-    Result<std::vector<GpuPrimitive>> primitives =
-        uploadPrimitives(state.context, state.pool, **uploader, package, known, scene.primitives, ordered);
+    Result<std::vector<GpuPrimitive>> primitives = uploadPrimitives(
+        state.context, state.pool, **uploader, package, known, scene.primitives, scene.vertices, ordered);
     if (!primitives) {
         return primitives.error();
     }

@@ -35,7 +35,9 @@ compiler::Configuration usual() {
             {"position-fetch", "off"},
             {"ordering", "auto"},
             {"binning", "none"},
-            {"batch-effects", "off"}};
+            {"batch-effects", "off"},
+            {"bands", "0"},
+            {"vertices", "compact"}};
 }
 
 compiler::BenchFacts rich() {

@@ -208,13 +208,12 @@ constexpr MemberLayout kPushConstants[] = {
 };
 
 constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord),  GLINT_STRUCT(InstanceRecord), GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(LightNode),       GLINT_STRUCT(LightRecord),    GLINT_STRUCT(SampleStart),
-    GLINT_STRUCT(SampleAim),       GLINT_STRUCT(SampleWeight),
-    GLINT_STRUCT(RayRecord),       GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),
-    GLINT_STRUCT(PackedHitRecord), GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments),
-    GLINT_STRUCT(FrameConstants),  GLINT_STRUCT(PushConstants),  GLINT_STRUCT(EmitterRecord),
-    GLINT_STRUCT(LobeRay),
+    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
+    GLINT_STRUCT(LightNode),      GLINT_STRUCT(LightRecord),       GLINT_STRUCT(SampleStart),
+    GLINT_STRUCT(SampleAim),      GLINT_STRUCT(SampleWeight),      GLINT_STRUCT(RayRecord),
+    GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord),
+    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),
+    GLINT_STRUCT(PushConstants),  GLINT_STRUCT(EmitterRecord),     GLINT_STRUCT(LobeRay),
 };
 
 constexpr MemberLayout kDeformRecord[] = {

@@ -60,7 +60,8 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
     evaluator->package_ = std::make_unique<Package>(std::move(*package));
 
     observer.progress("making the pipeline");
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    data.vertices = VertexForm::Full;  // frames of surfaces are compared exactly
     Result<std::unique_ptr<GpuScene>> uploaded =
         GpuScene::upload(*evaluator->context_, *evaluator->package_, data.view());
     if (!uploaded) {
