@@ -43,7 +43,7 @@ double bytesOfPixel(double bytes, const TrafficCounts& counts) {
 
 template <typename Visit>
 void forEachStrategy(const Package& package, const Visit& visit) {
-    for (const package::StrategyInfo& info : package::kStrategyTable) {
+    for (const package::StrategyInfo& info : package::strategyTable()) {
         if (package.supports(info.strategy)) {
             visit(info);
         }

@@ -6,6 +6,7 @@
 
 #include <glint/names.h>
 #include <glint/package_format.h>
+#include <glint/strategies.h>
 
 #include <cstdint>
 #include <iterator>

@@ -4,6 +4,7 @@
 #include <glint/frame_traffic.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
+#include <glint/strategies.h>
 
 #include <algorithm>
 #include <bit>
@@ -61,22 +62,41 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
                                   : sizeof(gpu::HitRecord);
     const std::uint32_t key = keyBytesOf(shape.bucketCount);
     const std::uint32_t answer = answerBytes(shape);
-    if ((shape.strategy & package::kOrderedStrategies) == 0) {
-        const bool uber = shape.strategy == package::kStrategyUber;
-        rows.push_back({uber ? "uber" : "hit shaders", Unit::Ray,
-                        kRay + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0), answer});
-        return;
+    const package::StrategyInfo& strategy = package::infoOf(shape.strategy);
+    if (strategy.ordersHits) {
+        rows.push_back({"trace", Unit::Ray, kRay + (shape.paths ? kWord : 0), hit + key});
+        rows.push_back({"count", Unit::Ray, key, 0});
+        rows.push_back({"copy", Unit::Ray, key, kWord});
     }
-    const bool sorted = shape.strategy == package::kStrategySortedUber;
-    rows.push_back({"trace", Unit::Ray, kRay + (shape.paths ? kWord : 0), hit + key});
-    rows.push_back({"count", Unit::Ray, key, 0});
-    rows.push_back({"copy", Unit::Ray, key, kWord});
     // A miss needs of its record only that it is one.
-    rows.push_back({sorted ? "sorted uber" : "shade miss", Unit::Miss,
-                    kWord + kWord + kWord + kVector + (shape.paths ? kVector : 0),
-                    shape.paths ? kPixel + kWord : kStart});
-    rows.push_back(
-        {sorted ? "sorted uber" : "shade case", Unit::Hit, kWord + hit + arrivalBytes(shape), answer});
+    const TrafficRow miss{"", Unit::Miss, 3 * kWord + kVector + (shape.paths ? kVector : 0),
+                          shape.paths ? kPixel + kWord : kStart};
+    const TrafficRow shaded{"", Unit::Hit, kWord + hit + arrivalBytes(shape), answer};
+    const TrafficRow traced{
+        "", Unit::Ray, kRay + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0), answer};
+    const auto add = [&](std::string_view pass, TrafficRow row) {
+        row.pass = pass;
+        rows.push_back(row);
+    };
+    for (const package::StrategyModule& module : strategy.modules) {
+        switch (module.over) {
+            case package::Over::Nothing:
+                break;
+            case package::Over::Rays:
+                add(module.pass, traced);
+                break;
+            case package::Over::OrderedHits:
+                add(module.pass, miss);
+                add(module.pass, shaded);
+                break;
+            case package::Over::Misses:
+                add(module.pass, miss);
+                break;
+            case package::Over::Buckets:
+                add(module.pass, shaded);
+                break;
+        }
+    }
 }
 
 }  // namespace

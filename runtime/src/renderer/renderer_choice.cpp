@@ -153,7 +153,7 @@ std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, 
     std::uint64_t bands = wanted;
     if (wanted == 0) {
         bands = (std::uint64_t{size.width} * size.height + kPixelsOfBand - 1) / kPixelsOfBand;
-        if (strategy == package::kStrategyVisibility) {
+        if (package::infoOf(strategy).dispatchesCases) {
             bands = std::min<std::uint64_t>(bands, std::max(kCasesOfBands / size.bucketCount, 1U));
         }
     }

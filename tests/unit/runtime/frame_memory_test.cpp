@@ -26,8 +26,8 @@ FrameSize realTimeFrame(package::Strategy strategy, std::uint32_t effects, std::
     size.batchCount = 1;
     size.effects.rays = (1U << effects) - 1U;
     size.effects.screenStarts = 1;
-    size.ordered = (strategy & package::kOrderedStrategies) != 0;
-    size.bucketAlignment = strategy == package::kStrategySortedUber ? gpu::kRayGroupSize : 1;
+    size.ordered = package::infoOf(strategy).ordersHits;
+    size.bucketAlignment = package::infoOf(strategy).fillsWorkgroups ? gpu::kRayGroupSize : 1;
     size.keyBytes = keyBytesOf(kBuckets);
     size.accumulates = false;
     size.bandRows = chooseBandRows(size, strategy, bands);
@@ -39,14 +39,14 @@ double bytesOfPixel(const FrameSize& size) {
 }
 
 TEST(FrameMemory, IsAtMost64BytesAPixelForOneEffectWithRays) {
-    for (const package::Strategy strategy : package::kStrategies) {
-        EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 1, 0)), 64.0) << nameOf(strategy);
+    for (const package::Strategy strategy : package::strategies()) {
+        EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 1, 0)), 64.0) << package::infoOf(strategy).name;
     }
 }
 
 TEST(FrameMemory, IsAtMost96BytesAPixelForThree) {
-    for (const package::Strategy strategy : package::kStrategies) {
-        EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 3, 0)), 96.0) << nameOf(strategy);
+    for (const package::Strategy strategy : package::strategies()) {
+        EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 3, 0)), 96.0) << package::infoOf(strategy).name;
     }
 }
 
