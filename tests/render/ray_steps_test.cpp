@@ -67,8 +67,13 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     const auto rays = readRays(**renderer, (*renderer)->counters()->rays);
     const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
     EXPECT_TRUE(rays && radiance);
-    known.rays.resize(rays->size());
-    std::memcpy(known.rays.data(), rays->data(), rays->size() * sizeof(EngineRay));
+    for (const gpu::RayRecord& ray : *rays) {
+        known.rays.push_back({{ray.origin.x, ray.origin.y, ray.origin.z},
+                              ray.target,
+                              {ray.direction.x, ray.direction.y, ray.direction.z},
+                              ray.coneWidth,
+                              ray.coneSpread});
+    }
     // Samples without a ray have no radiance.
     const auto answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
     known.answers.resize(answers.size());
