@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_package glint_runtime)
 if(GLINT_BUILD_COMPILER)
-  # glint_base, glint_image and glint_synthetic are what the others link; they are no interface of their own.
+  # glint_base, glint_image and glint_synthetic, as glint_package, are what the others link; they are no interface of their own.
   list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_synthetic glint_scene_view
        glint_measure glint)
 endif()

@@ -86,6 +86,19 @@ Status CommandRunner::submitAndWait() {
     return okStatus();
 }
 
+Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record) {
+    Result<CommandRunner> runner = CommandRunner::create(context);
+    if (!runner) {
+        return runner.error();
+    }
+    const Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    const Status recorded = record(*commands);
+    return recorded ? runner->submitAndWait() : recorded;
+}
+
 void recordDependency(const Context::State& context, VkCommandBuffer commands,
                       const MemoryDependency& dependency) {
     VkMemoryBarrier2 barrier{};

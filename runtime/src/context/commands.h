@@ -4,6 +4,7 @@
 #include "context/device_handle.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace glint {
 
@@ -24,6 +25,9 @@ private:
     UniqueFence fence_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
 };
+
+// Calls record(commands) for a command buffer of its own, which it submits and waits for.
+Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record);
 
 // A dependency that covers all memory.
 struct MemoryDependency {

@@ -160,18 +160,8 @@ Status addMeshes(SceneEditor::State& state, const PackageScene& known, const Sce
 }
 
 Status recordUpload(SceneEditor::State& state) {
-    Result<CommandRunner> runner = CommandRunner::create(state.scene.context);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    if (Status status = recordEdits(state, *commands, 0); !status) {
-        return status;
-    }
-    if (Status status = runner->submitAndWait(); !status) {
+    const auto record = [&](VkCommandBuffer commands) { return recordEdits(state, commands, 0); };
+    if (Status status = runOnce(state.scene.context, record); !status) {
         return status;
     }
     state.retired.complete(0);

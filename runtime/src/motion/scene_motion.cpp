@@ -103,16 +103,11 @@ Status buildAll(GpuScene::State& state, const SceneView& scene) {
     decisions.tlas = BuildAction::Build;
     motion.tlasHistory.apply(decisions.tlas, boxes);
     stage(state, scene.instances, scene.lights);
-    Result<CommandRunner> runner = CommandRunner::create(state.context);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    recordAll(state, *commands, decisions);
-    if (Status s = runner->submitAndWait(); !s) {
+    const auto record = [&](VkCommandBuffer commands) {
+        recordAll(state, commands, decisions);
+        return okStatus();
+    };
+    if (Status s = runOnce(state.context, record); !s) {
         return s;
     }
     if (motion.timer.available()) {

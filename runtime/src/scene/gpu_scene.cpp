@@ -156,19 +156,13 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
 
 // Computes the vertices of the scene's first pose, before structures are built from them.
 Status deformOnce(Context::State& context, const Deformer& deformer, std::size_t instances) {
-    Result<CommandRunner> runner = CommandRunner::create(context);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    deformer.recordPose(*commands);
-    recordDependency(context, *commands, kAllToAll);
-    deformer.recordDeform(*commands, std::vector<bool>(instances, true));
-    recordDependency(context, *commands, kAllToAll);
-    return runner->submitAndWait();
+    return runOnce(context, [&](VkCommandBuffer commands) {
+        deformer.recordPose(commands);
+        recordDependency(context, commands, kAllToAll);
+        deformer.recordDeform(commands, std::vector<bool>(instances, true));
+        recordDependency(context, commands, kAllToAll);
+        return okStatus();
+    });
 }
 
 BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, const SceneView& scene,
@@ -357,18 +351,7 @@ Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion) {
 }
 
 Status GpuScene::updateAndWait(const MotionView& motion) {
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    if (Status s = update(*commands, motion); !s) {
-        return s;
-    }
-    return runner->submitAndWait();
+    return runOnce(state_->context, [&](VkCommandBuffer commands) { return update(commands, motion); });
 }
 
 Result<MotionStatistics> GpuScene::motion() const {

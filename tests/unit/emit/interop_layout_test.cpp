@@ -2,15 +2,20 @@
 
 #include "emit/material_layout.h"
 #include "emit/package/interop_layouts.h"
+#include "emit/sources.h"
 #include "spirv/reader.h"
 #include "unit/emit/sample_scene.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <interop/frame.h>
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -69,7 +74,7 @@ std::map<std::uint32_t, ReflectedStruct> reflect(const std::vector<std::uint32_t
 
 void expectEqual(const compiler::StructLayout& layout, const ReflectedStruct& reflected,
                  const std::string& module) {
-    SCOPED_TRACE(module + ", " + std::string(layout.name));
+    SCOPED_TRACE(module + ", " + layout.name);
     ASSERT_EQ(reflected.memberCount, layout.members.size());
     for (std::uint32_t i = 0; i < reflected.memberCount; ++i) {
         ASSERT_TRUE(reflected.memberNames.contains(i));
@@ -82,10 +87,27 @@ void expectEqual(const compiler::StructLayout& layout, const ReflectedStruct& re
     }
 }
 
+enum class Of { Frame, Deform, Surface };
+
+// Returns the layouts of interop/deform.h, of the answer of hosts' rays, or all others.
+std::vector<compiler::StructLayout> layoutsOf(Of of) {
+    const Result<std::string> declarations = compiler::interopDeclarations();
+    EXPECT_TRUE(declarations);
+    Result<std::vector<compiler::StructLayout>> layouts = compiler::interopLayouts(*declarations);
+    EXPECT_TRUE(layouts);
+    std::erase_if(*layouts, [&](const compiler::StructLayout& layout) {
+        const Of its = layout.name.starts_with("Deform") ? Of::Deform
+                       : layout.name == "SurfaceRecord"  ? Of::Surface
+                                                         : Of::Frame;
+        return its != of;
+    });
+    return *layouts;
+}
+
 // Compares the layouts in every module that has them; each must occur in at least one.
 void expectInModules(const compiler::CompiledPackage& package,
                      std::span<const compiler::StructLayout> layouts) {
-    std::set<std::string_view> seen;
+    std::set<std::string> seen;
     for (const compiler::CompiledModule& module : package.modules) {
         const auto structs = reflect(module.spirv);
         for (const compiler::StructLayout& layout : layouts) {
@@ -103,11 +125,35 @@ void expectInModules(const compiler::CompiledPackage& package,
     }
 }
 
-TEST(InteropLayout, IsTheSameInSpirvAndCpp) {
+TEST(InteropLayout, IsThatOfCpp) {
+    const std::vector<compiler::StructLayout> layouts = layoutsOf(Of::Frame);
+    const auto find = [&](const char* name) {
+        return *std::ranges::find(layouts, name, &compiler::StructLayout::name);
+    };
+    EXPECT_EQ(layouts.size(), 16U);
+    const compiler::StructLayout frame = find("FrameConstants");
+    EXPECT_EQ(frame.bytes, sizeof(gpu::FrameConstants));
+    EXPECT_EQ(frame.members.front().name, "worldToClip");
+    EXPECT_EQ(frame.members.back().name, "emitterCount");
+    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, emitterCount));
+    EXPECT_EQ(find("InstanceRecord").members.back().offset, offsetof(gpu::InstanceRecord, flags));
+    EXPECT_EQ(find("GeometryRecord").bytes, sizeof(gpu::GeometryRecord));
+    EXPECT_EQ(find("PushConstants").bytes, sizeof(gpu::PushConstants));
+}
+
+TEST(InteropLayout, HasNoOtherTypes) {
+    const Result<std::vector<compiler::StructLayout>> layouts =
+        compiler::interopLayouts("struct A {\n    uint a;  // ok\n    double b;\n};\n");
+    ASSERT_FALSE(layouts);
+    EXPECT_EQ(layouts.error().id, "internal");
+    EXPECT_FALSE(compiler::interopLayouts("struct A {\n    uint a;\n"));
+}
+
+TEST(InteropLayout, IsTheSameInSpirv) {
     compiler::CompileSettings settings;
     settings.debugInfo = true;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-    expectInModules(compileSample(settings), compiler::interopLayouts());
+    expectInModules(compileSample(settings), layoutsOf(Of::Frame));
 }
 
 // The record of a material is declared, so its layout is made and not compiled.
@@ -135,7 +181,17 @@ TEST(InteropLayout, OfThePassThatDeformsLikewise) {
     settings.debugInfo = true;
     const Result<compiler::CompiledPackage> package = compilePackage(scene, settings);
     ASSERT_TRUE(package) << toString(package.error());
-    expectInModules(*package, compiler::deformLayouts());
+    expectInModules(*package, layoutsOf(Of::Deform));
+}
+
+TEST(InteropLayout, OfTheAnswerOfHostsRays) {
+    compiler::CompileSettings settings;
+    settings.debugInfo = true;
+    settings.strategies = package::kStrategyUber;
+    settings.passes = package::Passes::Steps;
+    settings.answer = package::HitAnswer::Surface;
+    settings.effects = {};
+    expectInModules(compileSample(settings), layoutsOf(Of::Surface));
 }
 
 }  // namespace

@@ -105,18 +105,18 @@ mustache::data materialMembers(const MaterialLayout& layout) {
     return members;
 }
 
-mustache::data layoutList() {
+mustache::data layoutList(const std::vector<StructLayout>& layouts) {
     mustache::data list(mustache::data::type::list);
-    for (const StructLayout& layout : interopLayouts()) {
+    for (const StructLayout& layout : layouts) {
         mustache::data members(mustache::data::type::list);
         for (const MemberLayout& member : layout.members) {
             mustache::data entry;
-            entry.set("member", std::string(member.name));
+            entry.set("member", member.name);
             entry.set("offset", fmt::format("{}", member.offset));
             members.push_back(entry);
         }
         mustache::data entry;
-        entry.set("struct", std::string(layout.name));
+        entry.set("struct", layout.name);
         entry.set("bytes", fmt::format("{}", layout.bytes));
         entry.set("members", members);
         list.push_back(entry);
@@ -144,6 +144,10 @@ Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, 
     if (!interop) {
         return interop.error();
     }
+    const Result<std::vector<StructLayout>> layouts = interopLayouts(*interop);
+    if (!layouts) {
+        return layouts.error();
+    }
     mustache::data context = makeContext(scenes, plan, options);
     context.set("namespace", headerNamespace(scenes.scenes().front().path));
     const MaterialLayout layout = materialLayoutOf(plan);
@@ -155,7 +159,7 @@ Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, 
     context.set("caseMasks", caseMasks(plan));
     context.set("sceneCount", fmt::format("{}", scenes.scenes().size()));
     context.set("scenes", sceneTables(scenes));
-    context.set("layouts", layoutList());
+    context.set("layouts", layoutList(*layouts));
     context.set("materialBytes", fmt::format("{}", layout.bytes));
     context.set("materialMembers", materialMembers(layout));
     return renderTemplate(sources, "glint_tables.h.mustache", context);

@@ -1,252 +1,100 @@
 #include "emit/package/interop_layouts.h"
 
-#include <cstddef>
-#include <interop/deform.h>
-#include <interop/frame.h>
-#include <interop/scene.h>
+#include <fmt/format.h>
 
-// A row of a table of members. If a member is missing here, the test against SPIR-V finds it.
-#define GLINT_MEMBER(type, name) \
-    { #name, static_cast < std::uint32_t>(offsetof(gpu::type, name)) }
-#define GLINT_STRUCT(type) \
-    { #type, static_cast < std::uint32_t>(sizeof(gpu::type)), k##type }
+#include <algorithm>
+#include <charconv>
+#include <iterator>
 
 namespace glint::compiler {
 
 namespace {
 
-constexpr MemberLayout kGeometryRecord[] = {
-    GLINT_MEMBER(GeometryRecord, shaderId),      GLINT_MEMBER(GeometryRecord, materialIndex),
-    GLINT_MEMBER(GeometryRecord, featureLobes),  GLINT_MEMBER(GeometryRecord, featureInputs),
-    GLINT_MEMBER(GeometryRecord, instanceIndex), GLINT_MEMBER(GeometryRecord, flags),
-    GLINT_MEMBER(GeometryRecord, indices),       GLINT_MEMBER(GeometryRecord, positions),
-    GLINT_MEMBER(GeometryRecord, normals),       GLINT_MEMBER(GeometryRecord, tangents),
-    GLINT_MEMBER(GeometryRecord, texCoords0),    GLINT_MEMBER(GeometryRecord, texCoords1),
-    GLINT_MEMBER(GeometryRecord, colors),        GLINT_MEMBER(GeometryRecord, attributes),
+struct TypeSize {
+    std::string_view name;
+    std::uint32_t bytes;
+    std::uint32_t alignment;
 };
 
-constexpr MemberLayout kInstanceRecord[] = {
-    GLINT_MEMBER(InstanceRecord, objectToWorld),
-    GLINT_MEMBER(InstanceRecord, normalToWorld),
-    GLINT_MEMBER(InstanceRecord, flags),
-};
+constexpr TypeSize kTypes[] = {{"uint", 4, 4},  {"float", 4, 4}, {"vec2", 8, 4},
+                               {"vec3", 12, 4}, {"vec4", 16, 4}, {"uvec2", 8, 4}};
+constexpr TypeSize kAddress{"GLINT_ADDRESS(", 8, 8};
 
-constexpr MemberLayout kTextureRecord[] = {
-    GLINT_MEMBER(TextureRecord, textureIndex), GLINT_MEMBER(TextureRecord, samplerIndex),
-    GLINT_MEMBER(TextureRecord, texCoord),     GLINT_MEMBER(TextureRecord, rowU),
-    GLINT_MEMBER(TextureRecord, rowV),         GLINT_MEMBER(TextureRecord, texels),
-    GLINT_MEMBER(TextureRecord, anisotropy),
-};
+const TypeSize* findType(std::string_view name) {
+    const auto* const found = std::ranges::find(kTypes, name, &TypeSize::name);
+    return name.starts_with(kAddress.name) ? &kAddress : found == std::end(kTypes) ? nullptr : found;
+}
 
-constexpr MemberLayout kLightRecord[] = {
-    GLINT_MEMBER(LightRecord, position),   GLINT_MEMBER(LightRecord, type),
-    GLINT_MEMBER(LightRecord, direction),  GLINT_MEMBER(LightRecord, range),
-    GLINT_MEMBER(LightRecord, intensity),  GLINT_MEMBER(LightRecord, spotScale),
-    GLINT_MEMBER(LightRecord, spotOffset), GLINT_MEMBER(LightRecord, size),
-};
+constexpr std::uint32_t alignedTo(std::uint32_t value, std::uint32_t alignment) {
+    return (value + alignment - 1) / alignment * alignment;
+}
 
-constexpr MemberLayout kSampleStart[] = {
-    GLINT_MEMBER(SampleStart, origin_orRadiance),
-    GLINT_MEMBER(SampleStart, state),
-};
+// Cuts the first line off `text`, and returns it without its comment and the blanks around it.
+std::string_view takeLine(std::string_view& text) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    line = line.substr(0, line.find("//"));
+    const std::size_t first = std::min(line.find_first_not_of(' '), line.size());
+    line.remove_prefix(first);
+    return line.substr(0, line.find_last_not_of(' ') + 1);
+}
 
-constexpr MemberLayout kSampleAim[] = {
-    GLINT_MEMBER(SampleAim, direction),
-    GLINT_MEMBER(SampleAim, coneWidth),
-};
-
-constexpr MemberLayout kSampleWeight[] = {
-    GLINT_MEMBER(SampleWeight, weight),
-    GLINT_MEMBER(SampleWeight, coneSpread),
-};
-
-constexpr MemberLayout kRayRecord[] = {
-    GLINT_MEMBER(RayRecord, origin),     GLINT_MEMBER(RayRecord, target),
-    GLINT_MEMBER(RayRecord, direction),  GLINT_MEMBER(RayRecord, coneWidth),
-    GLINT_MEMBER(RayRecord, coneSpread),
-};
-
-constexpr MemberLayout kPathState[] = {
-    GLINT_MEMBER(PathState, throughput),
-    GLINT_MEMBER(PathState, medium),
-};
-
-constexpr MemberLayout kHitRecord[] = {
-    GLINT_MEMBER(HitRecord, geometry),     GLINT_MEMBER(HitRecord, primitive),
-    GLINT_MEMBER(HitRecord, barycentricU), GLINT_MEMBER(HitRecord, barycentricV),
-    GLINT_MEMBER(HitRecord, coneWidth),
-};
-
-constexpr MemberLayout kPackedHitRecord[] = {
-    GLINT_MEMBER(PackedHitRecord, geometry24_coneLog8),
-    GLINT_MEMBER(PackedHitRecord, primitive),
-    GLINT_MEMBER(PackedHitRecord, barycentrics2x16),
-};
-
-constexpr MemberLayout kShadowRecord[] = {
-    GLINT_MEMBER(ShadowRecord, origin),    GLINT_MEMBER(ShadowRecord, target),
-    GLINT_MEMBER(ShadowRecord, direction), GLINT_MEMBER(ShadowRecord, distance),
-    GLINT_MEMBER(ShadowRecord, light),     GLINT_MEMBER(ShadowRecord, sees),
-};
-
-constexpr MemberLayout kDispatchArguments[] = {
-    GLINT_MEMBER(DispatchArguments, x),          GLINT_MEMBER(DispatchArguments, y),
-    GLINT_MEMBER(DispatchArguments, z),          GLINT_MEMBER(DispatchArguments, elementCount),
-    GLINT_MEMBER(DispatchArguments, traceWidth), GLINT_MEMBER(DispatchArguments, traceHeight),
-    GLINT_MEMBER(DispatchArguments, traceDepth), GLINT_MEMBER(DispatchArguments, pad),
-};
-
-constexpr MemberLayout kFrameConstants[] = {
-    GLINT_MEMBER(FrameConstants, worldToClip),
-    GLINT_MEMBER(FrameConstants, cameraPosition),
-    GLINT_MEMBER(FrameConstants, width),
-    GLINT_MEMBER(FrameConstants, cameraForward),
-    GLINT_MEMBER(FrameConstants, height),
-    GLINT_MEMBER(FrameConstants, cameraRight),
-    GLINT_MEMBER(FrameConstants, orthographic),
-    GLINT_MEMBER(FrameConstants, cameraUp),
-    GLINT_MEMBER(FrameConstants, pixelSpread),
-    GLINT_MEMBER(FrameConstants, jitter),
-    GLINT_MEMBER(FrameConstants, pixelWidth),
-    GLINT_MEMBER(FrameConstants, sampleLodBias),
-    GLINT_MEMBER(FrameConstants, sampleIndex),
-    GLINT_MEMBER(FrameConstants, seed),
-    GLINT_MEMBER(FrameConstants, time),
-    GLINT_MEMBER(FrameConstants, effects),
-    GLINT_MEMBER(FrameConstants, countsLight),
-    GLINT_MEMBER(FrameConstants, lightCount),
-    GLINT_MEMBER(FrameConstants, shadowSamples),
-    GLINT_MEMBER(FrameConstants, occlusionSamples),
-    GLINT_MEMBER(FrameConstants, occlusionRadius),
-    GLINT_MEMBER(FrameConstants, occlusionFalloff),
-    GLINT_MEMBER(FrameConstants, maxInterfaces),
-    GLINT_MEMBER(FrameConstants, bucketCount),
-    GLINT_MEMBER(FrameConstants, bucketAlignment),
-    GLINT_MEMBER(FrameConstants, mirrorRoughness),
-    GLINT_MEMBER(FrameConstants, maxReflectionRoughness),
-    GLINT_MEMBER(FrameConstants, faintWeight),
-    GLINT_MEMBER(FrameConstants, maxSampleRadiance),
-    GLINT_MEMBER(FrameConstants, binning),
-    GLINT_MEMBER(FrameConstants, screenSteps),
-    GLINT_MEMBER(FrameConstants, screenThickness),
-    GLINT_MEMBER(FrameConstants, skyZenith),
-    GLINT_MEMBER(FrameConstants, skyHorizon),
-    GLINT_MEMBER(FrameConstants, skyGround),
-    GLINT_MEMBER(FrameConstants, skyHarmonics),
-    GLINT_MEMBER(FrameConstants, environmentLevels),
-    GLINT_MEMBER(FrameConstants, environmentTurn),
-    GLINT_MEMBER(FrameConstants, environmentScale),
-    GLINT_MEMBER(FrameConstants, geometries),
-    GLINT_MEMBER(FrameConstants, instances),
-    GLINT_MEMBER(FrameConstants, materials),
-    GLINT_MEMBER(FrameConstants, lights),
-    GLINT_MEMBER(FrameConstants, lightNodes),
-    GLINT_MEMBER(FrameConstants, sampleStarts),
-    GLINT_MEMBER(FrameConstants, sampleAims),
-    GLINT_MEMBER(FrameConstants, sampleWeights),
-    GLINT_MEMBER(FrameConstants, radiance),
-    GLINT_MEMBER(FrameConstants, rays),
-    GLINT_MEMBER(FrameConstants, listed),
-    GLINT_MEMBER(FrameConstants, hits),
-    GLINT_MEMBER(FrameConstants, packedHits),
-    GLINT_MEMBER(FrameConstants, orderedHits),
-    GLINT_MEMBER(FrameConstants, bucketKeys),
-    GLINT_MEMBER(FrameConstants, bucketCounts),
-    GLINT_MEMBER(FrameConstants, bucketBegins),
-    GLINT_MEMBER(FrameConstants, bucketCursors),
-    GLINT_MEMBER(FrameConstants, visitedHits),
-    GLINT_MEMBER(FrameConstants, rayDispatch),
-    GLINT_MEMBER(FrameConstants, bucketDispatch),
-    GLINT_MEMBER(FrameConstants, shadows),
-    GLINT_MEMBER(FrameConstants, shadowDispatch),
-    GLINT_MEMBER(FrameConstants, counters),
-    GLINT_MEMBER(FrameConstants, surfaces),
-    GLINT_MEMBER(FrameConstants, previousInstances),
-    GLINT_MEMBER(FrameConstants, firstRecords),
-    GLINT_MEMBER(FrameConstants, recordsBy),
-    GLINT_MEMBER(FrameConstants, rayMask),
-    GLINT_MEMBER(FrameConstants, tlasAddress),
-    GLINT_MEMBER(FrameConstants, lightTreeNodes),
-    GLINT_MEMBER(FrameConstants, unboundedLights),
-    GLINT_MEMBER(FrameConstants, nextListed),
-    GLINT_MEMBER(FrameConstants, paths),
-    GLINT_MEMBER(FrameConstants, bounce),
-    GLINT_MEMBER(FrameConstants, lastBounce),
-    GLINT_MEMBER(FrameConstants, emitters),
-    GLINT_MEMBER(FrameConstants, firstEmitters),
-    GLINT_MEMBER(FrameConstants, lobeRays),
-    GLINT_MEMBER(FrameConstants, emitterCount),
-    GLINT_MEMBER(FrameConstants, accumulates),
-    GLINT_MEMBER(FrameConstants, firstRow),
-    GLINT_MEMBER(FrameConstants, endRow),
-    GLINT_MEMBER(FrameConstants, bandFirst),
-    GLINT_MEMBER(FrameConstants, outsideBands),
-};
-
-constexpr MemberLayout kLightNode[] = {
-    GLINT_MEMBER(LightNode, lower),       GLINT_MEMBER(LightNode, intensity),
-    GLINT_MEMBER(LightNode, upper),       GLINT_MEMBER(LightNode, reach),
-    GLINT_MEMBER(LightNode, axis),        GLINT_MEMBER(LightNode, cosAxes),
-    GLINT_MEMBER(LightNode, cosEmission), GLINT_MEMBER(LightNode, next),
-};
-
-constexpr MemberLayout kEmitterRecord[] = {
-    GLINT_MEMBER(EmitterRecord, geometry),
-    GLINT_MEMBER(EmitterRecord, primitive),
-    GLINT_MEMBER(EmitterRecord, leaf),
-};
-
-constexpr MemberLayout kLobeRay[] = {
-    GLINT_MEMBER(LobeRay, density),
-    GLINT_MEMBER(LobeRay, normal),
-};
-
-constexpr MemberLayout kPushConstants[] = {
-    GLINT_MEMBER(PushConstants, frame),          GLINT_MEMBER(PushConstants, tlasIndex),
-    GLINT_MEMBER(PushConstants, bucket),         GLINT_MEMBER(PushConstants, geometry),
-    GLINT_MEMBER(PushConstants, geometryStride),
-};
-
-constexpr StructLayout kStructs[] = {
-    GLINT_STRUCT(GeometryRecord), GLINT_STRUCT(InstanceRecord),    GLINT_STRUCT(TextureRecord),
-    GLINT_STRUCT(LightNode),      GLINT_STRUCT(LightRecord),       GLINT_STRUCT(SampleStart),
-    GLINT_STRUCT(SampleAim),      GLINT_STRUCT(SampleWeight),      GLINT_STRUCT(RayRecord),
-    GLINT_STRUCT(PathState),      GLINT_STRUCT(HitRecord),         GLINT_STRUCT(PackedHitRecord),
-    GLINT_STRUCT(ShadowRecord),   GLINT_STRUCT(DispatchArguments), GLINT_STRUCT(FrameConstants),
-    GLINT_STRUCT(PushConstants),  GLINT_STRUCT(EmitterRecord),     GLINT_STRUCT(LobeRay),
-};
-
-constexpr MemberLayout kDeformRecord[] = {
-    GLINT_MEMBER(DeformRecord, vertexCount),       GLINT_MEMBER(DeformRecord, targetCount),
-    GLINT_MEMBER(DeformRecord, influenceCount),    GLINT_MEMBER(DeformRecord, flags),
-    GLINT_MEMBER(DeformRecord, positions),         GLINT_MEMBER(DeformRecord, normals),
-    GLINT_MEMBER(DeformRecord, tangents),          GLINT_MEMBER(DeformRecord, targetPositions),
-    GLINT_MEMBER(DeformRecord, targetNormals),     GLINT_MEMBER(DeformRecord, targetTangents),
-    GLINT_MEMBER(DeformRecord, targetWeights),     GLINT_MEMBER(DeformRecord, joints),
-    GLINT_MEMBER(DeformRecord, jointWeights),      GLINT_MEMBER(DeformRecord, jointRows),
-    GLINT_MEMBER(DeformRecord, deformedPositions), GLINT_MEMBER(DeformRecord, deformedNormals),
-    GLINT_MEMBER(DeformRecord, deformedTangents),
-};
-
-constexpr MemberLayout kDeformConstants[] = {
-    GLINT_MEMBER(DeformConstants, records),
-    GLINT_MEMBER(DeformConstants, record),
-    GLINT_MEMBER(DeformConstants, pad),
-};
-
-constexpr StructLayout kDeformStructs[] = {
-    GLINT_STRUCT(DeformRecord),
-    GLINT_STRUCT(DeformConstants),
-};
+// Adds the member that a line declares: "vec4 objectToWorld[3];".
+Status addMember(std::string_view line, StructLayout& layout, std::uint32_t& alignment) {
+    const std::size_t blank = line.find(' ');
+    const TypeSize* const type = findType(line.substr(0, blank));
+    if (type == nullptr || blank == std::string_view::npos || !line.ends_with(';')) {
+        return makeError(
+            "internal", "shaders/interop",
+            fmt::format("{} has a member that is no scalar, vector or address: {}", layout.name, line),
+            "use a type of interop/types.h");
+    }
+    std::string_view name = line.substr(blank + 1, line.size() - blank - 2);
+    std::uint32_t count = 1;
+    if (const std::size_t bracket = name.find('['); bracket != std::string_view::npos) {
+        std::from_chars(name.data() + bracket + 1, name.data() + name.size(), count);
+        name = name.substr(0, bracket);
+    }
+    const std::uint32_t offset = alignedTo(layout.bytes, type->alignment);
+    layout.members.push_back({std::string(name), offset});
+    layout.bytes = offset + count * type->bytes;
+    alignment = std::max(alignment, type->alignment);
+    return okStatus();
+}
 
 }  // namespace
 
-std::span<const StructLayout> interopLayouts() {
-    return kStructs;
-}
-
-std::span<const StructLayout> deformLayouts() {
-    return kDeformStructs;
+Result<std::vector<StructLayout>> interopLayouts(std::string_view declarations) {
+    constexpr std::string_view kBegin = "struct ";
+    std::vector<StructLayout> layouts;
+    while (!declarations.empty()) {
+        const std::string_view begin = takeLine(declarations);
+        if (!begin.starts_with(kBegin)) {
+            continue;
+        }
+        StructLayout layout{
+            std::string(begin.substr(kBegin.size(), begin.find(" {") - kBegin.size())), 0, {}};
+        if (findType(layout.name) != nullptr) {
+            continue;  // a vector of GLSL in C++
+        }
+        std::uint32_t alignment = 1;
+        for (std::string_view line = takeLine(declarations); line != "};"; line = takeLine(declarations)) {
+            if (declarations.empty()) {
+                return makeError("internal", "shaders/interop", layout.name + " has no end",
+                                 "end it with };");
+            }
+            if (line.empty()) {
+                continue;
+            }
+            if (Status added = addMember(line, layout, alignment); !added) {
+                return added.error();
+            }
+        }
+        layout.bytes = alignedTo(layout.bytes, alignment);
+        layouts.push_back(std::move(layout));
+    }
+    return layouts;
 }
 
 }  // namespace glint::compiler

@@ -1,27 +1,29 @@
-// Sizes and offsets of the structures that host and device share, as the C++ compiler lays them out.
+// Sizes and offsets of the structures that host and device share, as their declarations give them.
 #pragma once
 
+#include <glint/result.h>
+
 #include <cstdint>
-#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint::compiler {
 
 struct MemberLayout {
-    std::string_view name;
+    std::string name;
     std::uint32_t offset;  // bytes
 };
 
 struct StructLayout {
-    std::string_view name;
+    std::string name;
     std::uint32_t bytes;
-    std::span<const MemberLayout> members;  // all members, in order
+    std::vector<MemberLayout> members;  // all members, in order
 };
 
-// Returns every structure of shaders/interop, except those of deformLayouts(). Static storage.
-std::span<const StructLayout> interopLayouts();
-// Returns the structures of interop/deform.h. The C++ header of a package leaves them out, because only the
-// runtime fills them.
-std::span<const StructLayout> deformLayouts();
+// Lays out every structure of `declarations`, the text of interopDeclarations(), in the `scalar` layout,
+// which is also that of C++. A member is of a type of interop/types.h, or an array of one. Error
+// "interop-type" for other members.
+Result<std::vector<StructLayout>> interopLayouts(std::string_view declarations);
 
 }  // namespace glint::compiler
