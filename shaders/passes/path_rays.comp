@@ -19,6 +19,9 @@ void main() {
         slot = binnedSlot(goesOn, path.direction);
     }
     if (goesOn) {
+        if (GLINT_FRAME.bounceWeight != 1.0) {
+            GLINT_FRAME.paths.data[target].throughput = path.throughput * GLINT_FRAME.bounceWeight;
+        }
         GLINT_FRAME.nextRays.data[slot] =
             RayRecord(path.origin, target, path.direction, path.coneWidth, path.coneSpread);
     }

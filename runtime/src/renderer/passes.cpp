@@ -32,16 +32,37 @@ public:
         passes_.bindSets(sets);
         passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
         passes_.barrier(dependencies().passToPass);
-        bounces_ = bouncesOf(state_.size, frame);
+        bounces_ = bouncesToRecord(frame);
         recordEffects(frame.effects & state_.size.effects.rays, constants);
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
         passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
+        keepDepth();
         passes_.barrier(kCopyToHost);
     }
 
 private:
+    RecordedBounces bouncesToRecord(const FrameOptions& frame) const {
+        const std::uint32_t bounces = bouncesOf(state_.size, frame);
+        if (frame.recordAllBounces) {
+            return {bounces, bounces};
+        }
+        return drawBounces(state_.bounceLevels.certainBounces(bounces), bounces,
+                           bounceBits(frame.sampleIndex, frame.seed));
+    }
+
+    // Copies how deep the paths were for BounceLevels.
+    void keepDepth() {
+        if (!state_.size.paths) {
+            return;
+        }
+        const std::uint64_t recording = state_.recordings + 1;
+        copy(state_.frame.counters, gpu::kCounterDeepest * sizeof(std::uint32_t), sizeof(std::uint32_t),
+             readbackDepth(state_.size, BounceLevels::slotOf(recording)));
+        state_.bounceLevels.recorded(recording, bounces_.count);
+    }
+
     const PassDependencies& dependencies() const {
         return passes_.dependencies();
     }
@@ -102,7 +123,7 @@ private:
                 passes_.barrier(dependencies().passToPass);
             }
             recordHits(listed, 1);
-            for (std::uint32_t bounce = 2; bounce <= bounces_; ++bounce) {
+            for (std::uint32_t bounce = 2; bounce <= bounces_.count; ++bounce) {
                 recordPathRays(constants, bounce);
                 recordHits(listed, bounce);
             }
@@ -143,6 +164,7 @@ private:
         update(offsetof(gpu::FrameConstants, rays), swapped ? constants.nextRays : constants.rays);
         update(offsetof(gpu::FrameConstants, nextRays), swapped ? constants.rays : constants.nextRays);
         update(offsetof(gpu::FrameConstants, bounce), bounce);
+        update(offsetof(gpu::FrameConstants, bounceWeight), weightBehind(bounce, bounces_.certain));
         passes_.barrier(dependencies().clearToPasses);
         passes_.barrier(dependencies().passToPass);
     }
@@ -192,7 +214,7 @@ private:
     const DeviceTable& vk_;
     VkCommandBuffer commands_;
     PassRecorder passes_;
-    std::uint32_t bounces_ = 1;
+    RecordedBounces bounces_;
 };
 
 }  // namespace

@@ -167,6 +167,7 @@ constexpr MemberLayout kFrameConstants[] = {
     GLINT_MEMBER(FrameConstants, nextRays),
     GLINT_MEMBER(FrameConstants, paths),
     GLINT_MEMBER(FrameConstants, bounce),
+    GLINT_MEMBER(FrameConstants, bounceWeight),
     GLINT_MEMBER(FrameConstants, lastBounce),
     GLINT_MEMBER(FrameConstants, emitters),
     GLINT_MEMBER(FrameConstants, firstEmitters),
