@@ -5,8 +5,9 @@
                                       [--reference-spp N] [--seeds N] [--mean-spp N]
 
 The scene is a yard of three walls with a block, under one kind of light: points, a spot and a sun without a size; the
-same with one; a map with a bright window; the gradient sky; emissive quads; emissive quads with a texture. The first
-table has the RMSE against a picture of --reference-spp samples for 2 to 64 samples, five octaves, as the root of the
+same with one; a map with a bright window; the gradient sky; emissive quads; emissive quads with a texture; or lamps of
+a size, textured quads and the sky together. The first table has the RMSE against a picture of --reference-spp samples
+for 2 to 64 samples, five octaves, as the root of the
 mean of its square over --seeds pictures, and the slope of a line through the logarithms: -0.5 is 1/sqrt(N).
 
 The second table has the mean of the picture over --seeds pictures of --mean-spp samples with its standard error: for
@@ -35,6 +36,7 @@ KINDS = {
     "sky": ["--sky", "1"],
     "emissive": ["--sky", "0"],
     "textured": ["--sky", "0"],
+    "mixed": ["--sky", "1", "--light-radius", "0.25", "--sun-angle", "11"],
 }
 
 
@@ -63,7 +65,7 @@ def punctual():
 
 def write_yard(path, kind):
     buffer = Buffer()
-    textured = kind == "textured"
+    textured = kind in ("textured", "mixed")
     materials = [material((0.7, 0.56, 0.42), 0.8, 0), material((0.8, 0.64, 0.48), 0.45, 1),
                  material((0.6, 0.48, 0.36), 1, 0), material((0.5, 0.4, 0.3), 0.7, 0), lamp(6, textured),
                  lamp(20, textured)]
@@ -71,7 +73,7 @@ def write_yard(path, kind):
               quad(buffer, 1, [-3, -1, -4], [6, 0, 0], [0, 2.5, 0]),
               quad(buffer, 2, [-2, -1, -1], [0, 0, -3], [0, 2, 0]),
               quad(buffer, 3, [0.3, -1, -2.5], [0.8, 0, 0.3], [0, 0.9, 0])]
-    if kind in ("emissive", "textured"):
+    if kind in ("emissive", "textured", "mixed"):
         meshes += [quad(buffer, 4, [-0.5, 1.8, -2.5], [1, 0, 0], [0, 0, 1]),
                    quad(buffer, 5, [2.4, -0.5, -1], [0, 0, -0.5], [0.1, 0.5, 0])]
         if textured:
@@ -80,7 +82,7 @@ def write_yard(path, kind):
                 mesh["primitives"][0]["attributes"]["TEXCOORD_0"] = uvs
     nodes = [{"mesh": number} for number in range(len(meshes))] + [{"camera": 0}]
     more = {}
-    if kind in ("points", "sizes"):
+    if kind in ("points", "sizes", "mixed"):
         lights, more["extensions"] = punctual()
         nodes += lights
     if textured:

@@ -66,8 +66,8 @@ for scene in "${scenes[@]}"; do
     [[ $name =~ $only ]] || continue
     if [[ ! -s $out.exr ]]; then
         "$glint" render "$scene" --size "$size" --sky 1 --spp "$device_samples" --texture-lod mip0 --strategy uber \
-            --merge all "${paths[@]}" --quiet -o "$work/rendered.exr"
-        mv "$work/rendered.exr" "$out.exr"
+            --merge all --batch-effects "${paths[@]}" --quiet -o "$out-rendered.exr"
+        mv "$out-rendered.exr" "$out.exr"
     fi
     if [[ ! -s $out.json ]]; then
         "$bin/glint_oracle" "$scene" --size "$size" --bounces "$bounces" --samples "$samples" \
@@ -86,15 +86,16 @@ import sys
 work, size, samples, device_samples, bounces, paths = pathlib.Path(sys.argv[1]), *sys.argv[2:]
 lines = [f"{size} pixels; truth: --bounces {bounces}, {samples} samples; glint render {paths}, "
          f"{device_samples} samples.", "",
-         "| scene | mean of the truth | device over truth | RMSE | of samples alone | relMSE | off by > 1e-3 | why |",
-         "|---|---|---|---|---|---|---|---|"]
+         "| scene | mean of the truth | device over truth | over that which reflects below surfaces | RMSE | of samples "
+         "alone | relMSE | off by > 1e-3 | why |", "|---|---|---|---|---|---|---|---|---|"]
 for name in (work / "names").read_text().split():
     truth = json.loads((work / f"{name}.json").read_text())
     result = truth["difference"]
     assert result["notFinite"] == 0, name
     causes = ", ".join(f"{cause} {values['pixels']}" for cause, values in result["causes"].items())
     lines.append(f"| {name} | {truth['mean']:.4f} ± {truth['standardError'] / result['pixels'] ** 0.5:.0e} | "
-                 f"{result['bias']:+.2%} ± {result['biasError']:.2%} | {result['rmse']:.1e} | "
+                 f"{result['bias']:+.2%} ± {result['biasError']:.2%} | {result['reflectingBias']:+.2%} | "
+                 f"{result['rmse']:.1e} | "
                  f"{result['expectedRmse']:.1e} | {result['relMse']:.1e} | {result['differing']} | {causes} |")
 (work / "table.md").write_text("\n".join(lines) + "\n")
 print("\n".join(lines))

@@ -10,7 +10,7 @@ void main() {
 #if GLINT_PATHS
     // A bounce has many rays if more than one in kFewRays pixels sends one: the host records these in any case, and
     // further ones at random. Twice as much of the light of so few pixels is little noise.
-    const uint kFewRays = 4096u;
+    const uint kFewRays = 1024u;
     if (count > GLINT_FRAME.width * GLINT_FRAME.height / kFewRays) {
         uint deepest = GLINT_FRAME.counters.data[kCounterDeepest];
         GLINT_FRAME.counters.data[kCounterDeepest] = max(deepest, GLINT_FRAME.bounce);
