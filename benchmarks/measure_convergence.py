@@ -74,7 +74,7 @@ def write_yard(path, kind):
               quad(buffer, 2, [-2, -1, -1], [0, 0, -3], [0, 2, 0]),
               quad(buffer, 3, [0.3, -1, -2.5], [0.8, 0, 0.3], [0, 0.9, 0])]
     if kind in ("emissive", "textured", "mixed"):
-        meshes += [quad(buffer, 4, [-0.5, 1.8, -2.5], [1, 0, 0], [0, 0, 1]),
+        meshes += [quad(buffer, 4, [-0.5, 2.2, -1.8], [1, 0, 0], [0, 0, 1]),
                    quad(buffer, 5, [2.4, -0.5, -1], [0, 0, -0.5], [0.1, 0.5, 0])]
         if textured:
             for mesh in meshes[-2:]:

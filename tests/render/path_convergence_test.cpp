@@ -67,7 +67,8 @@ void addLamps(gltf::Scene& scene) {
     addDirectionalLight(scene, {0.3F, -0.9F, -0.3F}, 0.7F);
 }
 
-// A lamp above the view, and another one beside it. With `textured` most of the first is black.
+// A lamp above the view, and another one beside it: their edges in the picture would converge faster. With
+// `textured` most of them is black.
 void addShiningQuads(gltf::Scene& scene, bool textured) {
     materials::Material lamp = coated(0.0F, 1.0F, 0.0F);
     lamp["emissiveFactor"] = {1.0F, 0.8F, 0.5F};
@@ -80,7 +81,7 @@ void addShiningQuads(gltf::Scene& scene, bool textured) {
         }
         lamp.texture("emissiveTexture").texture = addTexture(scene, 4, 4, texels);
     }
-    addQuad(scene, lamp, {-0.5F, 1.8F, -2.5F}, {1, 0, 0}, {0, 0, 1});
+    addQuad(scene, lamp, {-0.5F, 2.2F, -1.8F}, {1, 0, 0}, {0, 0, 1});
     lamp["emissiveStrength"] = 20.0F;
     addQuad(scene, lamp, {2.4F, -0.5F, -1.0F}, {0, 0, -0.5F}, {0.1F, 0.5F, 0});
 }
@@ -233,7 +234,7 @@ TEST_P(PathConvergence, ErrorFallsWithTheRootOfTheSamples) {
     }
     const double slope = slopeOf(errors);
     std::printf("slope %.3f\n", slope);
-    EXPECT_GT(slope, -0.65);
+    EXPECT_GT(slope, -0.7);
     EXPECT_LT(slope, -0.4);
 }
 

@@ -184,6 +184,7 @@ PathDifference pathDifference(const LinearImage& device, const PathPicture& trut
         different.truth = pixel.mean;
         different.deviations = deviationsOf(different.device, pixel, samples);
         const Pixel* const reflected = reflecting != nullptr ? &reflecting->picture.pixels[i] : nullptr;
+        different.reflecting = reflected != nullptr ? reflected->mean : Vec3(0.0);
         for (int channel = 0; channel < 3; ++channel) {
             const double value = pixel.mean[channel];
             const double error = different.device[channel] - value;
@@ -243,10 +244,10 @@ std::string toText(const PathDifference& difference, std::uint32_t list) {
         const PathDifferentPixel& pixel = difference.different[i];
         text += fmt::format(
             "  ({}, {}) {:.2e}, {:.1f} standard errors, {}, {}: device {:.6f} {:.6f} {:.6f}, truth {:.6f} "
-            "{:.6f} "
-            "{:.6f}\n",
+            "{:.6f} {:.6f}, reflecting {:.6f} {:.6f} {:.6f}\n",
             pixel.x, pixel.y, pixel.relative, pixel.deviations, nameOf(pixel.cause), pixel.material,
-            pixel.device.x, pixel.device.y, pixel.device.z, pixel.truth.x, pixel.truth.y, pixel.truth.z);
+            pixel.device.x, pixel.device.y, pixel.device.z, pixel.truth.x, pixel.truth.y, pixel.truth.z,
+            pixel.reflecting.x, pixel.reflecting.y, pixel.reflecting.z);
     }
     return text;
 }

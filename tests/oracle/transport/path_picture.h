@@ -57,6 +57,7 @@ struct PathDifferentPixel {
     double deviations = 0.0;  // of the worst channel, in standard errors
     Vec3 device{0.0};
     Vec3 truth{0.0};
+    Vec3 reflecting{0.0};  // the truth that reflects below surfaces, if there is one
     PathCause cause = PathCause::Other;
     std::string material;
 };
