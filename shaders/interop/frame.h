@@ -201,9 +201,10 @@ GLINT_CONSTANT(kCounterShadowRays, 1u);     // deferred shadow rays in the list
 GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
 GLINT_CONSTANT(kCounterOrderErrors, 3u);    // lost, doubled or misplaced hits, found by the check of the order
 GLINT_CONSTANT(kCounterNonFinite, 4u);      // pixels whose sample was not a number and was taken as black
+GLINT_CONSTANT(kCounterDeepest, 5u);        // the deepest bounce that many rays reach, in packages with paths
 // The counters from here on exist kCounterCopies times and are to be added up: kCountsOfEffect for each effect, in the
 // order of their bits up to the package's last one.
-GLINT_CONSTANT(kCounterEffects, 5u);
+GLINT_CONSTANT(kCounterEffects, 6u);
 GLINT_CONSTANT(kCounterCopies, 64u);
 
 // FrameConstants::binning: the criterion by which rays of a workgroup are sorted before they are appended to the list.
@@ -295,6 +296,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Target) nextListed;  // the list of the next bounce
     GLINT_ADDRESS(Path) paths;         // of every sample, in the order of the samples
     uint bounce;      // of the hits that are being shaded, from 1; 0 on primary surfaces
+    float bounceWeight;  // factor of what the rays bring that hits of this bounce send
     uint lastBounce;  // hits of this bounce send no further ray
     // In packages with emissive lights:
     GLINT_ADDRESS(Emitter) emitters;

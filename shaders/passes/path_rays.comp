@@ -19,6 +19,9 @@ void main() {
         slot = binnedSlot(goesOn, GLINT_FRAME.sampleAims.data[samplePlace(target)].direction);
     }
     if (goesOn) {
+        if (GLINT_FRAME.bounceWeight != 1.0) {
+            GLINT_FRAME.paths.data[samplePlace(target)].throughput *= GLINT_FRAME.bounceWeight;
+        }
         GLINT_FRAME.nextListed.data[slot] = target;
     }
 }

@@ -4,14 +4,19 @@
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
+#include "renderer/bounce_levels.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
+#include <memory>
+#include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -248,6 +253,93 @@ TEST(Paths, AClosedBoxFollowsItsSeries) {
     const double whole = meanOf(loaded.render(pathOptions(package::kMaxBounces), setup));
     std::printf("unlimited: %.5f of %.5f\n", whole, kEmission / (1.0 - kAlbedo));
     EXPECT_NEAR(whole, kEmission / (1.0 - kAlbedo), 0.01 * kEmission / (1.0 - kAlbedo));
+}
+
+std::unique_ptr<Renderer> rendererOf(const LoadedScene& loaded, const RenderSetup& setup) {
+    RendererOptions options = pathOptions(package::kMaxBounces);
+    options.width = setup.width;
+    options.height = setup.height;
+    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    EXPECT_TRUE(renderer.ok());
+    return renderer.ok() ? std::move(*renderer) : nullptr;
+}
+
+// A frame has passes for the bounces that paths of the frames before reached.
+TEST(Paths, BouncesThatNoPathReachesAreNotRecorded) {
+    const gltf::Scene scene = closedBox(0.4F, 0.25F);
+    const LoadedScene loaded(scene, pathSettings(package::kMaxBounces), noLights);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 8, 8, 1);
+    setup.frame.sky = uniformSky(0.0F);
+    const std::unique_ptr<Renderer> renderer = rendererOf(loaded, setup);
+    ASSERT_NE(renderer, nullptr);
+    std::vector<std::size_t> recorded;
+    std::size_t reached = 0;
+    const auto afterSample = [&] {
+        const auto counters = renderer->counters();
+        if (!counters) {
+            return Status(counters.error());
+        }
+        const std::vector<std::uint32_t>& rays = counters->raysOfBounces;
+        recorded.push_back(rays.size());
+        const auto deepest =
+            std::ranges::find_if(rays.rbegin(), rays.rend(), [](auto count) { return count > 0; });
+        reached = std::max<std::size_t>(reached, rays.rend() - deepest);
+        return okStatus();
+    };
+    ASSERT_TRUE(renderer->renderSamples(setup.frame, 12, afterSample).ok());
+    EXPECT_EQ(recorded[0], package::kMaxBounces) << "nothing is known before the first frame";
+    // A draw in sixteen records them all.
+    const std::size_t sum = std::accumulate(recorded.begin() + 1, recorded.end(), std::size_t{0});
+    EXPECT_LT(sum, (recorded.size() - 1) * package::kMaxBounces / 2)
+        << "paths end after " << reached << " bounces";
+    EXPECT_GT(*std::ranges::min_element(recorded), 3U);
+    EXPECT_GT(reached, 3U);
+    recorded.clear();
+    setup.frame.recordAllBounces = true;
+    ASSERT_TRUE(renderer->renderSamples(setup.frame, 2, afterSample).ok());
+    EXPECT_EQ(recorded, std::vector<std::size_t>(2, package::kMaxBounces));
+}
+
+// Frames that know nothing of long paths have their light in the mean. Two seeds stand for each outcome of
+// the draws.
+TEST(Paths, BouncesThatAreLeftOutLoseNoLight) {
+    constexpr float kAlbedo = 0.6F;
+    constexpr float kEmission = 0.25F;
+    const gltf::Scene scene = closedBox(kAlbedo, kEmission);
+    const LoadedScene loaded(scene, pathSettings(package::kMaxBounces), noLights);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 8, 8, 1);
+    setup.frame.sky = uniformSky(0.0F);
+    const std::unique_ptr<Renderer> renderer = rendererOf(loaded, setup);
+    ASSERT_NE(renderer, nullptr);
+    std::array<int, 16> wanted{};
+    wanted.fill(2);
+    double sum = 0.0;
+    std::size_t frames = 0;
+    std::size_t least = package::kMaxBounces;
+    for (std::uint32_t seed = 0; frames < 2 * wanted.size(); ++seed) {
+        int& outcome = wanted[bounceBits(0, seed) % wanted.size()];
+        if (outcome == 0) {
+            continue;
+        }
+        --outcome;
+        ++frames;
+        // After these the renderer knows of two bounces alone.
+        FrameOptions few = setup.frame;
+        few.bounces = 1;
+        ASSERT_TRUE(renderer->renderSamples(few, BounceLevels::kRemembered).ok());
+        setup.frame.seed = seed;
+        const auto image = renderer->render(setup.frame);
+        ASSERT_TRUE(image.ok());
+        sum += meanOf(*image);
+        least = std::min(least, renderer->counters()->raysOfBounces.size());
+    }
+    EXPECT_EQ(least, 2U);
+    const double mean = sum / static_cast<double>(frames);
+    const double truth = kEmission / (1.0 - kAlbedo);
+    std::printf("%.5f of %.5f\n", mean, truth);
+    EXPECT_NEAR(mean, truth, 0.015 * truth);
 }
 
 // Returns a rotation about (1, 2, 3), which leaves no coordinate of a box as it was, and a translation.

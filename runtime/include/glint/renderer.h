@@ -249,8 +249,10 @@ public:
 
     // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
     // recordings there were: the number of the last one. finished() says that the device has completed all
-    // recordings up to a number, and destroys what only those used. It never waits. A program that replaces
-    // packages should call it once for each frame; render() and renderSamples() do so themselves.
+    // recordings up to a number. It destroys what only those used, and reads how deep their paths were, so
+    // that later recordings with more than 8 bounces leave out those that few paths reach. It never waits. A
+    // program that replaces packages or has many bounces should call it once for each frame; render() and
+    // renderSamples() do so themselves.
     std::uint64_t recordings() const;
     void finished(std::uint64_t recording);
 

@@ -2,6 +2,7 @@
 
 #include "context/commands.h"
 #include "context/vulkan_error.h"
+#include "renderer/bounce_levels.h"
 
 #include <algorithm>
 #include <limits>
@@ -37,6 +38,10 @@ VkDeviceSize counterBytes(const FrameSize& size) {
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
     const VkDeviceSize buckets = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
     return counterBytes(size) + round * (kRoundCounterBytes + buckets);
+}
+
+VkDeviceSize readbackDepth(const FrameSize& size, std::uint32_t slot) {
+    return readbackRound(size, size.roundCount()) + slot * sizeof(std::uint32_t);
 }
 
 Status checkFrameSize(const Context::State& context, const FrameSize& size) {
@@ -176,8 +181,8 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {&Frame::rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {&Frame::bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {&Frame::counters, counterBytes(size), kCleared, MemoryUse::Device},
-        {&Frame::readback, readbackRound(size, size.roundCount()), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-         MemoryUse::Readback},
+        {&Frame::readback, readbackDepth(size, size.paths ? BounceLevels::kSlots : 0),
+         VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback},
     }};
 }
 

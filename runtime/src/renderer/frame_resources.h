@@ -145,6 +145,10 @@ VkDeviceSize counterBytes(const FrameSize& size);
 // Returns the offset at which a round of rays is read back. For the number of rounds it returns the end.
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);
 
+// Returns the offset at which the depth of a recording's paths is read back (BounceLevels). Packages without
+// paths have none.
+VkDeviceSize readbackDepth(const FrameSize& size, std::uint32_t slot);
+
 // Returns the largest number of rays in the list: one for each pixel of a band and effect of a round.
 VkDeviceSize listRays(const FrameSize& size);
 

@@ -33,7 +33,7 @@ public:
         passes_.drawScene(state_.scene.batches, sets);
         passes_.barrier(dependencies().rasterToPasses);
         passes_.bindSets(sets);
-        bounces_ = bouncesOf(state_.size, frame);
+        bounces_ = bouncesToRecord(frame);
         state_.rounds.clear();
         for (std::uint32_t band = 0; band < state_.size.bandCount(); ++band) {
             if (band > 0) {
@@ -44,10 +44,31 @@ public:
         passes_.endStretch(whole);
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
+        keepDepth();
         passes_.barrier(kCopyToHost);
     }
 
 private:
+    RecordedBounces bouncesToRecord(const FrameOptions& frame) const {
+        const std::uint32_t bounces = bouncesOf(state_.size, frame);
+        if (frame.recordAllBounces) {
+            return {bounces, bounces};
+        }
+        return drawBounces(state_.bounceLevels.certainBounces(bounces), bounces,
+                           bounceBits(frame.sampleIndex, frame.seed));
+    }
+
+    // Copies how deep the paths were for BounceLevels.
+    void keepDepth() {
+        if (!state_.size.paths) {
+            return;
+        }
+        const std::uint64_t recording = state_.recordings + 1;
+        copy(state_.frame.counters, gpu::kCounterDeepest * sizeof(std::uint32_t), sizeof(std::uint32_t),
+             readbackDepth(state_.size, BounceLevels::slotOf(recording)));
+        state_.bounceLevels.recorded(recording, bounces_.count);
+    }
+
     const PassDependencies& dependencies() const {
         return passes_.dependencies();
     }
@@ -129,7 +150,7 @@ private:
                 passes_.barrier(dependencies().passToPass);
             }
             recordHits(listed, 1);
-            for (std::uint32_t bounce = 2; bounce <= bounces_; ++bounce) {
+            for (std::uint32_t bounce = 2; bounce <= bounces_.count; ++bounce) {
                 recordPathRays(constants, bounce);
                 recordHits(listed, bounce);
             }
@@ -173,6 +194,7 @@ private:
         updateConstant(offsetof(gpu::FrameConstants, nextListed),
                        swapped ? constants.listed : constants.nextListed);
         updateConstant(offsetof(gpu::FrameConstants, bounce), bounce);
+        updateConstant(offsetof(gpu::FrameConstants, bounceWeight), weightBehind(bounce, bounces_.certain));
         passes_.barrier(dependencies().clearToPasses);
         passes_.barrier(dependencies().passToPass);
     }
@@ -222,7 +244,7 @@ private:
     const DeviceTable& vk_;
     VkCommandBuffer commands_;
     PassRecorder passes_;
-    std::uint32_t bounces_ = 1;
+    RecordedBounces bounces_;
     gpu::FrameConstants band_{};  // of these, the rows of the band that is being recorded
 };
 

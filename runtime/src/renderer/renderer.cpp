@@ -8,7 +8,9 @@
 #include "renderer/renderer_state.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace glint {
@@ -243,6 +245,12 @@ std::uint64_t Renderer::recordings() const {
 
 void Renderer::finished(std::uint64_t recording) {
     releaseLeftovers(*state_, recording);
+    if (state_->size.paths) {
+        std::array<std::uint32_t, BounceLevels::kSlots> depths{};
+        const VkDeviceSize place = readbackDepth(state_->size, 0);
+        std::memcpy(depths.data(), state_->frame.readback.mapped + place, sizeof(depths));
+        state_->bounceLevels.completed(recording, depths);
+    }
 }
 
 VkImage Renderer::output() const {

@@ -1,6 +1,7 @@
 // The state that the passes of a Renderer work on.
 #pragma once
 
+#include "renderer/bounce_levels.h"
 #include "renderer/pass_state.h"
 #include "replacement/replacement.h"
 #include "scene/gpu_scene_state.h"
@@ -31,6 +32,7 @@ struct Renderer::State : PassState {
         std::uint32_t bounce = 1;
     };
     std::vector<Round> rounds;
+    BounceLevels bounceLevels;
 
     RendererOptions options;
     std::uint32_t timerCapacity = 0;  // stretches

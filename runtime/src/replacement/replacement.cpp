@@ -293,6 +293,7 @@ void switchPackage(Renderer::State& state, VkCommandBuffer commands) {
     state.caseNames = caseNamesOf(*next.package);
     state.scenePackage = state.scene.package.number;
     state.rounds.clear();
+    state.bounceLevels.reset();
     state.recorded = false;
     ++state.replacementsInUse;
     state.next.reset();

@@ -165,6 +165,7 @@ Status runPaths(const Settings& settings, const OracleInput& input) {
         }
         paths.srgb = *table;
     }
+    Result<PathSky> secondSky = *sky;
     const PathTracer tracer(input.scene, std::move(*sky), paths);
     PathSampling sampling = settings.sampling;
     sampling.samples = settings.samples;
@@ -185,7 +186,10 @@ Status runPaths(const Settings& settings, const OracleInput& input) {
         if (!device) {
             return device.error();
         }
-        difference = pathDifference(*device, truth, input.scene, settings.deviceSamples);
+        paths.reflectsBelow = true;
+        const PathTracer reflectingTracer(input.scene, std::move(*secondSky), paths);
+        const PathPicture reflecting = pathPicture(reflectingTracer, input.view, sampling);
+        difference = pathDifference(*device, truth, &reflecting, input.scene, settings.deviceSamples);
         if (!settings.difference.empty()) {
             if (Status status = image::writeImage(settings.difference,
                                                   image::differenceMap(*device, toImage(truth.picture)));

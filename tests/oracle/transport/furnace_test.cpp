@@ -77,4 +77,19 @@ TEST(PathFurnace, BodiesThatAbsorbNothingVanish) {
     }
 }
 
+// A normal that is 60° off the triangle's: (1 - cos 60°) / 2 of the diffuse light is sent below it.
+TEST(PathFurnace, LightBelowASurfaceIsLostOrReflected) {
+    SceneFile file;
+    file.addQuad(file.addMaterial(diffuseMaterial()), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+    gltf::Scene scene = file.import();
+    for (auto& normal : scene.meshes.at(0).primitives.at(0).normals) {
+        normal = {0.8660254F, 0.0F, 0.5F};
+    }
+    const Ray ray = rayTo({0.3, 0.2, 2.0}, {0.1, 0.1, 0.0});
+    PathSettings settings;
+    expectLight(scene, uniformSky(1.0), settings, ray, Vec3(0.75), 0.02);
+    settings.reflectsBelow = true;
+    expectLight(scene, uniformSky(1.0), settings, ray, Vec3(1.0), 0.02);
+}
+
 }  // namespace

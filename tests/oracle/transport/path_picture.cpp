@@ -54,9 +54,28 @@ private:
     double largest_ = 0.0;
 };
 
-PathCause causeOf(const PathDifferentPixel& pixel, const PathPixel& notes) {
+// The distance of a pixel of the device to one of the truth, in standard errors of both, of the worst
+// channel.
+double deviationsOf(const Vec3& device, const Pixel& truth, std::uint32_t samples) {
+    double worst = 0.0;
+    for (int channel = 0; channel < 3; ++channel) {
+        const double variance = squared(truth.error[channel]) + truth.variance[channel] / samples;
+        // A float has 24 bits; an equal pixel has no deviation.
+        const double least = squared(1e-7 * truth.mean[channel]) + 1e-30;
+        worst =
+            std::max(worst, std::abs(device[channel] - truth.mean[channel]) / std::sqrt(variance + least));
+    }
+    return worst;
+}
+
+// `reflecting` may be null.
+PathCause causeOf(const PathDifferentPixel& pixel, const PathPixel& notes, const Pixel* reflecting,
+                  std::uint32_t samples) {
     if (pixel.deviations <= kDeviations) {
         return PathCause::Noise;
+    }
+    if (reflecting != nullptr && deviationsOf(pixel.device, *reflecting, samples) <= kDeviations) {
+        return PathCause::Below;
     }
     if (notes.largestSample > kUneven) {
         return PathCause::Uneven;
@@ -95,6 +114,8 @@ std::string_view nameOf(PathCause cause) {
             return "glass";
         case PathCause::Blended:
             return "blended";
+        case PathCause::Below:
+            return "below a surface";
         case PathCause::Sky:
             return "sky";
         case PathCause::Other:
@@ -141,11 +162,13 @@ Estimate pathLight(const PathTracer& tracer, const Ray& ray, std::uint32_t sampl
     return {all.mean(), all.error(), all.variance() + all.mean() * all.mean()};
 }
 
-PathDifference pathDifference(const LinearImage& device, const PathPicture& truth, const gltf::Scene& scene,
+PathDifference pathDifference(const LinearImage& device, const PathPicture& truth,
+                              const PathPicture* reflecting, const gltf::Scene& scene,
                               std::uint32_t samples) {
     PathDifference result;
     double variances = 0.0;
     double difference = 0.0;
+    double reflectingDifference = 0.0;
     for (std::size_t i = 0; i < truth.picture.pixels.size(); ++i) {
         const Pixel& pixel = truth.picture.pixels[i];
         const auto& found = device.pixels[i];
@@ -159,24 +182,26 @@ PathDifference pathDifference(const LinearImage& device, const PathPicture& trut
         different.y = static_cast<std::uint32_t>(i / truth.picture.width);
         different.device = Vec3(found[0], found[1], found[2]);
         different.truth = pixel.mean;
+        different.deviations = deviationsOf(different.device, pixel, samples);
+        const Pixel* const reflected = reflecting != nullptr ? &reflecting->picture.pixels[i] : nullptr;
+        different.reflecting = reflected != nullptr ? reflected->mean : Vec3(0.0);
         for (int channel = 0; channel < 3; ++channel) {
             const double value = pixel.mean[channel];
             const double error = different.device[channel] - value;
             const double variance =
                 pixel.error[channel] * pixel.error[channel] + pixel.variance[channel] / samples;
             different.relative = std::max(different.relative, std::abs(error) / std::max(value, kDark));
-            // A float has 24 bits; an equal pixel has no deviation.
-            const double deviation = std::abs(error) / std::sqrt(variance + squared(1e-7 * value) + 1e-30);
-            different.deviations = std::max(different.deviations, deviation);
             result.mean += value / 3.0;
             result.deviceMean += different.device[channel] / 3.0;
             result.rootMeanSquare += error * error / 3.0;
             result.relMse += error * error / (value * value + 0.01) / 3.0;
             variances += variance / 3.0;
             difference += error / 3.0;
+            reflectingDifference +=
+                reflected != nullptr ? (different.device[channel] - reflected->mean[channel]) / 3.0 : 0.0;
         }
         if (different.relative > kDiffers) {
-            different.cause = causeOf(different, truth.notes[i]);
+            different.cause = causeOf(different, truth.notes[i], reflected, samples);
             const int material = truth.notes[i].material;
             different.material =
                 material < 0 ? "sky" : scene.materials[static_cast<std::size_t>(material)].name;
@@ -185,6 +210,7 @@ PathDifference pathDifference(const LinearImage& device, const PathPicture& trut
     }
     const double count = std::max(static_cast<double>(result.pixels), 1.0);
     result.bias = result.mean > 0.0 ? difference / result.mean : 0.0;
+    result.reflectingBias = result.mean > 0.0 ? reflectingDifference / result.mean : 0.0;
     // The channels of a pixel are not independent, so their mean is taken to have the mean of their
     // variances.
     result.biasError = result.mean > 0.0 ? std::sqrt(variances) / result.mean : 0.0;
@@ -218,10 +244,10 @@ std::string toText(const PathDifference& difference, std::uint32_t list) {
         const PathDifferentPixel& pixel = difference.different[i];
         text += fmt::format(
             "  ({}, {}) {:.2e}, {:.1f} standard errors, {}, {}: device {:.6f} {:.6f} {:.6f}, truth {:.6f} "
-            "{:.6f} "
-            "{:.6f}\n",
+            "{:.6f} {:.6f}, reflecting {:.6f} {:.6f} {:.6f}\n",
             pixel.x, pixel.y, pixel.relative, pixel.deviations, nameOf(pixel.cause), pixel.material,
-            pixel.device.x, pixel.device.y, pixel.device.z, pixel.truth.x, pixel.truth.y, pixel.truth.z);
+            pixel.device.x, pixel.device.y, pixel.device.z, pixel.truth.x, pixel.truth.y, pixel.truth.z,
+            pixel.reflecting.x, pixel.reflecting.y, pixel.reflecting.z);
     }
     return text;
 }
@@ -253,13 +279,18 @@ std::string toJson(const PathPicture& truth, const PathSampling& sampling, const
                                                       {"largest", largestOf(*difference, cause)}};
             }
         }
-        json["difference"] = {
-            {"samples", deviceSamples},           {"pixels", difference->pixels},
-            {"notFinite", difference->notFinite}, {"deviceMean", difference->deviceMean},
-            {"bias", difference->bias},           {"biasError", difference->biasError},
-            {"rmse", difference->rootMeanSquare}, {"expectedRmse", difference->expected},
-            {"relMse", difference->relMse},       {"differing", difference->different.size()},
-            {"causes", std::move(causes)}};
+        json["difference"] = {{"samples", deviceSamples},
+                              {"pixels", difference->pixels},
+                              {"notFinite", difference->notFinite},
+                              {"deviceMean", difference->deviceMean},
+                              {"bias", difference->bias},
+                              {"reflectingBias", difference->reflectingBias},
+                              {"biasError", difference->biasError},
+                              {"rmse", difference->rootMeanSquare},
+                              {"expectedRmse", difference->expected},
+                              {"relMse", difference->relMse},
+                              {"differing", difference->different.size()},
+                              {"causes", std::move(causes)}};
     }
     return json.dump(2) + "\n";
 }

@@ -42,6 +42,8 @@ enum class PathCause : std::uint8_t {
     Uneven,   // one sample of the truth has a tenth of the pixel's light, so its standard error says little
     Glass,    // paths from here meet clear glass
     Blended,  // paths from here meet surfaces of BLEND
+    Below,    // the truth that reflects directions below a surface once more, as the device does, is within
+              // noise
     Sky,      // the pixel shows the sky
     Other,
     Count
@@ -55,6 +57,7 @@ struct PathDifferentPixel {
     double deviations = 0.0;  // of the worst channel, in standard errors
     Vec3 device{0.0};
     Vec3 truth{0.0};
+    Vec3 reflecting{0.0};  // the truth that reflects below surfaces, if there is one
     PathCause cause = PathCause::Other;
     std::string material;
 };
@@ -70,13 +73,16 @@ struct PathDifference {
     // Mean of (device - truth) over the mean of the truth, and its standard error from those of the pixels.
     double bias = 0.0;
     double biasError = 0.0;
+    // The same against the truth that reflects below surfaces, if there is one.
+    double reflectingBias = 0.0;
     std::vector<PathDifferentPixel> different;  // worst first
 };
 
 // Compares with a picture of the device that has that many samples, whose variance is taken to be that of the
-// truth's samples. Both must have the same size.
-PathDifference pathDifference(const LinearImage& device, const PathPicture& truth, const gltf::Scene& scene,
-                              std::uint32_t samples);
+// truth's samples. `reflecting` is the truth with PathSettings::reflectsBelow; it explains PathCause::Below,
+// and may be null. All must have the same size.
+PathDifference pathDifference(const LinearImage& device, const PathPicture& truth,
+                              const PathPicture* reflecting, const gltf::Scene& scene, std::uint32_t samples);
 
 // Returns lines of text, including the `list` worst pixels.
 std::string toText(const PathDifference& difference, std::uint32_t list);

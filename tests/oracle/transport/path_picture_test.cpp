@@ -39,7 +39,7 @@ TEST(PathPicture, StatesItsErrors) {
     const PathPicture truth = pathPicture(tracer, view, {64, 1, 0});
     const PathPicture other = pathPicture(tracer, view, {64, 2, 0});
     LinearImage device = toImage(other.picture);
-    const PathDifference same = pathDifference(device, truth, scene, 64);
+    const PathDifference same = pathDifference(device, truth, nullptr, scene, 64);
     EXPECT_NEAR(same.rootMeanSquare / same.expected, 1.0, 0.2);
     EXPECT_LE(std::abs(same.bias), 4.0 * same.biasError);
     for (const PathDifferentPixel& pixel : same.different) {
@@ -53,13 +53,35 @@ TEST(PathPicture, StatesItsErrors) {
     }
     device.pixels[20] = {90.0F, 90.0F, 90.0F, 1.0F};
     device.pixels[21][1] = std::numeric_limits<float>::quiet_NaN();
-    const PathDifference brighter = pathDifference(device, truth, scene, 64);
+    const PathDifference brighter = pathDifference(device, truth, nullptr, scene, 64);
     EXPECT_GT(brighter.bias, 4.0 * brighter.biasError);
     EXPECT_EQ(brighter.notFinite, 1U);
     ASSERT_FALSE(brighter.different.empty());
     EXPECT_EQ(brighter.different.front().x, 4U);
     EXPECT_EQ(brighter.different.front().y, 1U);
     EXPECT_EQ(brighter.different.front().cause, PathCause::Other);
+}
+
+// A device that reflects light below a surface once more is explained by the truth that does.
+TEST(PathPicture, ExplainsLightBelowASurface) {
+    const gltf::Scene scene = room();
+    const PathTracer tracer(scene, PathSky(GradientSky{}), {});
+    const View view(scene.cameras.at(0), 8, 5);
+    const PathPicture truth = pathPicture(tracer, view, {64, 1, 0});
+    PathPicture reflecting = truth;
+    reflecting.picture.pixels[9].mean *= 4.0;
+    reflecting.picture.pixels[10].mean *= 4.0;
+    LinearImage device = toImage(truth.picture);
+    for (const std::size_t pixel : {9, 10, 11}) {
+        for (int channel = 0; channel < 3; ++channel) {
+            device.pixels[pixel][channel] *= pixel == 10 ? 9.0F : 4.0F;
+        }
+    }
+    const PathDifference difference = pathDifference(device, truth, &reflecting, scene, 64);
+    ASSERT_EQ(difference.different.size(), 3U);
+    for (const PathDifferentPixel& pixel : difference.different) {
+        EXPECT_EQ(pixel.cause == PathCause::Below, pixel.y == 1 && pixel.x == 1) << pixel.x;
+    }
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ double PathSurface::density(const Vec3& direction) const {
     return glsl::bsdfPdf(l.bsdf, l.features(), l.toFrame(direction));
 }
 
-PathSample PathSurface::sample(const Vec3& point) const {
+PathSample PathSurface::sample(const Vec3& point, bool reflectsBelow) const {
     const SurfaceLobes& l = lobes_->surface;
     const glsl::BsdfSample chosen = glsl::sampleBsdf(l.bsdf, l.features(), point);
     if (!(chosen.pdf > 0.0)) {
@@ -55,6 +55,12 @@ PathSample PathSurface::sample(const Vec3& point) const {
     result.direction = glm::normalize(l.frame * chosen.direction);
     result.density = chosen.pdf;
     result.weight = scattered(result.direction) / chosen.pdf;
+    const double height = glm::dot(result.direction, geometricNormal());
+    if (reflectsBelow && height * chosen.direction.z < 0.0) {
+        result.below = true;
+        result.direction -= 2.0 * height * geometricNormal();
+        result.weight = chosen.weight;
+    }
     return result;
 }
 

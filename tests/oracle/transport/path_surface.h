@@ -14,6 +14,8 @@ struct PathSample {
     Vec3 direction{0.0};   // unit
     Vec3 weight{0.0};      // BSDF |cosine| / density
     double density = 0.0;  // by solid angle; 0 if the path ends here
+    bool below =
+        false;  // a lobe chose a direction on the other side of the triangle, which was reflected there
 };
 
 class PathSurface {
@@ -35,8 +37,10 @@ public:
     Vec3 scattered(const Vec3& toLight) const;
     // Returns the density by solid angle with which sample() chooses a direction.
     double density(const Vec3& direction) const;
-    // Chooses a direction; `point` is uniform in the unit cube.
-    PathSample sample(const Vec3& point) const;
+    // Chooses a direction; `point` is uniform in the unit cube. Where normal and geometric normal disagree
+    // about its side, the light is lost, or with `reflectsBelow` reflected at the plane of the triangle, as
+    // the shaders do.
+    PathSample sample(const Vec3& point, bool reflectsBelow = false) const;
     // Returns whether light passes without scattering: KHR_materials_transmission.
     bool clear() const;
     // Returns whether it bounds a volume: KHR_materials_volume.

@@ -334,7 +334,7 @@ Vec3 PathTracer::radiance(const Ray& ray, Random& random, PathNotes* notes) cons
             sum += walk.throughput * chosenLight(vertex, random);
         }
 
-        const PathSample sample = surface.sample(cubePoint(random));
+        const PathSample sample = surface.sample(cubePoint(random), settings_.reflectsBelow);
         if (sample.density <= 0.0 || sample.weight == Vec3(0.0)) {
             return sum;
         }
@@ -342,7 +342,7 @@ Vec3 PathTracer::radiance(const Ray& ray, Random& random, PathNotes* notes) cons
         if ((last && !passesOn) || (passesOn && ++interfaces > kMostInterfaces)) {
             return sum;
         }
-        if (!last) {
+        if (!last && !sample.below) {
             sum += walk.throughput * lampsFound(vertex, sample);
         }
         if (!passesOn) {
@@ -357,7 +357,8 @@ Vec3 PathTracer::radiance(const Ray& ray, Random& random, PathNotes* notes) cons
             walk.media.cross(*point);
         }
         walk.throughput *= sample.weight;
-        walk.density = last ? 0.0 : sample.density;
+        // No ray to a light has this light.
+        walk.density = last || sample.below ? 0.0 : sample.density;
         walk.from = point->position;
         walk.overBlend = false;
         walk.ray = {point->position, sample.direction};

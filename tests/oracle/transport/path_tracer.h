@@ -35,6 +35,8 @@ struct PathSettings {
     // least 0.05 and at most 0.95; kUnlimited never ends a path so, and follows it down to a throughput of
     // 1e-9.
     std::uint32_t rouletteFrom = 4;
+    // Directions below a surface are reflected once more: PathSurface::sample().
+    bool reflectsBelow = false;
     LightSizes sizes{};
     SrgbTable srgb = exactSrgb();
 };
