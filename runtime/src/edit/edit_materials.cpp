@@ -108,7 +108,7 @@ void countUses(SceneEditor::State& state, std::span<const TextureUse> uses, bool
 Result<DeviceImage> makeImage(SceneEditor::State& state, const ImageView& image, bool srgb,
                               const std::string& where) {
     GpuScene::State& scene = state.scene;
-    if (Status s = checkImage(image, where, scene.context.limits.core.maxImageDimension2D); !s) {
+    if (Status s = checkImage(image, srgb, where, imageLimits(scene.context)); !s) {
         return s.error();
     }
     const std::size_t before = state.uploader->waiting();

@@ -287,7 +287,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
                          "DeviceHandles::shaderFloat16, or compile with --precision 32");
     }
     const PackageScene known = hasNothing ? PackageScene{} : package.scene(scene.packageScene);
-    if (Status s = checkScene(package, known, scene, contextState.limits.core.maxImageDimension2D); !s) {
+    if (Status s = checkScene(package, known, scene, imageLimits(contextState)); !s) {
         return s.error();
     }
     auto state = std::make_unique<State>(contextState);

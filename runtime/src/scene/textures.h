@@ -17,7 +17,12 @@ namespace glint {
 // The texture of a slot that names none. White leaves a factor unchanged.
 inline constexpr std::uint8_t kWhiteTexel[] = {255, 255, 255, 255};
 
-// Makes an image with all mips. Queues the copies in `uploader`.
+// Returns the image of a texture, with the mips that ImageView says. Blits need texels as they are.
+ImageInfo textureInfo(const ImageView& image, bool srgb);
+// Returns a level that the image has.
+std::span<const std::uint8_t> texelsOfLevel(const ImageView& image, std::uint32_t level);
+
+// Makes an image with these mips. Queues the copies in `uploader`.
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                   const ImageView& image, bool srgb);
 
