@@ -48,6 +48,7 @@ struct Settings {
     double sunAngle = 0.0;             // angular diameter of directional lights, degrees
     double environmentRotation = 0.0;  // degrees
     TraversalOrder traversalOrder = TraversalOrder::Auto;
+    bool compressTextures = false;
 
     // Names and files. They are options of their own, without rows in the table.
     std::string environment;  // a map; empty: a gradient

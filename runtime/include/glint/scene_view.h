@@ -146,6 +146,12 @@ struct SceneView {
     // in each version of the scene's descriptor set.
     std::uint32_t textureRoom = 1024;
     std::uint32_t samplerRoom = 64;
+    // Whether upload takes only the levels of at most `firstTexels` texels a side of images that have a full
+    // pyramid, and GpuScene::textureStream() brings the others while frames are drawn. The texels of `images`
+    // must then stay in memory until it has brought them or the scene is destroyed. This also holds for
+    // images that SceneEditor gets.
+    bool streamsTextures = false;
+    std::uint32_t firstTexels = 64;
 };
 
 // A new pose of a scene. Instances, lights and materials have the same number and order as at upload. Each

@@ -139,7 +139,8 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     return choice;
 }
 
-FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options) {
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
+                    std::uint32_t textures) {
     FrameSize size;
     size.width = options.width;
     size.height = options.height;
@@ -162,6 +163,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     // This agrees with order/bucket_key.glsl.
     size.keyBytes = size.bucketCount <= 0x100 ? 1 : size.bucketCount <= 0x10000 ? 2 : 4;
     size.environmentMap = package.environmentMap();
+    size.textureLevels = package.textureLevels() ? textures : 0;
     size.deferredShadows =
         size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;

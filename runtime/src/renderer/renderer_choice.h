@@ -14,6 +14,7 @@ namespace glint {
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
                                        const RendererOptions& options);
 
-FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options);
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
+                    std::uint32_t textures);
 
 }  // namespace glint

@@ -12,16 +12,6 @@
 
 namespace glint {
 
-namespace {
-
-// Texels in the format that the device stores.
-struct StoredImage {
-    std::vector<std::uint8_t> converted;  // holds the view's texels if they are not the caller's
-    ImageView view;
-    bool srgb = false;
-};
-
-// Mips must be blitted from linear values. Blits of sRGB formats decode and encode them; 16 bits have none.
 StoredImage storedImage(const Context::State& context, const ImageView& image, bool srgb) {
     StoredImage stored{{}, image, srgb};
     if (image.format != TexelFormat::Rgba16) {
@@ -39,8 +29,6 @@ StoredImage storedImage(const Context::State& context, const ImageView& image, b
     }
     return stored;
 }
-
-}  // namespace
 
 ImageInfo textureInfo(const ImageView& image, bool srgb) {
     ImageInfo info;
@@ -127,32 +115,14 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
     return UniqueSampler(context, sampler);
 }
 
-Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                                std::span<const package::TextureEntry> textures,
-                                                std::span<const ImageView> images) {
-    if (textures.size() > context.limits.maxTextures) {
+Status checkTextureCount(const Context::State& context, std::size_t count) {
+    if (count > context.limits.maxTextures) {
         return makeError("scene-textures", "",
-                         "the scene has " + std::to_string(textures.size()) + " textures, the device takes " +
+                         "the scene has " + std::to_string(count) + " textures, the device takes " +
                              std::to_string(context.limits.maxTextures),
                          "use a smaller scene");
     }
-    std::vector<DeviceImage> uploaded;
-    for (const package::TextureEntry& texture : textures) {
-        Result<DeviceImage> image =
-            uploadTexture(context, pool, uploader, images[texture.image], texture.srgb != 0);
-        if (!image) {
-            return image.error();
-        }
-        uploaded.push_back(std::move(*image));
-    }
-    if (uploaded.empty()) {
-        Result<DeviceImage> image = uploadTexture(context, pool, uploader, {1, 1, kWhiteTexel}, false);
-        if (!image) {
-            return image.error();
-        }
-        uploaded.push_back(std::move(*image));
-    }
-    return uploaded;
+    return okStatus();
 }
 
 std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
