@@ -1,9 +1,29 @@
 // Filtered samples of textures. A TextureRecord names the texture and its sampler. Here these are indices into the
 // arrays of Glint's scene.
 #include "host/resources.glsl"
-// The raster pass reads alpha alone, and fragment shaders may lack atomics.
+
+// Packages with --texture-levels note the finest level that is read of each texture. The raster pass reads alpha alone,
+// and fragment shaders may lack atomics.
 #if GLINT_TEXTURE_LEVELS && !defined(GLINT_RASTER)
-#include "host/texture_levels.glsl"
+// The level that a sampler chooses: Vulkan 1.3, "Scale Factor, Level-of-Detail and Image Level(s) Operations". It is
+// relative to the size of the whole image, whichever levels are on the device.
+float gradientLevel(TextureRecord record, vec4 gradients) {
+    vec4 inTexels = gradients * vec4(record.texels, record.texels);
+    float first = dot(inTexels.xy, inTexels.xy);
+    float second = dot(inTexels.zw, inTexels.zw);
+    float width = max(max(first, second) / (record.anisotropy * record.anisotropy), min(first, second));
+    return width > 0.0 ? 0.5 * log2(width) : 0.0;
+}
+
+// Most reads find that the level is known already, so the atomic is rare.
+void noteTextureLevel(TextureRecord record, float level) {
+    uint counter = kCounterEffects + kCounterCopies * kCountsOfEffect * GLINT_EFFECT_COUNT + record.textureIndex;
+    uint finest = kFinestTextureLevel - uint(clamp(level, 0.0, float(kFinestTextureLevel - 1u)));
+    if (GLINT_FRAME.counters.data[counter] < finest) {
+        atomicMax(GLINT_FRAME.counters.data[counter], finest);
+    }
+}
+
 #define GLINT_NOTE_LEVEL(record, level) noteTextureLevel(record, level)
 #else
 #define GLINT_NOTE_LEVEL(record, level)
