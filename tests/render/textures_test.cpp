@@ -8,6 +8,7 @@
 #include "scene/texture_stream.h"
 #include "unit/gltf/block_files.h"
 
+#include <glint/scene_view/package.h>
 #include <glint/texture_stream.h>
 
 #include <gtest/gtest.h>
@@ -277,7 +278,9 @@ TEST(TextureLevels, TheFinestLevelThatWasReadIsNoted) {
 
 TEST(TextureLevels, WithoutTheSettingThereIsNeitherCodeNorCounter) {
     const gltf::Scene scene = texturedPair();
-    const auto withLevels = compilePackage(scene, compiler::CompileSettings{.textureLevels = true});
+    compiler::CompileSettings noting;
+    noting.textureLevels = true;
+    const auto withLevels = compilePackage(scene, noting);
     const auto without = compilePackage(scene, compiler::CompileSettings());
     ASSERT_TRUE(withLevels.ok() && without.ok());
     const LoadedScene loaded(scene, compiler::CompileSettings());

@@ -47,10 +47,8 @@ public:
 
     // `units` are blocks or pixels.
     bool level(std::uint32_t level, std::uint8_t* target, std::uint32_t units,
-               basist::transcoder_texture_format format, std::uint32_t flags, int channel0, int channel1,
-               std::string& problem) {
-        if (!transcoder_.transcode_image_level(level, 0, 0, target, units, format, flags, 0, 0, channel0,
-                                               channel1)) {
+               basist::transcoder_texture_format format, std::uint32_t flags, std::string& problem) {
+        if (!transcoder_.transcode_image_level(level, 0, 0, target, units, format, flags)) {
             problem = "the data of level " + std::to_string(level) + " are damaged";
             return false;
         }
@@ -69,10 +67,6 @@ std::optional<basist::transcoder_texture_format> transcoderFormat(TexelFormat fo
             return Format::cTFBC1_RGB;
         case TexelFormat::Bc3:
             return Format::cTFBC3_RGBA;
-        case TexelFormat::Bc4:
-            return Format::cTFBC4_R;
-        case TexelFormat::Bc5:
-            return Format::cTFBC5_RG;
         case TexelFormat::Bc7:
             return Format::cTFBC7_RGBA;
         case TexelFormat::Astc4x4:
@@ -98,7 +92,7 @@ bool decodeBasis(ByteView bytes, Image& image, std::string& problem) {
     for (int level = 0; level < image.levels; ++level) {
         const auto pixels = static_cast<std::uint32_t>(pixelCount(image, level));
         if (!transcoder.level(static_cast<std::uint32_t>(level), target, pixels,
-                              basist::transcoder_texture_format::cTFRGBA32, 0, -1, -1, problem)) {
+                              basist::transcoder_texture_format::cTFRGBA32, 0, problem)) {
             image.pixels.clear();
             return false;
         }
@@ -108,9 +102,7 @@ bool decodeBasis(ByteView bytes, Image& image, std::string& problem) {
 }
 
 std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& file, ByteView bytes,
-                                                        TexelFormat format,
-                                                        const std::array<int, 2>& channels,
-                                                        std::string& problem) {
+                                                        TexelFormat format, std::string& problem) {
     const auto target = transcoderFormat(format);
     if (!target) {
         problem = std::string("it can't be transcoded to ") + infoOf(format).name;
@@ -128,8 +120,7 @@ std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& file, B
     for (std::uint32_t level = 0; level < levels; ++level) {
         const std::uint64_t size = bytesOfLevel(format, width, height, level);
         const auto units = static_cast<std::uint32_t>(size / infoOf(format).blockBytes);
-        if (!transcoder.level(level, place, units, *target, basist::cDecodeFlagsHighQuality, channels[0],
-                              channels[1], problem)) {
+        if (!transcoder.level(level, place, units, *target, basist::cDecodeFlagsHighQuality, problem)) {
             return std::nullopt;
         }
         place += size;

@@ -24,13 +24,10 @@ inline constexpr const char* kBasisuHint =
 // Fills the pixels of an image whose header was read from a KTX2 file without a block format of its own.
 bool decodeBasis(ByteView bytes, Image& image, std::string& problem);
 
-// Returns all levels of such a file in a format that transcodeTargets() of the file has. Bc4 and Bc5 take
-// their values from one and two of the file's channels (0 to 3). Returns nothing if data are damaged, and
-// `problem` says which.
+// Returns all levels of such a file in BC1, BC3, BC7 or ASTC 4x4. Returns nothing if data are damaged, or for
+// other formats, and `problem` says so.
 std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& file, ByteView bytes,
-                                                        TexelFormat format,
-                                                        const std::array<int, 2>& channels,
-                                                        std::string& problem);
+                                                        TexelFormat format, std::string& problem);
 
 // A block of 4 x 4 texels in RGBA of 8 bits, row by row.
 using BlockTexels = std::array<std::array<std::uint8_t, 4>, 16>;

@@ -19,9 +19,7 @@ bool decodeBasis(ByteView /*bytes*/, Image& /*image*/, std::string& problem) {
 }
 
 std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& /*file*/, ByteView /*bytes*/,
-                                                        TexelFormat /*format*/,
-                                                        const std::array<int, 2>& /*channels*/,
-                                                        std::string& problem) {
+                                                        TexelFormat /*format*/, std::string& problem) {
     problem = kMissing;
     return std::nullopt;
 }

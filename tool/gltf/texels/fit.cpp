@@ -177,25 +177,29 @@ private:
         if (!isBlockFormat(format) || !suits(format, use_, options_.formats)) {
             return fitTexels();
         }
+        // The transcoder knows no channels but red and alpha for these.
+        if (!file->format && infoOf(format).channels <= 2) {
+            Status status = decode();
+            if (status) {
+                compress(format);
+            }
+            return status;
+        }
         fitted_.format = format;
-        std::array<int, 2> channels{0, 1};
-        if (!file->format) {
-            channels = heldChannels(use_, format);
-            fitted_.channels = channelsOf(use_, format);
-        } else if (!file->hasAlpha) {
+        if (file->format && !file->hasAlpha) {
             fitted_.channels[3] = TexelChannel::One;
         }
         auto blocks = file->format ? blocksOf(*file, image_.file, problem)
-                                   : transcodeBasis(*file, image_.file, format, channels, problem);
+                                   : transcodeBasis(*file, image_.file, format, problem);
         if (!blocks) {
             return damaged(name, problem);
         }
         fitted_.texels = std::move(*blocks);
-        return completeBlocks(channels);
+        return completeBlocks();
     }
 
     // Makes the levels that the file lacks.
-    Status completeBlocks(const std::array<int, 2>& channels) {
+    Status completeBlocks() {
         const int most = fullLevels(image_.width, image_.height);
         if (image_.levels == most || !canPack(fitted_.format) || !hasBasisu()) {
             return okStatus();
@@ -204,7 +208,7 @@ private:
             return status;
         }
         completeLevels(*texels_, filterOf(use_));
-        packLevels(*texels_, image_.levels, channels, fitted_);
+        packLevels(*texels_, image_.levels, {0, 1}, fitted_);
         return okStatus();
     }
 
