@@ -1,13 +1,11 @@
-# glint_basisu(TARGET): compiles the transcoder of Basis Universal into TARGET, which then reads KTX2
-# textures. The sources are those that scripts/fetch_basisu.sh keeps, or those of a checkout that
+# glint_basisu(TARGET): compiles the transcoder of Basis Universal into TARGET, which then reads KTX2 textures
+# and packs blocks of BC formats (--compress-textures). The sources are those that scripts/fetch_basisu.sh keeps, or those of a checkout that
 # GLINT_BASISU_ROOT names. Sets GLINT_HAS_BASISU.
 #
 # It is compiled here and not taken from a library, so that it has the flags of each build, including those of
 # sanitizers and coverage, because it reads files that others wrote.
 
 set(GLINT_BASISU_ROOT "" CACHE PATH "Sources of Basis Universal (default: where scripts/fetch_basisu.sh keeps them)")
-
-set(GLINT_BASISU_TRIMMED "${CMAKE_CURRENT_LIST_DIR}/basisu_trimmed.h")
 
 # Finds the folder in which scripts/fetch_basisu.sh keeps the sources.
 function(_glint_basisu_root result)
@@ -33,6 +31,11 @@ function(glint_basisu target)
     message(STATUS "KHR_texture_basisu: left out, as ${root} has no transcoder; scripts/setup.sh fetches it")
     return()
   endif()
+  file(STRINGS "${root}/transcoder/basisu_transcoder_internal.h" version REGEX "define BASISD_LIB_VERSION 20[0-9]")
+  if(NOT version)
+    message(STATUS "KHR_texture_basisu: left out, as ${root} is not version 2.0; scripts/setup.sh fetches it")
+    return()
+  endif()
   if(NOT GLINT_ZSTD_LIBRARY)
     message(STATUS "KHR_texture_basisu: left out, as there is no libzstd; scripts/setup.sh installs it")
     return()
@@ -46,15 +49,10 @@ function(glint_basisu target)
   set(level $<IF:$<BOOL:${GLINT_SANITIZE}>,-O1,-O2>)
   target_compile_options(glint_basisu PRIVATE -w ${level} -fno-strict-aliasing)
   target_compile_definitions(glint_basisu PRIVATE NDEBUG)
-  # If the version is known, only the code that reads ETC1S and UASTC and writes pixels is compiled. This
-  # takes a third of the time, and less code sees a file. Another version is compiled as it is.
-  file(STRINGS "${root}/transcoder/basisu_transcoder_internal.h" version REGEX "define BASISD_LIB_VERSION 20[0-9]")
-  if(version)
-    foreach(format IN ITEMS ASTC ATC BC7 DXT1 DXT5A ETC2_EAC_A8 ETC2_EAC_RG11 FXT1 PVRTC1 PVRTC2 UASTC_HDR XUASTC)
-      target_compile_definitions(glint_basisu PRIVATE BASISD_SUPPORT_${format}=0)
-    endforeach()
-    target_compile_options(glint_basisu PRIVATE "SHELL:-include \"${GLINT_BASISU_TRIMMED}\"")
-  endif()
+  # Formats that no texture becomes are left out. XUASTC brings the packers and unpackers of BC7 and ASTC.
+  foreach(format IN ITEMS ATC ETC2_EAC_A8 ETC2_EAC_RG11 FXT1 PVRTC1 PVRTC2)
+    target_compile_definitions(glint_basisu PRIVATE BASISD_SUPPORT_${format}=0)
+  endforeach()
   if(GLINT_SANITIZE)
     target_compile_options(glint_basisu PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all)
   endif()
@@ -64,7 +62,7 @@ function(glint_basisu target)
 
   # The target gets the objects, so that projects that install the target do not install a second library.
   target_sources(${target} PRIVATE $<TARGET_OBJECTS:glint_basisu>)
-  target_include_directories(${target} SYSTEM PRIVATE "${root}/transcoder")
+  target_include_directories(${target} SYSTEM PRIVATE "${root}/transcoder" "${root}/zstd")
   # The library has its bare name here, as it does in an installed target.
   target_link_libraries(${target} PRIVATE zstd)
   set(GLINT_HAS_BASISU TRUE PARENT_SCOPE)

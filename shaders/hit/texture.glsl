@@ -60,6 +60,10 @@ void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out v
 vec3 mappedNormal(Hit hit, uint slot, float scale, Features features) {
     vec4 packedNormal = sampleSlot(hit, slot, features);
     vec3 texel = packedNormal.xyz * 2.0 - 1.0;
+    // A texture with red and green alone (BC5, EAC RG) reads 0 as blue. Otherwise no normal is on that side.
+    if (packedNormal.z == 0.0) {
+        texel.z = sqrt(max(1.0 - dot(texel.xy, texel.xy), 0.0));
+    }
     vec3 tangent;
     vec3 bitangent;
     tangentFrame(hit, slot, features, tangent, bitangent);

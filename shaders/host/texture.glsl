@@ -2,17 +2,46 @@
 // arrays of Glint's scene.
 #include "host/resources.glsl"
 
+// Packages with --texture-levels note the finest level that is read of each texture. The raster pass reads alpha alone,
+// and fragment shaders may lack atomics.
+#if GLINT_TEXTURE_LEVELS && !defined(GLINT_RASTER)
+// The level that a sampler chooses: Vulkan 1.3, "Scale Factor, Level-of-Detail and Image Level(s) Operations". It is
+// relative to the size of the whole image, whichever levels are on the device.
+float gradientLevel(TextureRecord record, vec4 gradients) {
+    vec4 inTexels = gradients * vec4(record.texels, record.texels);
+    float first = dot(inTexels.xy, inTexels.xy);
+    float second = dot(inTexels.zw, inTexels.zw);
+    float width = max(max(first, second) / (record.anisotropy * record.anisotropy), min(first, second));
+    return width > 0.0 ? 0.5 * log2(width) : 0.0;
+}
+
+// Most reads find that the level is known already, so the atomic is rare.
+void noteTextureLevel(TextureRecord record, float level) {
+    uint counter = kCounterEffects + kCounterCopies * kCountsOfEffect * GLINT_EFFECT_COUNT + record.textureIndex;
+    uint finest = kFinestTextureLevel - uint(clamp(level, 0.0, float(kFinestTextureLevel - 1u)));
+    if (GLINT_FRAME.counters.data[counter] < finest) {
+        atomicMax(GLINT_FRAME.counters.data[counter], finest);
+    }
+}
+
+#define GLINT_NOTE_LEVEL(record, level) noteTextureLevel(record, level)
+#else
+#define GLINT_NOTE_LEVEL(record, level)
+#endif
+
 #define GLINT_SAMPLER(record)                                      \
     sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
               sceneSamplers[nonuniformEXT((record).samplerIndex)])
 
 // `gradients` are (du, dv) along one axis of the footprint, then along the other. They are 0 for the finest level.
 vec4 hostTexture(TextureRecord record, vec2 uv, vec4 gradients) {
+    GLINT_NOTE_LEVEL(record, gradientLevel(record, gradients));
     return textureGrad(GLINT_SAMPLER(record), uv, gradients.xy, gradients.zw);
 }
 
 // The finest level.
 vec4 hostFinestTexture(TextureRecord record, vec2 uv) {
+    GLINT_NOTE_LEVEL(record, 0.0);
     return textureLod(GLINT_SAMPLER(record), uv, 0.0);
 }
 

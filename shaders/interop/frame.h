@@ -206,6 +206,9 @@ GLINT_CONSTANT(kCounterDeepest, 5u);        // the deepest bounce that many rays
 // order of their bits up to the package's last one.
 GLINT_CONSTANT(kCounterEffects, 6u);
 GLINT_CONSTANT(kCounterCopies, 64u);
+// In packages with --texture-levels one more counter for each texture follows these: kFinestTextureLevel minus the
+// finest level that was read; 0 if the texture was not read.
+GLINT_CONSTANT(kFinestTextureLevel, 32u);
 
 // FrameConstants::binning: the criterion by which rays of a workgroup are sorted before they are appended to the list.
 GLINT_CONSTANT(kBinningNone, 0u);

@@ -1,9 +1,12 @@
-// Fuzzes KTX2 images of glTF scenes, and the transcoder of Basis Universal behind them if the build has it.
+// Fuzzes KTX2 and DDS images of glTF scenes, what unpacks their blocks, and the transcoder of Basis Universal
+// behind them if the build has it.
 #include "fuzz/fuzz_target.h"
 #include "gltf/codecs/basisu.h"
+#include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
-#include "gltf/codecs/ktx2.h"
+#include "gltf/texels/fit.h"
 
+#include <optional>
 #include <string>
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -11,17 +14,33 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const glint::gltf::ByteView bytes(data, size);
     glint::gltf::Image image;
     std::string problem;
-    if (!glint::gltf::readKtx2Header(bytes, image, problem)) {
+    const std::optional<glint::gltf::BlockFile> file = glint::gltf::readBlockFile(bytes, problem);
+    if (!file) {
         require(!problem.empty(), "a header that is refused has a reason");
         return 0;
     }
+    require(glint::gltf::readBlockHeader(bytes, image, problem), "a file that is read has a header");
     require(image.width > 0 && image.height > 0 && image.levels > 0, "an image has a size");
     // Large images are slow to decode and show nothing that smaller ones do not.
     constexpr int kLargest = 512;
-    if (!glint::gltf::hasBasisu() || image.width > kLargest || image.height > kLargest) {
+    if (image.width > kLargest || image.height > kLargest) {
         return 0;
     }
-    if (!glint::gltf::kBasisu.decode(bytes, image, problem)) {
+    image.file.assign(bytes.begin(), bytes.end());
+    glint::TexelFormats formats;
+    for (std::uint32_t i = 0; i < glint::kTexelFormatCount; ++i) {
+        formats.add(static_cast<glint::TexelFormat>(i), false);
+        formats.add(static_cast<glint::TexelFormat>(i), true);
+    }
+    const glint::gltf::ImageUse use{false, true, false, false, 6};
+    if (const auto fitted = fitImage(glint::gltf::Scene(), image, use, {.formats = formats}); fitted) {
+        require(
+            fitted->texels.size() == bytesOfLevels(fitted->format, static_cast<std::uint32_t>(image.width),
+                                                   static_cast<std::uint32_t>(image.height),
+                                                   static_cast<std::uint32_t>(fitted->levels)),
+            "an image has the levels that it says");
+    }
+    if (!glint::gltf::decodeBlockFile(bytes, image, problem)) {
         require(!problem.empty(), "an image that can't be decoded has a reason");
         return 0;
     }

@@ -29,7 +29,7 @@ Status bench(const Console& console, const BenchArguments& arguments, const gltf
     const base::Clock::time_point start = base::Clock::now();
     CompileCache cache(arguments.cache, "");
     const Result<std::unique_ptr<measure::BenchBed>> bed =
-        measure::BenchBed::create(console, arguments.render, scene, cache.modules());
+        measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store());
     if (!bed) {
         return bed.error();
     }
@@ -51,7 +51,7 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(writable.error());
     }
     console.progress("reading " + arguments.render.scene);
-    const Result<gltf::ImportOptions> import = importOptions(arguments.render, true);
+    const Result<gltf::ImportOptions> import = importOptions(arguments.render, ImageReading::Files);
     if (!import) {
         return fail(import.error());
     }

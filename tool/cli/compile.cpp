@@ -320,7 +320,7 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         console.report(diagnostics);
     };
     console.progress("reading " + base::join(arguments.scenes));
-    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, false);
+    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, ImageReading::None);
     if (!import) {
         return fail(console, import.error());
     }

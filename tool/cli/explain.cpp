@@ -241,7 +241,7 @@ Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const 
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, false);
+    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, ImageReading::None);
     if (!import) {
         console.report(import.error());
         return kExitFailed;

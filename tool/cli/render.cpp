@@ -2,6 +2,7 @@
 #include "base/clock.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/compile/cache.h"
 #include "cli/options/effect_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/frames.h"
@@ -22,6 +23,7 @@
 #include <glint/scene_view/package.h>
 #include <glint/scene_view/pose.h>
 #include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/textures.h>
 
 #include <fmt/format.h>
 
@@ -175,6 +177,28 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
                                    : base::writeFile(arguments.stats, base::toText(toJson(report)));
 }
 
+// Reads the scene's images in the formats of the device. Those that are compressed for it stay in the cache
+// of compiled modules.
+Status readTextures(const Console& console, const RenderArguments& arguments, const Context& context,
+                    const Package& package, const gltf::Scene& scene, scene_view::SceneViewData& data,
+                    RenderReport& report) {
+    console.progress("reading textures of " + arguments.scene);
+    CompileCache cache(CacheArguments{}, "");
+    Result<std::shared_ptr<const scene_view::TextureSet>> textures =
+        scene_view::loadTextures(scene, measure::textureOptions(arguments, context, package, cache.store()));
+    if (!textures) {
+        return textures.error();
+    }
+    cache.close(console);
+    console.report((*textures)->notes);
+    report.start.texturesMs = (*textures)->milliseconds;
+    const std::uint32_t found = (*textures)->found;
+    scene_view::useTextures(std::move(*textures), data);
+    report.textures = textureReport(data.images);
+    report.textures.found = found;
+    return okStatus();
+}
+
 // Chooses the camera for an animated scene. A camera that frames everything frames all that is visible at any
 // moment, and does not move.
 Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movement,
@@ -251,6 +275,9 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     }
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);
+    if (Status read = readTextures(console, arguments, **context, *package, scene, data, report); !read) {
+        return read;
+    }
     report.alpha = nameOf(package->alpha());
     report.cases = package->caseCount();
     for (const package::CaseEntry& entry : package->cases()) {
@@ -327,7 +354,7 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.progress("reading " + arguments.scene);
-    const Result<gltf::ImportOptions> import = importOptions(arguments, true);
+    const Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files);
     if (!import) {
         console.report(import.error());
         return kExitFailed;

@@ -99,6 +99,11 @@ Status checkSettings(const CompileSettings& settings, const std::string& where) 
         return makeError("passes", where, "the renderer of whole frames has bindings of its own",
                          "add --passes steps, or leave out --bindings");
     }
+    if (settings.passes == package::Passes::Steps && settings.textureLevels) {
+        return makeError("passes", where,
+                         "--texture-levels notes what a frame reads, and --passes steps has none",
+                         "leave out --texture-levels, or --passes steps");
+    }
     if (settings.maxBounces == 0 || settings.maxBounces > package::kMaxBounces) {
         return makeError("bounces", where,
                          fmt::format("paths of {} bounces cannot be followed", settings.maxBounces),

@@ -138,6 +138,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
                         flag(settings.answer == package::HitAnswer::Surface));
     text += fmt::format("#define GLINT_PATHS {}\n", flag(package::hasPaths(shapeOf(scenes, plan, settings))));
     text += fmt::format("#define GLINT_FALLBACK {}\n", flag(settings.plan.fallback));
+    text += fmt::format("#define GLINT_TEXTURE_LEVELS {}\n", flag(settings.textureLevels));
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());

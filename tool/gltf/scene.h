@@ -165,6 +165,8 @@ struct Image {
     // There are byteCount() bytes. Levels start with the largest, and rows with the top one. Values stay as
     // they are stored and are not linearised.
     std::vector<std::uint8_t> pixels;
+    // The bytes of the image's file, with ImportOptions::keepImageFiles. Its header was checked.
+    std::vector<std::uint8_t> file;
     // What the texels hold, by channel, as they are stored: all of [0, 1] without
     // ImportOptions::trustTextures.
     std::array<materials::ValueInterval, 4> content{materials::kUnitInterval, materials::kUnitInterval,

@@ -115,7 +115,8 @@ Result<int> TextureTable::chooseImage(int texture) {
     int basisu = -1;
     const bool mayFallBack = !requiresExtension(document_, "KHR_texture_basisu");
     for (const int image :
-         {extensionSource(json, "EXT_texture_webp"), extensionSource(json, "KHR_texture_basisu"), plain}) {
+         {extensionSource(json, "EXT_texture_webp"), extensionSource(json, "KHR_texture_basisu"),
+          extensionSource(json, "MSFT_texture_dds"), plain}) {
         const Decodable decodable = image < 0 ? Decodable::No : decodability(document_, image);
         if (decodable == Decodable::Yes && (basisu < 0 || mayFallBack)) {
             if (basisu >= 0) {

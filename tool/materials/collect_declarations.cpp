@@ -220,10 +220,37 @@ void ModelBuilder::addAttribute(const File& file, const Members& members) {
     model_.attributes.push_back(std::move(attribute));
 }
 
+TextureReads ModelBuilder::readsOfTexture(const Members& members) {
+    TextureReads reads;
+    if (!members.has("reads")) {
+        return reads;
+    }
+    const std::string text = members.text("reads");
+    if (text == "normal") {
+        reads.channels = 7;
+        reads.isNormals = true;
+        return reads;
+    }
+    constexpr std::string_view kChannels = "rgba";
+    reads.channels = 0;
+    for (const char letter : text) {
+        const std::size_t channel = kChannels.find(letter);
+        const std::uint32_t bit = channel == std::string_view::npos ? 0U : 1U << channel;
+        if (bit == 0 || bit <= reads.channels) {
+            failAt(members.at("reads"),
+                   fmt::format("\"{}\" is neither \"normal\" nor some of the channels \"rgba\" in this order",
+                               text));
+        }
+        reads.channels |= bit;
+    }
+    return reads;
+}
+
 void ModelBuilder::addTexture(const File& file, const Members& members) {
     MaterialTexture texture;
     texture.name = newName(members);
-    texture.places.push_back({file.object, texture.name, members.flag("color", false)});
+    texture.places.push_back(
+        {file.object, texture.name, members.flag("color", false), readsOfTexture(members)});
     Feature feature;
     feature.name = texture.name;
     feature.gltf = gltfPlace(file.object, texture.name);
@@ -264,7 +291,8 @@ void ModelBuilder::collectAliases(const File& file) {
         const Members alias(*json, where, kTextureMembers);
         if (alias.has("is")) {
             const std::string name = newName(alias);
-            textureNamed(alias, "is").places.push_back({file.object, name, alias.flag("color", false)});
+            textureNamed(alias, "is")
+                .places.push_back({file.object, name, alias.flag("color", false), readsOfTexture(alias)});
         }
     }
 }

@@ -78,6 +78,17 @@ bool Material::isColor(int texture) const {
         [this](const MaterialTexture::Place& place) { return place.isColor && reads(place.object); });
 }
 
+TextureReads Material::readsOf(int texture) const {
+    TextureReads all{0, true};
+    for (const MaterialTexture::Place& place : model_->textures[static_cast<std::size_t>(texture)].places) {
+        if (reads(place.object)) {
+            all.channels |= place.reads.channels;
+            all.isNormals = all.isNormals && place.reads.isNormals;
+        }
+    }
+    return all;
+}
+
 bool Material::isUnlit() const {
     return std::ranges::any_of(model_->features, [this](const Feature& feature) {
         return (feature.mask() & model_->unlit) != 0 && feature.object >= 0 &&

@@ -119,6 +119,8 @@ public:
     bool gives(std::string_view object) const;
     // Whether a texture is colour, in sRGB; its alpha, where something reads that, is linear all the same.
     bool isColor(int texture) const;
+    // What shading reads of it, in all places that the material reads.
+    TextureReads readsOf(int texture) const;
 
     // Whether the material reads an object of its JSON. It does not read the base model that another one
     // replaces.

@@ -99,6 +99,12 @@ struct DerivedField {
     int count = 1;                     // channels of the field
 };
 
+// What shading reads of a texture. Compressed formats are chosen, and levels made, by it.
+struct TextureReads {
+    std::uint32_t channels = 15;  // bit 0: red, to bit 3: alpha
+    bool isNormals = false;  // red and green are the x and y of unit vectors in tangent space, z is positive
+};
+
 // A texture that a material can have. Two places can fill one, because there are two base models.
 struct MaterialTexture {
     std::string name;  // "clearcoatTexture"
@@ -107,6 +113,7 @@ struct MaterialTexture {
         int object = 0;
         std::string member;
         bool isColor = false;  // sRGB; alpha is linear all the same
+        TextureReads reads{};
     };
     std::vector<Place> places;
 };

@@ -76,9 +76,9 @@ private:
     static constexpr std::string_view kAttributeMembers[] = {"name", "at", "type", "default", "about"};
     static constexpr std::string_view kFeatureMembers[] = {"name",  "about", "stage", "short",   "order",
                                                            "needs", "gltf",  "given", "neutral", "cost"};
-    static constexpr std::string_view kTextureMembers[] = {"name",  "about",   "short",  "order",
-                                                           "needs", "color",   "scales", "of",
-                                                           "is",    "neutral", "cost",   "coordinates"};
+    static constexpr std::string_view kTextureMembers[] = {
+        "name", "about", "short",   "order", "needs",       "color", "scales",
+        "of",   "is",    "neutral", "cost",  "coordinates", "reads"};
     static constexpr std::string_view kParameterMembers[] = {"name", "at", "type", "default", "range", "also",
                                                              "unit", "of", "is",   "about",   "record"};
 
@@ -107,6 +107,7 @@ private:
     void addParameter(const File& file, const Members& members);
     void addAttribute(const File& file, const Members& members);
     void addTexture(const File& file, const Members& members);
+    static TextureReads readsOfTexture(const Members& members);
     // Parameters and textures that fill those of another base model.
     void collectAliases(const File& file);
     MaterialTexture& textureNamed(const Members& members, std::string_view member);

@@ -134,8 +134,9 @@ Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t sampl
 }
 
 Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const compiler::Settings& base,
-                                                   const gltf::Scene& scene, compiler::ModuleCache* cache) {
-    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache));
+                                                   const gltf::Scene& scene, compiler::ModuleCache* cache,
+                                                   compiler::CacheStore* store) {
+    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache, store));
     const scene_view::SceneViewData data = sceneView(base, scene);
     const Result<scene_view::CameraChoice> camera = scene_view::chooseCamera(
         scene, data, base.camera, static_cast<double>(base.renderer.width) / base.renderer.height);
@@ -192,6 +193,23 @@ Status BenchBed::settleChoices() {
     return okStatus();
 }
 
+Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const compiler::Settings& settings,
+                                                                         const Package& package) {
+    const scene_view::TextureOptions options = textureOptions(settings, *context_, package, store_);
+    std::shared_ptr<const scene_view::TextureSet>& known =
+        textures_[{options.fit.compress, options.fit.decodeEmission}];
+    if (!known) {
+        Result<std::shared_ptr<const scene_view::TextureSet>> loaded =
+            scene_view::loadTextures(scene_, options);
+        if (!loaded) {
+            return loaded;
+        }
+        observer_.report((*loaded)->notes);
+        known = std::move(*loaded);
+    }
+    return known;
+}
+
 Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::Settings& render) {
     const gltf::SceneList scenes({&scene_, 1});
     const Result<PlanChoice> plan = choosePlan(render, scenes);
@@ -221,6 +239,11 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::S
     scene_view::SceneViewData data = sceneView(render, scene_);
     data.packageScene = scene_view::sceneIn(*mounted->package, scene_).value_or(0);
     scene_view::useLayoutOf(*mounted->package, scene_, data);
+    Result<std::shared_ptr<const scene_view::TextureSet>> images = textures(render, *mounted->package);
+    if (!images) {
+        return images.error();
+    }
+    useTextures(std::move(*images), data);
     Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(*context_, *mounted->package, data.view());
     if (!uploaded) {
         return uploaded.error();
@@ -234,9 +257,9 @@ Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, cons
     render.package = package;
     const std::string key =
         fmt::format("{} {}", package, decided(render, [](const compiler::Descriptor& row) {
-                        // With --effects auto, the limit of roughness decides too. The form of vertices
-                        // decides about the scene on the device.
-                        return isCompiled(row) || row.name == "max-roughness" || row.name == "vertices";
+                        // With --effects auto, the limit of roughness decides too.
+                        return isCompiled(row) || row.stage == compiler::SettingStage::Scene ||
+                               row.name == "max-roughness";
                     }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {

@@ -1,3 +1,4 @@
+#include "gltf/codecs/basisu.h"
 #include "measure/measurer.h"
 #include "measure/reference.h"
 
@@ -91,6 +92,7 @@ private:
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
         facts.positionFetch = bed_.features().positionFetch;
         facts.float16 = bed_.features().float16;
+        facts.packsTextures = gltf::hasBasisu() && bed_.context().texelFormats().has(TexelFormat::Bc7, true);
         facts.fullTransport = settings_.reference == "full";
         const ReferenceOptions options{settings_.referenceError,
                                        static_cast<std::uint32_t>(settings_.referenceSamples)};

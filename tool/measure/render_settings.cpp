@@ -119,6 +119,16 @@ scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gl
     return data;
 }
 
+scene_view::TextureOptions textureOptions(const compiler::Settings& settings, const Context& context,
+                                          const Package& package, compiler::CacheStore* cache) {
+    scene_view::TextureOptions options;
+    options.fit.formats = context.texelFormats();
+    options.fit.compress = settings.compressTextures;
+    options.fit.decodeEmission = package.emission() != nullptr;
+    options.cache = cache;
+    return options;
+}
+
 compiler::CompileSettings compileSettings(const compiler::Settings& settings,
                                           const compiler::PlanOptions& plan) {
     compiler::CompileSettings compile = settings.compile;

@@ -66,6 +66,7 @@ struct CompileSettings {
     TextureLod textureLod = TextureLod::Cones;
     // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures).
     bool trustTextures = false;
+    bool textureLevels = false;  // shaders note the finest level that they read of each texture
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
     int jobs = 0;               // threads; 0 means one for each core
     bool emitHeader = true;     // glint_tables.h

@@ -23,10 +23,11 @@ struct BenchFacts {
     bool lightsMayEmit = false;  // and packages with the default's effects can have them as lights
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
-    std::size_t lights = 0;    // with a position, of which a hierarchy chooses
-    bool manyLights = false;   // more than --lights auto takes whole
-    bool sizedLights = false;  // some light casts soft shadows
-    bool rayPipeline = false;  // this and the next two are features of the device
+    bool packsTextures = true;  // the device reads BC formats, and this program packs them
+    std::size_t lights = 0;     // with a position, of which a hierarchy chooses
+    bool manyLights = false;    // more than --lights auto takes whole
+    bool sizedLights = false;   // some light casts soft shadows
+    bool rayPipeline = false;   // this and the next two are features of the device
     bool positionFetch = false;
     bool float16 = false;
     std::set<std::string, std::less<>> effects;  // effects of the default configuration, by name

@@ -49,6 +49,7 @@ struct Settings {
     double environmentRotation = 0.0;  // degrees
     TraversalOrder traversalOrder = TraversalOrder::Auto;
     VertexForm vertices = VertexForm::Compact;
+    bool compressTextures = false;
 
     // Names and files. They are options of their own, without rows in the table.
     std::string environment;  // a map; empty: a gradient

@@ -335,6 +335,15 @@ constexpr Descriptor kRows[] = {
      .bench = kNoPicture,
      .document = "materials.md#what-textures-hold",
      .recorded = true},
+    {.name = "texture-levels",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "note the finest level of each texture that a frame reads, for streaming and --stats",
+     .values = flag<&Settings::compile, &CompileSettings::textureLevels>(),
+     .bench = kNoPicture,
+     .document = "textures.md#which-levels-a-frame-reads",
+     .recorded = true},
     {.name = "alpha",
      .commands = kPlanners,
      .stage = SettingStage::Package,
@@ -534,16 +543,33 @@ constexpr Descriptor kRows[] = {
      .values = number<&Settings::renderer, &RendererOptions::bands>(0, 1024),
      .bench = changesTime(withoutRays, "1 4"),
      .document = "memory.md#bands"},
+    {.name = "compress-textures",
+     .commands = kOfRender,
+     .stage = SettingStage::Scene,
+     .group = kPicture,
+     .what = "compress PNG, JPEG and WebP textures to BC7, BC5 and BC4; the result is kept in the cache",
+     .values = flag<&Settings::compressTextures>(),
+     .bench = approximates("off", "off on", {},
+                           [](std::string_view value, const BenchFacts& facts, const Configuration&) {
+                               const bool isNeedless = value.empty() && !facts.textures;
+                               const bool isMissing = value == "on" && !facts.packsTextures;
+                               return std::string(
+                                   isNeedless ? "there are no textures"
+                                   : isMissing
+                                       ? "the device reads no BC formats, or this glint can't pack them"
+                                       : "");
+                           }),
+     .document = "textures.md#compressing-textures"},
     {.name = "traversal-order",
      .commands = kOfRender,
-     .stage = SettingStage::Renderer,
+     .stage = SettingStage::Scene,
      .group = "Device",
      .what = "how triangles and instances come in acceleration structures",
      .values = enumerator<&Settings::traversalOrder>(),
      .document = "performance.md#traversal-on-a-cpu-driver"},
     {.name = "vertices",
      .commands = kOfRender,
-     .stage = SettingStage::Renderer,
+     .stage = SettingStage::Scene,
      .group = "Device",
      .what = "how vertices lie in memory",
      .values = enumerator<&Settings::vertices>(),

@@ -18,6 +18,7 @@ namespace glint::compiler {
 enum class SettingStage : std::uint8_t {
     Package,   // when shaders are compiled: another value needs another package
     Choice,    // a package may have several values, from which a renderer chooses one
+    Scene,     // when a scene is uploaded
     Renderer,  // when a renderer is made
     Frame,     // for each frame
 };

@@ -3,6 +3,7 @@
 
 #include <glint/package_format.h>
 #include <glint/result.h>
+#include <glint/texel_format.h>
 
 #include <vulkan/vulkan_core.h>
 
@@ -117,6 +118,10 @@ public:
     std::string driverName() const;
     VkPhysicalDeviceType deviceType() const;
     std::uint32_t subgroupSize() const;  // lanes
+    // Returns the formats of ImageView that the device samples with filters, by vkGetPhysicalDeviceFormat-
+    // Properties. RGBA8 is always among them. RGBA16 may be given to every device: it is stored with 8 bits
+    // where it is not among them.
+    TexelFormats texelFormats() const;
     // Returns the warnings and errors of the validation layer so far. The list is empty with Validation::Off
     // and after adopt().
     std::vector<std::string> validationMessages() const;

@@ -76,6 +76,8 @@ public:
     package::HitRecordFormat hitRecord() const;
     // Whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
+    // Whether shaders note what they read of textures (FrameCounters::textureLevels).
+    bool textureLevels() const;
     // Whether shaders read the positions of hit triangles from acceleration structures. The device then needs
     // DeviceHandles::positionFetch.
     bool positionFetch() const;

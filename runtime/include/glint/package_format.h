@@ -138,6 +138,8 @@ struct PackageHeader {
         lightSamples;        // lights that a surface chooses by the hierarchy; 0: it takes all, without one
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
+    std::uint32_t textureLevels;  // 1: shaders note the finest level that they read of each texture
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -293,7 +295,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 136);
+static_assert(sizeof(PackageHeader) == 144);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

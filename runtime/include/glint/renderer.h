@@ -25,6 +25,7 @@
 namespace glint {
 
 class SceneEditor;
+class TextureStream;
 
 // What the last GpuScene::update() did. Times are device times in milliseconds; without timestamps on the
 // queue they are 0.
@@ -80,6 +81,10 @@ public:
     // Returns what edits a scene with SceneView::editable (glint/scene_edit.h), or null for other scenes. It
     // lives as long as the scene.
     SceneEditor* editor();
+
+    // Returns what brings the levels of a scene with SceneView::streamsTextures (glint/texture_stream.h), or
+    // null for other scenes. It lives as long as the scene.
+    TextureStream* textureStream();
 
     // Records the commands that bring a scene with SceneView::moves to another pose. `commands` is a command
     // buffer of the caller's, in the recording state and outside a render pass. The device then computes the
@@ -183,6 +188,11 @@ struct FrameCounters {
     std::vector<std::uint32_t> raysOfBounces;
     // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
     std::vector<std::uint32_t> bucketCounts;
+    // The finest level that surfaces and hits have read of each texture, by PackageScene::textures, or by
+    // TextureHandle::index in a scene that is edited. Levels count from the whole image, whichever are on the
+    // device. Filled for packages with Package::textureLevels().
+    static constexpr std::uint32_t kLevelNotRead = 0xFFFFFFFF;
+    std::vector<std::uint32_t> textureLevels;
 
     // Returns zeros for an effect that the package lacks.
     EffectCounters of(package::Effect effect) const;

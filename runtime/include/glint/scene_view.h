@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glint/names.h>
+#include <glint/texel_format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -62,33 +62,28 @@ struct InstanceView {
     bool visible = true;
 };
 
-// An RGBA image as it is stored, the first row on top. If the package reads an image as colour, the image is
-// taken to be in sRGB.
+// An image as it is stored, the first row on top. If the package reads an image as colour, its red, green and
+// blue are taken to be in sRGB.
 struct ImageView {
-    enum class Format : std::uint32_t {
-        Rgba8,
-        Rgba16,  // native byte order
-    };
+    using Format = TexelFormat;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes
+    std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes: texels, or blocks row by row
+    // A block format must be one that the device reads for each use of the image (Context::texelFormats()).
     Format format = Format::Rgba8;
     // The number of mip levels in `pixels`. They follow one another from the largest on; each has half the
     // size of the one before, rounded down. Upload makes the remaining levels of a full pyramid from the last
-    // one.
+    // one. It makes none for block formats: a texture then has these levels alone.
     std::uint32_t levels = 1;
+    // What shaders read as red, green, blue and alpha.
+    TexelChannels channels = kChannelsAsStored;
+    // The first level in RGBA of 8 bits. Only images in a block format need it, and only if triangles that
+    // are lights (--emissive-lights) have it as their emission.
+    std::span<const std::uint8_t> decoded{};
 
-    std::uint32_t bytesPerPixel() const {
-        return format == Format::Rgba16 ? 8 : 4;
-    }
     // Returns the size in bytes of the first `count` levels.
     std::uint64_t byteCount(std::uint32_t count) const {
-        std::uint64_t texels = 0;
-        for (std::uint32_t level = 0; level < count; ++level) {
-            texels += std::max(std::uint64_t{width} >> level, std::uint64_t{1}) *
-                      std::max(std::uint64_t{height} >> level, std::uint64_t{1});
-        }
-        return bytesPerPixel() * texels;
+        return bytesOfLevels(format, width, height, count);
     }
 };
 
@@ -168,6 +163,12 @@ struct SceneView {
     // in each version of the scene's descriptor set.
     std::uint32_t textureRoom = 1024;
     std::uint32_t samplerRoom = 64;
+    // Whether upload takes only the levels of at most `firstTexels` texels a side of images that have a full
+    // pyramid, and GpuScene::textureStream() brings the others while frames are drawn. The texels of `images`
+    // must then stay in memory until it has brought them or the scene is destroyed. This also holds for
+    // images that SceneEditor gets.
+    bool streamsTextures = false;
+    std::uint32_t firstTexels = 64;
 };
 
 // A new pose of a scene. Instances, lights and materials have the same number and order as at upload. Each

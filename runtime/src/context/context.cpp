@@ -1,5 +1,6 @@
 #include "context/context_state.h"
 #include "context/requirements.h"
+#include "context/texel_formats.h"
 #include "context/vulkan_error.h"
 
 #include <glint/package_modules.h>
@@ -110,6 +111,11 @@ void queryLimits(Context::State& state) {
     state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
                                                      VK_FORMAT_R16G16B16A16_UNORM, &wide);
     limits.wideTextures = (wide.optimalTilingFeatures & kTexture) == kTexture;
+    limits.texelFormats = queryTexelFormats(state.instance, state.handles.physicalDevice);
+    if (limits.wideTextures) {
+        limits.texelFormats.add(TexelFormat::Rgba16, false);
+        limits.texelFormats.add(TexelFormat::Rgba16, true);
+    }
     VkFormatProperties floats{};
     state.instance.GetPhysicalDeviceFormatProperties(state.handles.physicalDevice,
                                                      VK_FORMAT_R32G32B32A32_SFLOAT, &floats);
@@ -273,6 +279,10 @@ std::string Context::driverName() const {
 
 VkPhysicalDeviceType Context::deviceType() const {
     return state_->limits.deviceType;
+}
+
+TexelFormats Context::texelFormats() const {
+    return state_->limits.texelFormats;
 }
 
 std::uint32_t Context::subgroupSize() const {

@@ -6,6 +6,7 @@
 
 #include <glint/context.h>
 #include <glint/package_format.h>
+#include <glint/texel_format.h>
 
 #include <memory>
 #include <mutex>
@@ -38,6 +39,7 @@ struct DeviceLimits {
     std::uint32_t maxSamplers = 0;
     float samplerAnisotropy = 1.0F;        // anisotropy of texture samplers; 1: none
     bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
+    TexelFormats texelFormats;             // see Context::texelFormats()
     bool filteredFloats = false;           // R32G32B32A32_SFLOAT can be filtered
     std::uint32_t timestampValidBits = 0;  // valid bits of the queue family's timestamps; 0: it has none
     std::uint32_t subgroupSize = 0;        // lanes

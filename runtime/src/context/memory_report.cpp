@@ -118,6 +118,9 @@ std::vector<MemoryItem> GpuScene::memory() const {
     for (const DeviceImage& texture : state_->textures) {
         addTo(items, "textures", texture);
     }
+    if (state_->stream != nullptr) {
+        add(items, {"levels on their way", MemoryUse::Upload, false, 1, state_->stream->retiredBytes()});
+    }
     for (const AccelerationStructure& blas : state_->blases) {
         addTo(items, "bottom levels", blas.buffer);
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace glint {
 
@@ -49,31 +50,30 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     return buffer;
 }
 
-namespace {
-
-Status createView(Context::State& context, const ImageInfo& info, DeviceImage& image) {
+Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
+                                        std::uint32_t firstMip) {
     VkImageViewCreateInfo view{};
     view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    view.image = image.handle.get();
+    view.image = image;
     view.viewType = VK_IMAGE_VIEW_TYPE_2D;
     view.format = info.format;
+    view.components = info.components;
     view.subresourceRange = wholeImage(info.aspect);
+    view.subresourceRange.baseMipLevel = firstMip;
     VkImageView handle = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateImageView(context.handles.device, &view, nullptr, &handle);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateImageView", result);
     }
-    image.view = UniqueImageView(context, handle);
-    return okStatus();
+    return UniqueImageView(context, handle);
 }
-
-}  // namespace
 
 Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info) {
     DeviceImage image;
     image.format = info.format;
     image.extent = info.extent;
     image.mips = info.mips;
+    image.components = info.components;
     VkImageCreateInfo create{};
     create.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
     create.imageType = VK_IMAGE_TYPE_2D;
@@ -104,9 +104,11 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
         return vulkanError("vkBindImageMemory", result);
     }
     image.memory = *memory;
-    if (Status status = createView(context, info, image); !status) {
-        return status.error();
+    Result<UniqueImageView> view = createImageView(context, handle, info, 0);
+    if (!view) {
+        return view.error();
     }
+    image.view = std::move(*view);
     return image;
 }
 

@@ -22,11 +22,12 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
 
 struct DeviceImage {
     UniqueImage handle;
-    UniqueImageView view;  // view of all mips
+    UniqueImageView view;  // view of all mips, unless it says otherwise
     VkFormat format = VK_FORMAT_UNDEFINED;
     VkExtent2D extent{};
     std::uint32_t mips = 1;
-    VkDeviceSize bytes = 0;  // size in memory
+    VkComponentMapping components{};  // of the view
+    VkDeviceSize bytes = 0;           // size in memory
     Allocation memory;
 };
 
@@ -36,7 +37,12 @@ struct ImageInfo {
     std::uint32_t mips = 1;
     VkImageUsageFlags usage = 0;
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
+    VkComponentMapping components{};  // of the view
 };
+
+// Creates a view of the mips from `firstMip` on.
+Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
+                                        std::uint32_t firstMip);
 
 // Creates a two-dimensional image on the device, in an undefined layout. `pool` must outlive it.
 Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info);

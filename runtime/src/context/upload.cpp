@@ -154,46 +154,89 @@ Status Uploader::startImage(const DeviceImage& target) {
     return okStatus();
 }
 
-Status Uploader::copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes,
-                          const DeviceImage& target, std::uint32_t mip) {
-    const std::uint32_t width = std::max(target.extent.width >> mip, 1U);
-    const std::uint32_t height = std::max(target.extent.height >> mip, 1U);
-    const VkDeviceSize rowBytes = VkDeviceSize{texelBytes} * width;
-    std::uint32_t row = 0;
-    while (row < height) {
-        Result<VkDeviceSize> room = reserve(rowBytes * (height - row), rowBytes);
+namespace {
+
+// The size of a mip in rows of texels or blocks, and of a row in bytes.
+struct RowSize {
+    std::uint32_t rows = 0;
+    VkDeviceSize bytes = 0;
+};
+
+RowSize rowSizeOf(const Uploader::MipRows& rows) {
+    const std::uint32_t width = sizeAtLevel(rows.target->extent.width, rows.mip);
+    const std::uint32_t height = sizeAtLevel(rows.target->extent.height, rows.mip);
+    return {blocksAcross(height, rows.block.height),
+            VkDeviceSize{rows.block.bytes} * blocksAcross(width, rows.block.width)};
+}
+
+}  // namespace
+
+Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_t end) {
+    const DeviceImage& target = *rows.target;
+    const std::uint32_t width = sizeAtLevel(target.extent.width, rows.mip);
+    const std::uint32_t height = sizeAtLevel(target.extent.height, rows.mip);
+    const VkDeviceSize rowBytes = rowSizeOf(rows).bytes;
+    while (first < end) {
+        Result<VkDeviceSize> room = reserve(rowBytes * (end - first), rowBytes);
         if (!room) {
             return room.error();
         }
-        const auto rows = static_cast<std::uint32_t>(*room / rowBytes);
-        std::memcpy(staging_.back().mapped + used_, texels.data() + row * rowBytes, *room);
+        const auto count = static_cast<std::uint32_t>(*room / rowBytes);
+        std::memcpy(staging_.back().mapped + used_, rows.texels.data() + first * rowBytes, *room);
+        const std::uint32_t top = first * rows.block.height;
         VkBufferImageCopy region{};
         region.bufferOffset = used_;
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
-        region.imageOffset = {0, static_cast<std::int32_t>(row), 0};
-        region.imageExtent = {width, rows, 1};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1};
+        region.imageOffset = {0, static_cast<std::int32_t>(top), 0};
+        region.imageExtent = {width, std::min(count * rows.block.height, height - top), 1};
         run([&vk = context_->vk, region, from = staging_.back().handle.get(),
              to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBufferToImage(commands, from, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         });
         used_ += *room;
-        row += rows;
+        first += count;
     }
     return okStatus();
 }
 
-Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
+Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips, const TexelBlock& block,
                              const DeviceImage& target) {
     if (Status status = startImage(target); !status) {
         return status;
     }
     for (std::uint32_t mip = 0; mip < mips.size(); ++mip) {
-        if (Status status = copyRows(mips[mip], texelBytes, target, mip); !status) {
+        const MipRows rows{&target, mip, 0, mips[mip], block};
+        if (Status status = copyRows(rows, 0, rowSizeOf(rows).rows); !status) {
             return status;
         }
     }
     recordMips(target, static_cast<std::uint32_t>(mips.size()));
     return okStatus();
+}
+
+Result<std::uint32_t> Uploader::copyMipRows(const MipRows& rows, VkDeviceSize mostBytes) {
+    if (Status status = start(); !status) {
+        return status.error();
+    }
+    const RowSize size = rowSizeOf(rows);
+    const auto room = static_cast<std::uint32_t>(
+        std::clamp<VkDeviceSize>(mostBytes / size.bytes, 1, size.rows - rows.firstRow));
+    if (rows.firstRow == 0) {
+        transition({rows.target->handle.get(),
+                    VK_IMAGE_LAYOUT_UNDEFINED,
+                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                    {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+                    rows.mip,
+                    1});
+    }
+    if (Status status = copyRows(rows, rows.firstRow, rows.firstRow + room); !status) {
+        return status.error();
+    }
+    if (rows.firstRow + room == size.rows) {
+        transition({rows.target->handle.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, rows.mip, 1});
+    }
+    return room;
 }
 
 void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {

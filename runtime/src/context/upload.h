@@ -4,6 +4,8 @@
 #include "context/commands.h"
 #include "context/resources.h"
 
+#include <glint/texel_format.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,6 +14,17 @@
 #include <vector>
 
 namespace glint {
+
+// A block of texels that is stored as a whole; a texel by itself is one, too.
+struct TexelBlock {
+    std::uint32_t width = 1;  // texels
+    std::uint32_t height = 1;
+    std::uint32_t bytes = 4;
+};
+inline TexelBlock blockOf(TexelFormat format) {
+    const TexelFormatInfo& info = infoOf(format);
+    return {info.blockWidth, info.blockHeight, info.blockBytes};
+}
 
 class Uploader {
 public:
@@ -22,11 +35,23 @@ public:
 
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
-    // Fills the first mips of an undefined image with texels of `texelBytes` bytes. Blits each remaining mip
-    // from the one before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. Requires at least one mip.
-    // `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage if mips are blitted.
-    Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, std::uint32_t texelBytes,
+    // Fills the first mips of an undefined image with texels or blocks. Blits each remaining mip from the one
+    // before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. Requires at least one mip, and all of them
+    // for blocks. `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage if mips are blitted.
+    Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, const TexelBlock& block,
                        const DeviceImage& target);
+
+    // These copy one mip part by part. The mip must be undefined before the first, and only the last leaves
+    // it readable by shaders. Rows are of texels or blocks. Returns how many rows were copied: at least one,
+    // and at most as many as `mostBytes` hold if these are more than a row.
+    struct MipRows {
+        const DeviceImage* target = nullptr;
+        std::uint32_t mip = 0;
+        std::uint32_t firstRow = 0;
+        std::span<const std::uint8_t> texels;  // of the whole mip
+        TexelBlock block{};
+    };
+    Result<std::uint32_t> copyMipRows(const MipRows& rows, VkDeviceSize mostBytes);
     // Waits until all data is on the device and visible to all commands that are submitted later. A deferred
     // one has nothing to finish.
     Status finish();
@@ -61,8 +86,8 @@ private:
     void transition(const ImageTransition& transition);
     // Moves all mips to TRANSFER_DST_OPTIMAL.
     Status startImage(const DeviceImage& target);
-    Status copyRows(std::span<const std::uint8_t> texels, std::uint32_t texelBytes, const DeviceImage& target,
-                    std::uint32_t mip);
+    // Copies rows [first, end) of texels or blocks of a mip in TRANSFER_DST_OPTIMAL.
+    Status copyRows(const MipRows& rows, std::uint32_t first, std::uint32_t end);
     // Blits the mips after the first `given`, and makes all of them readable.
     void recordMips(const DeviceImage& target, std::uint32_t given);
 

@@ -2,6 +2,7 @@
 #include "edit/editor_state.h"
 #include "scene/material_table.h"
 #include "scene/scene_checks.h"
+#include "scene/texture_stream.h"
 #include "scene/textures.h"
 
 #include <algorithm>
@@ -106,13 +107,14 @@ void countUses(SceneEditor::State& state, std::span<const TextureUse> uses, bool
 
 // Makes an image and queues its copies.
 Result<DeviceImage> makeImage(SceneEditor::State& state, const ImageView& image, bool srgb,
-                              const std::string& where) {
+                              std::uint32_t texture) {
     GpuScene::State& scene = state.scene;
-    if (Status s = checkImage(image, where, scene.context.limits.core.maxImageDimension2D); !s) {
+    const std::string where = placeOf("texture", texture);
+    if (Status s = checkImage(image, srgb, where, imageLimits(scene.context)); !s) {
         return s.error();
     }
     const std::size_t before = state.uploader->waiting();
-    Result<DeviceImage> made = uploadTexture(scene.context, scene.pool, *state.uploader, image, srgb);
+    Result<DeviceImage> made = uploadSceneTexture(scene, *state.uploader, texture, image, srgb);
     if (!made && !state.uploading) {
         state.uploader->forgetAfter(before);
     }
@@ -223,7 +225,7 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
                              " textures, and no room for another",
                          "set SceneView::textureRoom, or remove a texture");
     }
-    Result<DeviceImage> made = makeImage(*state_, image, srgb, placeOf("texture", next.index));
+    Result<DeviceImage> made = makeImage(*state_, image, srgb, next.index);
     if (!made) {
         return made.error();
     }
@@ -239,7 +241,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     if (entry == nullptr) {
         return unknownHandle("texture");
     }
-    Result<DeviceImage> made = makeImage(*state_, image, entry->srgb, placeOf("texture", texture.index));
+    Result<DeviceImage> made = makeImage(*state_, image, entry->srgb, texture.index);
     if (!made) {
         return made.error();
     }
@@ -278,6 +280,7 @@ Status SceneEditor::removeTexture(TextureHandle texture) {
                          "remove the materials first, or give them other textures");
     }
     state_->textures.take(texture);
+    forgetTexture(state_->scene, texture.index);
     std::vector<DeviceImage>& images = state_->scene.textures;
     state_->retired.add(std::move(images[texture.index]));
     images[texture.index] = {};

@@ -4,6 +4,7 @@
 #include "edit/editor_state.h"
 #include "scene/material_table.h"
 #include "scene/scene_materials.h"
+#include "scene/texture_stream.h"
 #include "scene/textures.h"
 
 #include <algorithm>
@@ -47,7 +48,8 @@ Status addTextures(SceneEditor::State& state, const PackageScene& known, const S
     for (const package::TextureEntry& entry : known.textures) {
         const ImageView& image = view.images[entry.image];
         Result<DeviceImage> made =
-            uploadTexture(scene.context, scene.pool, *state.uploader, image, entry.srgb != 0);
+            uploadSceneTexture(scene, *state.uploader, static_cast<std::uint32_t>(scene.textures.size()),
+                               image, entry.srgb != 0);
         if (!made) {
             return made.error();
         }

@@ -32,7 +32,7 @@ void discard(MemoryPool& pool, AccelerationStructure&& structure) {
 }
 
 bool Retired::Lot::isEmpty() const {
-    return structures.empty() && buffers.empty() && images.empty() && descriptors.empty();
+    return structures.empty() && buffers.empty() && images.empty() && descriptors.empty() && views.empty();
 }
 
 std::uint64_t Retired::Lot::bytes() const {
@@ -73,6 +73,12 @@ void Retired::add(UniqueDescriptorPool&& descriptors) {
     }
 }
 
+void Retired::add(UniqueImageView&& view) {
+    if (view.get() != VK_NULL_HANDLE) {
+        open_.views.push_back(std::move(view));
+    }
+}
+
 void Retired::close(std::uint64_t frame) {
     if (!open_.isEmpty()) {
         open_.frame = frame;
@@ -83,6 +89,7 @@ void Retired::close(std::uint64_t frame) {
 void Retired::complete(std::uint64_t frame) {
     while (!closed_.empty() && closed_.front().frame <= frame) {
         Lot& lot = closed_.front();
+        lot.views.clear();
         for (AccelerationStructure& structure : lot.structures) {
             discard(pool_, std::move(structure));
         }

@@ -24,6 +24,7 @@ public:
     void add(DeviceImage&& image);
     void add(AccelerationStructure&& structure);
     void add(UniqueDescriptorPool&& descriptors);
+    void add(UniqueImageView&& view);
     // What was added since the last call belongs to this frame.
     void close(std::uint64_t frame);
     // Frees what belongs to frames up to `frame`.
@@ -38,6 +39,7 @@ private:
         std::vector<Buffer> buffers;
         std::vector<DeviceImage> images;
         std::vector<UniqueDescriptorPool> descriptors;
+        std::vector<UniqueImageView> views;
 
         bool isEmpty() const;
         std::uint64_t bytes() const;

@@ -74,6 +74,10 @@ package::HitRecordFormat Package::hitRecord() const {
     return state_->header.hitRecord;
 }
 
+bool Package::textureLevels() const {
+    return state_->header.textureLevels != 0;
+}
+
 bool Package::environmentMap() const {
     return state_->header.environmentMap != 0;
 }

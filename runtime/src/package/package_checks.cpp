@@ -123,6 +123,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.fallback > 1) {
         return outside("the kind of fallback", header.fallback);
     }
+    if (header.textureLevels > 1) {
+        return outside("the kind of notes about textures", header.textureLevels);
+    }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }

@@ -113,6 +113,11 @@ Result<FrameCounters> Renderer::counters() {
     }
     counters.orderErrors = values[gpu::kCounterOrderErrors];
     counters.unknownShader = values[gpu::kCounterUnknownShader];
+    // These follow all others.
+    for (std::size_t i = values.size() - state_->size.textureLevels; i < values.size(); ++i) {
+        counters.textureLevels.push_back(values[i] == 0 ? FrameCounters::kLevelNotRead
+                                                        : gpu::kFinestTextureLevel - values[i]);
+    }
     counters.nonFinite = values[gpu::kCounterNonFinite];
     for (std::uint32_t round = 0; round < state_->rounds.size(); ++round) {
         addRound(bytes + readbackRound(state_->size, round), state_->size, state_->rounds[round], counters);

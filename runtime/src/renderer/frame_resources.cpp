@@ -32,7 +32,7 @@ std::uint64_t maxRayDispatch(const DeviceLimits& limits) {
 VkDeviceSize counterBytes(const FrameSize& size) {
     const VkDeviceSize ofEffects =
         VkDeviceSize{gpu::kCounterCopies} * gpu::kCountsOfEffect * package::countedEffects(size.effects);
-    return sizeof(std::uint32_t) * (gpu::kCounterEffects + ofEffects);
+    return sizeof(std::uint32_t) * (gpu::kCounterEffects + ofEffects + size.textureLevels);
 }
 
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {

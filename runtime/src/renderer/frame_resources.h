@@ -105,8 +105,9 @@ struct FrameSize {
     std::uint32_t keyBytes = 1;  // size of the key of a hit's bucket
     bool deferredShadows = false;
     bool environmentMap = false;
-    bool hostRays = false;     // the list of rays and what they bring back are the host's
-    bool rayPipeline = false;  // a ray tracing pipeline dispatches lists as rays
+    std::uint32_t textureLevels = 0;  // textures whose finest level is noted
+    bool hostRays = false;            // the list of rays and what they bring back are the host's
+    bool rayPipeline = false;         // a ray tracing pipeline dispatches lists as rays
 
     bool paths = false;  // the package's shaders keep the state of paths
     bool emissiveLights = false;

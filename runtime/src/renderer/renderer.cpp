@@ -154,7 +154,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return makeError("pipeline-statistics", "", "the device was created without statistics of pipelines",
                          "create it with DeviceRequirements for them, where it has them");
     }
-    const FrameSize size = frameSize(package, *choice, options);
+    const FrameSize size = frameSize(package, *choice, options, textureCapacity(scene.state()));
     if (Status status = checkFrameSize(contextState, size); !status) {
         return status.error();
     }

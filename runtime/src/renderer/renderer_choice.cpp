@@ -163,7 +163,8 @@ std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, 
     return whole < size.height ? whole : 0;
 }
 
-FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options) {
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
+                    std::uint32_t textures) {
     FrameSize size;
     size.width = options.width;
     size.height = options.height;
@@ -185,6 +186,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
                                                                             : sizeof(gpu::HitRecord);
     size.keyBytes = keyBytesOf(size.bucketCount);
     size.environmentMap = package.environmentMap();
+    size.textureLevels = package.textureLevels() ? textures : 0;
     size.deferredShadows =
         size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;

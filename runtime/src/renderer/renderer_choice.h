@@ -18,6 +18,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
 // Pure.
 std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted);
 
-FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options);
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
+                    std::uint32_t textures);
 
 }  // namespace glint

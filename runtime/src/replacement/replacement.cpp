@@ -138,7 +138,7 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::share
     auto next = std::make_unique<NextPackage>(state.context);
     next->choice = *choice;
     next->scene = *scene;
-    next->size = frameSize(*package, *choice, state.options);
+    next->size = frameSize(*package, *choice, state.options, textureCapacity(state.scene));
     if (Status status = checkFrameSize(state.context, next->size); !status) {
         return status.error();
     }

@@ -78,13 +78,14 @@ EmissionTexels::Level EmissionTexels::halfOf(const Level& level) {
 
 EmissionTexels::EmissionTexels(const ImageView& image, bool isColor) {
     const bool isWide = image.format == ImageView::Format::Rgba16;
+    const std::span<const std::uint8_t> pixels = isBlockFormat(image.format) ? image.decoded : image.pixels;
     const std::vector<float> values = channelValues(isWide, isColor);
     const auto channelAt = [&](std::size_t index) {
         if (!isWide) {
-            return values[image.pixels[index]];
+            return values[pixels[index]];
         }
         std::uint16_t number = 0;
-        std::memcpy(&number, &image.pixels[2 * index], sizeof number);
+        std::memcpy(&number, &pixels[2 * index], sizeof number);
         return values[number];
     };
     const std::size_t texels = std::size_t{image.width} * image.height;

@@ -4,6 +4,7 @@
 #include "scene/gpu_scene_state.h"
 #include "scene/instance_math.h"
 #include "scene/scene_checks.h"
+#include "scene/texture_stream.h"
 #include "scene/textures.h"
 #include "scene/traversal_order.h"
 
@@ -58,6 +59,33 @@ Status uploadLightTree(GpuScene::State& state, const Package& package, const Sce
     }
     const std::span<const std::uint32_t> firsts(state.emitters.firsts);
     return uploadRecords(state, uploader, firsts, state.firstEmitters);
+}
+
+// Makes one image for each TextureEntry, in their order. There is at least one image, so that the array is
+// never empty.
+Status uploadTextures(GpuScene::State& state, Uploader& uploader,
+                      std::span<const package::TextureEntry> textures, std::span<const ImageView> images) {
+    if (Status status = checkTextureCount(state.context, textures.size()); !status) {
+        return status;
+    }
+    for (const package::TextureEntry& texture : textures) {
+        Result<DeviceImage> image =
+            uploadSceneTexture(state, uploader, static_cast<std::uint32_t>(state.textures.size()),
+                               images[texture.image], texture.srgb != 0);
+        if (!image) {
+            return image.error();
+        }
+        state.textures.push_back(std::move(*image));
+    }
+    if (state.textures.empty()) {
+        Result<DeviceImage> image =
+            uploadTexture(state.context, state.pool, uploader, {1, 1, kWhiteTexel}, false);
+        if (!image) {
+            return image.error();
+        }
+        state.textures.push_back(std::move(*image));
+    }
+    return okStatus();
 }
 
 // Makes `deformer` if an instance changes its shape.
@@ -144,12 +172,9 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadLightTree(state, package, scene, **uploader, lights); !s) {
         return s;
     }
-    Result<std::vector<DeviceImage>> textures =
-        uploadTextures(state.context, state.pool, **uploader, known.textures, scene.images);
-    if (!textures) {
-        return textures.error();
+    if (Status s = uploadTextures(state, **uploader, known.textures, scene.images); !s) {
+        return s;
     }
-    state.textures = std::move(*textures);
     state.statistics.narrowedTextures = countNarrowed(state.context, known.textures, scene.images);
     return (*uploader)->finish();
 }
@@ -281,10 +306,14 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
                          "DeviceHandles::shaderFloat16, or compile with --precision 32");
     }
     const PackageScene known = hasNothing ? PackageScene{} : package.scene(scene.packageScene);
-    if (Status s = checkScene(package, known, scene, contextState.limits.core.maxImageDimension2D); !s) {
+    if (Status s = checkScene(package, known, scene, imageLimits(contextState)); !s) {
         return s.error();
     }
     auto state = std::make_unique<State>(contextState);
+    if (scene.streamsTextures) {
+        state->stream = std::make_unique<TextureStream>(
+            std::make_unique<TextureStream::State>(*state, scene.firstTexels));
+    }
     if (scene.editable) {
         if (Status s = uploadEditable(*state, package, known, scene); !s) {
             return s.error();
@@ -332,6 +361,10 @@ GpuScene::~GpuScene() = default;
 
 SceneEditor* GpuScene::editor() {
     return state_->editor.get();
+}
+
+TextureStream* GpuScene::textureStream() {
+    return state_->stream.get();
 }
 
 VkDescriptorSet GpuScene::descriptorSet() const {

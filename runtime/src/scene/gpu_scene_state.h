@@ -14,6 +14,7 @@
 
 #include <glint/renderer.h>
 #include <glint/scene_edit.h>
+#include <glint/texture_stream.h>
 
 #include <cstdint>
 #include <memory>
@@ -71,7 +72,13 @@ struct GpuScene::State {
     // Null if the scene can't be edited. An editable scene has its primitives, BLASes and draws in the
     // editor, and here what the renderer reads.
     std::unique_ptr<SceneEditor> editor;
+    std::unique_ptr<TextureStream> stream;  // null unless SceneView::streamsTextures
 };
+
+// Returns how many textures the array of set 0 has.
+inline std::uint32_t textureCapacity(const GpuScene::State& state) {
+    return state.textureRoom > 0 ? state.textureRoom : static_cast<std::uint32_t>(state.textures.size());
+}
 
 // Creates the layout, the pool and set 0. The set is filled from the state's structures, textures and
 // samplers.

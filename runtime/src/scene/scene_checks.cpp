@@ -1,5 +1,7 @@
 #include "scene/scene_checks.h"
 
+#include "scene/material_table.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -157,7 +159,7 @@ Status checkInstances(const PackageScene& known, const SceneView& scene) {
     return okStatus();
 }
 
-Status checkImages(const PackageScene& known, std::span<const ImageView> images, std::uint32_t maxImageSize) {
+Status checkImages(const PackageScene& known, std::span<const ImageView> images, const ImageLimits& limits) {
     for (const package::TextureEntry& texture : known.textures) {
         const std::string where = "image " + std::to_string(texture.image);
         if (texture.image >= images.size()) {
@@ -166,8 +168,31 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
                 "the package refers to this image, the scene has " + std::to_string(images.size()),
                 kSameScene);
         }
-        if (Status status = checkImage(images[texture.image], where, maxImageSize); !status) {
+        if (Status status = checkImage(images[texture.image], texture.srgb != 0, where, limits); !status) {
             return status;
+        }
+    }
+    return okStatus();
+}
+
+// Lights that are emissive triangles read the texels of their emission on the host.
+Status checkEmission(const Package& package, const PackageScene& known, std::span<const ImageView> images) {
+    const package::EmissionEntry* const emission = package.emission();
+    if (emission == nullptr || emission->texture == package::EmissionEntry::kNone) {
+        return okStatus();
+    }
+    for (std::size_t i = 0; i < known.materials.size(); ++i) {
+        const std::uint32_t texture = textureAt(known.materials, i, emission->texture).textureIndex;
+        if (texture >= known.textures.size()) {
+            continue;
+        }
+        const ImageView& image = images[known.textures[texture].image];
+        const std::uint64_t wanted = bytesOfLevel(TexelFormat::Rgba8, image.width, image.height, 0);
+        if (isBlockFormat(image.format) && image.decoded.size() != wanted) {
+            return makeError("scene-image", "image " + std::to_string(known.textures[texture].image),
+                             std::string("the image is in the format ") + infoOf(image.format).name +
+                                 ", and triangles with it are lights, whose texels the host has to read",
+                             "give its first level in RGBA of 8 bits as ImageView::decoded");
         }
     }
     return okStatus();
@@ -175,17 +200,31 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
 
 }  // namespace
 
-Status checkImage(const ImageView& image, const std::string& where, std::uint32_t maxImageSize) {
-    if (image.width == 0 || image.height == 0 || image.width > maxImageSize || image.height > maxImageSize) {
+ImageLimits imageLimits(const Context::State& context) {
+    return {context.limits.core.maxImageDimension2D, context.limits.texelFormats};
+}
+
+Status checkImage(const ImageView& image, bool srgb, const std::string& where, const ImageLimits& limits) {
+    if (image.width == 0 || image.height == 0 || image.width > limits.maxSize ||
+        image.height > limits.maxSize) {
         return makeError("scene-image", where,
                          "the image is " + std::to_string(image.width) + " x " +
                              std::to_string(image.height) + " pixels, the device takes 1 to " +
-                             std::to_string(maxImageSize),
+                             std::to_string(limits.maxSize),
                          "scale the image");
     }
-    if (image.format > ImageView::Format::Rgba16) {
-        return makeError("scene-image", where, "the image has an unknown format",
-                         "use a value of ImageView::Format");
+    const bool knownChannels = std::ranges::all_of(
+        image.channels, [](TexelChannel channel) { return channel <= TexelChannel::One; });
+    if (static_cast<std::size_t>(image.format) >= kTexelFormatCount || !knownChannels) {
+        return makeError("scene-image", where, "the image has an unknown format, or channels of one",
+                         "use values of TexelFormat and TexelChannel");
+    }
+    const TexelFormatInfo& info = infoOf(image.format);
+    if (isBlockFormat(image.format) && !limits.formats.has(image.format, srgb)) {
+        return makeError("scene-image", where,
+                         std::string("the device does not read ") + info.name +
+                             (srgb ? " as colours in sRGB" : " as linear data"),
+                         "give a format of Context::texelFormats(), or the image in RGBA8");
     }
     const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
     if (image.levels == 0 || image.levels > most) {
@@ -198,8 +237,9 @@ Status checkImage(const ImageView& image, const std::string& where, std::uint32_
         return makeError("scene-image", where,
                          std::to_string(image.pixels.size()) + " bytes do not make " +
                              std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
-                             " x " + std::to_string(image.height) + " RGBA pixels",
-                         "give " + std::to_string(image.bytesPerPixel()) + " bytes a pixel");
+                             " x " + std::to_string(image.height) + " pixels in " + info.name +
+                             ", which take " + std::to_string(image.byteCount(image.levels)),
+                         "give all of the levels");
     }
     return okStatus();
 }
@@ -237,14 +277,17 @@ Status checkLights(std::span<const LightView> lights) {
 }
 
 Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
-                  std::uint32_t maxImageSize) {
+                  const ImageLimits& limits) {
     if (Status status = checkPrimitives(package, known, scene.primitives); !status) {
         return status;
     }
     if (Status status = checkInstances(known, scene); !status) {
         return status;
     }
-    if (Status status = checkImages(known, scene.images, maxImageSize); !status) {
+    if (Status status = checkImages(known, scene.images, limits); !status) {
+        return status;
+    }
+    if (Status status = checkEmission(package, known, scene.images); !status) {
         return status;
     }
     if (Status status = checkDeformation(scene); !status) {

@@ -1,6 +1,8 @@
 // Checks whether a scene is well formed and is the one that a package was compiled from.
 #pragma once
 
+#include "context/context_state.h"
+
 #include <glint/package.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
@@ -20,12 +22,19 @@ inline constexpr std::uint32_t kInputVertexColor = 1U << 9;
 inline constexpr std::uint32_t kInputNormals = 1U << 10;
 inline constexpr std::uint32_t kInputTangents = 1U << 11;
 
+// What a device takes as images.
+struct ImageLimits {
+    std::uint32_t maxSize = 0;  // texels of an axis
+    TexelFormats formats;
+};
+ImageLimits imageLimits(const Context::State& context);
+
 // Pure. Errors: "scene-order", "scene-attribute", "scene-index", "scene-package" (the package knows another
 // scene), "scene-image", "scene-light". Their place is for instance "mesh 3, primitive 1", "image 2" or
 // "light 0".
 // `known` is the scene of `package`.
 Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
-                  std::uint32_t maxImageSize);
+                  const ImageLimits& limits);
 
 // The part of checkScene() for joints, weights and morph targets of primitives and instances. Errors:
 // "scene-attribute", "scene-index", "scene-motion".
@@ -43,8 +52,9 @@ struct MotionShape {
 // Pure. Errors: "scene-motion", "scene-light".
 Status checkMotion(const MotionView& motion, const MotionShape& shape);
 
-// Checks the size, the levels and the number of bytes of an image. Error "scene-image".
-Status checkImage(const ImageView& image, const std::string& where, std::uint32_t maxImageSize);
+// Checks the size, the format, the levels and the number of bytes of an image that is read as colour in sRGB
+// or as linear data. Error "scene-image".
+Status checkImage(const ImageView& image, bool srgb, const std::string& where, const ImageLimits& limits);
 
 // Checks the indices of a primitive, and that its attributes are as many as its positions. Errors:
 // "scene-attribute", "scene-index".

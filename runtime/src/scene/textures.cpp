@@ -1,5 +1,6 @@
 #include "scene/textures.h"
 
+#include "context/texel_formats.h"
 #include "context/vulkan_error.h"
 #include "scene/material_table.h"
 #include "scene/texels.h"
@@ -11,35 +12,56 @@
 
 namespace glint {
 
+StoredImage storedImage(const Context::State& context, const ImageView& image, bool srgb) {
+    StoredImage stored{{}, image, srgb};
+    if (image.format != TexelFormat::Rgba16) {
+        return stored;
+    }
+    if (!context.limits.wideTextures) {
+        stored.converted = narrowRgba16(image.pixels);
+        stored.view.format = TexelFormat::Rgba8;
+    } else if (srgb) {
+        stored.converted = linearizeRgba16(image.pixels);
+    }
+    stored.srgb = srgb && !context.limits.wideTextures;
+    if (!stored.converted.empty()) {
+        stored.view.pixels = stored.converted;
+    }
+    return stored;
+}
+
+ImageInfo textureInfo(const ImageView& image, bool srgb) {
+    ImageInfo info;
+    info.format = vulkanFormat(image.format, srgb);
+    info.extent = {image.width, image.height};
+    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    if (isBlockFormat(image.format)) {
+        info.mips = image.levels;
+    } else {
+        info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+        info.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    }
+    info.components = vulkanComponents(image.channels);
+    return info;
+}
+
+std::span<const std::uint8_t> texelsOfLevel(const ImageView& image, std::uint32_t level) {
+    return image.pixels.subspan(image.byteCount(level),
+                                bytesOfLevel(image.format, image.width, image.height, level));
+}
+
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                   const ImageView& image, bool srgb) {
-    const bool isWide = image.format == ImageView::Format::Rgba16 && context.limits.wideTextures;
-    ImageInfo info;
-    info.format = isWide ? VK_FORMAT_R16G16B16A16_UNORM
-                  : srgb ? VK_FORMAT_R8G8B8A8_SRGB
-                         : VK_FORMAT_R8G8B8A8_UNORM;
-    info.extent = {image.width, image.height};
-    info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
-    info.usage =
-        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    Result<DeviceImage> texture = createImage(context, pool, info);
+    const StoredImage stored = storedImage(context, image, srgb);
+    Result<DeviceImage> texture = createImage(context, pool, textureInfo(stored.view, stored.srgb));
     if (!texture) {
         return texture.error();
     }
-    // Mips must be blitted from linear values. Blits of sRGB formats decode and encode them.
-    std::vector<std::uint8_t> converted;
-    if (image.format == ImageView::Format::Rgba16 && (srgb || !isWide)) {
-        converted = isWide ? linearizeRgba16(image.pixels) : narrowRgba16(image.pixels);
-    }
-    ImageView stored = image;
-    stored.pixels = converted.empty() ? image.pixels : converted;
-    stored.format = isWide ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8;
     std::vector<std::span<const std::uint8_t>> mips;
-    for (std::uint32_t level = 0; level < stored.levels; ++level) {
-        const std::uint64_t start = stored.byteCount(level);
-        mips.push_back(stored.pixels.subspan(start, stored.byteCount(level + 1) - start));
+    for (std::uint32_t level = 0; level < stored.view.levels; ++level) {
+        mips.push_back(texelsOfLevel(stored.view, level));
     }
-    if (Status status = uploader.copyToImage(mips, stored.bytesPerPixel(), *texture); !status) {
+    if (Status status = uploader.copyToImage(mips, blockOf(stored.view.format), *texture); !status) {
         return status.error();
     }
     return texture;
@@ -93,32 +115,14 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
     return UniqueSampler(context, sampler);
 }
 
-Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                                std::span<const package::TextureEntry> textures,
-                                                std::span<const ImageView> images) {
-    if (textures.size() > context.limits.maxTextures) {
+Status checkTextureCount(const Context::State& context, std::size_t count) {
+    if (count > context.limits.maxTextures) {
         return makeError("scene-textures", "",
-                         "the scene has " + std::to_string(textures.size()) + " textures, the device takes " +
+                         "the scene has " + std::to_string(count) + " textures, the device takes " +
                              std::to_string(context.limits.maxTextures),
                          "use a smaller scene");
     }
-    std::vector<DeviceImage> uploaded;
-    for (const package::TextureEntry& texture : textures) {
-        Result<DeviceImage> image =
-            uploadTexture(context, pool, uploader, images[texture.image], texture.srgb != 0);
-        if (!image) {
-            return image.error();
-        }
-        uploaded.push_back(std::move(*image));
-    }
-    if (uploaded.empty()) {
-        Result<DeviceImage> image = uploadTexture(context, pool, uploader, {1, 1, kWhiteTexel}, false);
-        if (!image) {
-            return image.error();
-        }
-        uploaded.push_back(std::move(*image));
-    }
-    return uploaded;
+    return okStatus();
 }
 
 std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,

@@ -17,7 +17,23 @@ namespace glint {
 // The texture of a slot that names none. White leaves a factor unchanged.
 inline constexpr std::uint8_t kWhiteTexel[] = {255, 255, 255, 255};
 
-// Makes an image with all mips. Queues the copies in `uploader`.
+// Texels in the format that the device stores.
+struct StoredImage {
+    std::vector<std::uint8_t> converted;  // holds the view's texels if they are not the caller's
+    ImageView view;
+    bool srgb = false;
+};
+// Images of 16 bits become linear, because mips must be blitted from linear values and 16 bits have no format
+// in sRGB, or are narrowed to 8 bits if the device can't use them. Blits of sRGB formats decode and encode
+// them.
+StoredImage storedImage(const Context::State& context, const ImageView& image, bool srgb);
+
+// Returns the image of a texture, with the mips that ImageView says. Blits need texels as they are.
+ImageInfo textureInfo(const ImageView& image, bool srgb);
+// Returns a level that the image has.
+std::span<const std::uint8_t> texelsOfLevel(const ImageView& image, std::uint32_t level);
+
+// Makes an image with these mips. Queues the copies in `uploader`.
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                   const ImageView& image, bool srgb);
 
@@ -25,14 +41,10 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
 // Returns the maximum anisotropy of that sampler.
 float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry);
 
-// Makes one image with all mips for each TextureEntry, in their order. There is at least one image, so that
-// the array is never empty. 16-bit images become 16-bit linear textures if the device can use those. Queues
-// the copies in `uploader`. Error "scene-textures": there are more than a shader of this device can see.
-Result<std::vector<DeviceImage>> uploadTextures(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                                std::span<const package::TextureEntry> textures,
-                                                std::span<const ImageView> images);
+// Error "scene-textures": there are more than a shader of this device can see.
+Status checkTextureCount(const Context::State& context, std::size_t count);
 
-// Returns how many of those textures uploadTextures() narrowed from 16 bits to 8.
+// Returns how many of those textures are narrowed from 16 bits to 8.
 std::uint32_t countNarrowed(const Context::State& context, std::span<const package::TextureEntry> textures,
                             std::span<const ImageView> images);
 

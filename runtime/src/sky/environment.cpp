@@ -98,7 +98,7 @@ Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& l
     if (!uploader) {
         return uploader.error();
     }
-    if (Status status = (*uploader)->copyToImage(views, half ? 8 : 16, state.map); !status) {
+    if (Status status = (*uploader)->copyToImage(views, {1, 1, half ? 8U : 16U}, state.map); !status) {
         return status;
     }
     return (*uploader)->finish();

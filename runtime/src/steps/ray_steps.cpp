@@ -87,7 +87,7 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     if (!choice) {
         return choice.error();
     }
-    const FrameSize size = frameSize(package, *choice, wanted);
+    const FrameSize size = frameSize(package, *choice, wanted, 0);
     const std::uint64_t most = std::min<std::uint64_t>(
         size.rayPipeline ? maxRayDispatch(contextState.limits) : std::numeric_limits<std::uint32_t>::max(),
         contextState.limits.maxBufferBytes / sizeof(gpu::ShadowRecord));

@@ -71,6 +71,8 @@ std::string stageOf(const compiler::Descriptor& row) {
             return "package";
         case compiler::SettingStage::Choice:
             return "package, then renderer";
+        case compiler::SettingStage::Scene:
+            return "scene";
         case compiler::SettingStage::Renderer:
             return "renderer";
         case compiler::SettingStage::Frame:

@@ -153,7 +153,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"json-syntax", kError, "The scene is not valid JSON."},
     {"json-type", kError, "A member has the wrong type."},
     {"ktx2-metadata", kWarning,
-     "The header of a KTX2 image breaks a rule of `KHR_texture_basisu`, or contradicts the use of the "
+     "The header of a KTX2 image breaks a rule of `KHR_texture_basisu`, a DDS image has alpha that is "
+     "premultiplied, or either contradicts the use of the "
      "texture."},
     {"light-range", kWarning, "A value of a light is outside of its range."},
     {"light-type", kError, "A light's type is unknown."},
@@ -228,7 +229,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"package-tracer", kError, "A package lacks the tracer that is asked for."},
     {"package-truncated", kError, "The tables of a package are cut short."},
     {"package-version", kError, "A package is of another version."},
-    {"passes", kError, "`--answer` or `--bindings` was given without `--passes steps`."},
+    {"passes", kError,
+     "`--answer` or `--bindings` was given without `--passes steps`, or `--texture-levels` with it."},
     {"payload-bytes", kNote | kWarning, "`glint lint`: a ray payload is large."},
     {"pipeline-cache", kNote | kError,
      "A pipeline cache is damaged, too large, or of another device or driver: pipelines are made without "
@@ -319,11 +321,14 @@ constexpr DiagnosticInfo kTable[] = {
     {"spirv-optimize", kError, "A generated shader can't be optimised: a defect of Glint."},
     {"spirv-validate", kError, "A generated shader is not valid SPIR-V: a defect of Glint."},
     {"strategy", kError, "The compiler was given an invalid set of strategies."},
+    {"stream-frame", kError, "The runtime was given a frame whose number is below that of an earlier one."},
     {"tangent-invalid", kWarning, "Tangents are zero or not finite."},
     {"tangent-without-normal", kWarning, "Tangents without normals are ignored."},
     {"template", kError, "A template of shader sources is missing or malformed: a defect of Glint."},
     {"texture-basisu", kNote | kError,
      "A texture is KTX2, which this build does not decode; a note where another image takes its place."},
+    {"texture-compression", kNote,
+     "`--compress-textures` changes nothing: the device reads no BC formats, or this Glint can't pack them."},
     {"texture-source", kNote | kWarning, "A texture has no image, or no image that Glint reads."},
     {"texture-uv-set", kWarning, "A texture uses a UV set above 1."},
     {"timings-pending", kError, "The runtime was asked for timings before the device was done."},

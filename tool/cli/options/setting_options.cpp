@@ -191,7 +191,7 @@ void addHostOption(CLI::App& command, compiler::Settings& settings) {
         .group("Shaders");
 }
 
-Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, bool decodeImages) {
+Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images) {
     const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(settings.materials);
     if (!model) {
         return model.error();
@@ -209,7 +209,7 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, bo
         }
     }
     gltf::ImportOptions options;
-    options.decodeImages = decodeImages;
+    options.keepImageFiles = images == ImageReading::Files;
     options.trustTextures = settings.compile.trustTextures;
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;

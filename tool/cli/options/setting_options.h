@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <cstdint>
 #include <string>
 
 namespace glint::cli {
@@ -25,9 +26,15 @@ void addCalibration(CLI::App& command, compiler::Settings& settings);
 // Adds --variant NAME, --strict-paths and --materials DIR.
 void addReadingOptions(CLI::App& command, compiler::Settings& settings);
 
+// What a command needs of images.
+enum class ImageReading : std::uint8_t {
+    None,
+    Files,  // for scene_view::loadTextures()
+};
+
 // For commands that compile shaders.
 void addHostOption(CLI::App& command, compiler::Settings& settings);
 // Returns how a scene is read. Has the errors of loadMaterialModel().
-Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, bool decodeImages);
+Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images);
 
 }  // namespace glint::cli

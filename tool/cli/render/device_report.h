@@ -25,12 +25,13 @@ struct PipelineCacheReport {
 // The times from nothing to a picture, wall clock.
 struct StartReport {
     double deviceMs = 0.0;       // instance, device, the pipeline cache from its file
+    double texturesMs = 0.0;     // images read, transcoded, compressed
     double uploadMs = 0.0;       // the scene, with its acceleration structures
     double rendererMs = 0.0;     // buffers, images and pipelines
     double firstSampleMs = 0.0;  // recorded, submitted and complete
 
     double totalMs() const {
-        return deviceMs + uploadMs + rendererMs + firstSampleMs;
+        return deviceMs + texturesMs + uploadMs + rendererMs + firstSampleMs;
     }
 };
 

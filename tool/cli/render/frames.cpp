@@ -179,6 +179,11 @@ private:
         report_.counters = std::move(*counters);
         report_.traffic.counts = trafficCounts(report_.counters, report_.traffic.shape,
                                                static_cast<double>(report_.width) * report_.height);
+        report_.textures.levels.clear();
+        for (const std::uint32_t level : report_.counters.textureLevels) {
+            const bool isRead = level != FrameCounters::kLevelNotRead;
+            report_.textures.levels.push_back(isRead ? std::optional(level) : std::nullopt);
+        }
         if (!setup_.arguments.coverage.empty()) {
             Result<std::vector<PixelPath>> paths = renderer_->readCoverage(onScreen_);
             if (!paths) {

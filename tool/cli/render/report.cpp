@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <bit>
 #include <numbers>
 
 namespace glint::cli {
@@ -161,6 +162,34 @@ std::string toText(const scene_view::SkyChoice& choice) {
     return choice.lights ? fmt::format("{}, for lights of {:.3g} lux", what, *choice.lights) : what;
 }
 
+base::Json toJson(const TextureReport& textures) {
+    base::Json levels = base::Json::array();
+    for (const std::optional<std::uint32_t>& level : textures.levels) {
+        levels.push_back(base::orNull(level));
+    }
+    return {{"images", textures.images}, {"formats", textures.formats}, {"texels", textures.texels},
+            {"bytes", textures.bytes},   {"found", textures.found},     {"levels", std::move(levels)}};
+}
+
+std::string toText(const TextureReport& textures) {
+    std::vector<std::string> formats;
+    for (const auto& [name, count] : textures.formats) {
+        formats.push_back(fmt::format("{} {}", count, name));
+    }
+    std::string text =
+        fmt::format("{}: {}, {:.2f} bytes a texel", fmt::join(formats, ", "), formatBytes(textures.bytes),
+                    static_cast<double>(textures.bytes) /
+                        static_cast<double>(std::max<std::uint64_t>(textures.texels, 1)));
+    if (!textures.levels.empty()) {
+        std::vector<std::string> levels;
+        for (const std::optional<std::uint32_t>& level : textures.levels) {
+            levels.push_back(level ? fmt::format("{}", *level) : "-");
+        }
+        text += fmt::format("; finest levels read: {}", fmt::join(levels, " "));
+    }
+    return text;
+}
+
 }  // namespace
 
 void RenderReport::addHits(const FrameCounters& sample) {
@@ -225,6 +254,7 @@ base::Json toJson(const RenderReport& report) {
               {"orderMs", scene.orderMs},
               {"blasBuildMs", scene.blasBuildMs},
               {"tlasBuildMs", scene.tlasBuildMs}}},
+            {"textures", toJson(report.textures)},
             {"pipelineCreationMs", report.pipelines.making.milliseconds},
             {"pipelineThreads", report.pipelines.making.threads},
             {"pipelineCache", cacheToJson(report.pipelines)},
@@ -249,6 +279,19 @@ base::Json toJson(const RenderReport& report) {
               {"bytes", report.footprint.bytes}}},
             {"memory", toJson(report.memory)},
             {"traffic", toJson(report.traffic)}};
+}
+
+TextureReport textureReport(std::span<const ImageView> images) {
+    TextureReport report;
+    for (const ImageView& image : images) {
+        const bool isBlitted = !isBlockFormat(image.format);
+        const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+        ++report.images;
+        ++report.formats[infoOf(image.format).name];
+        report.texels += std::uint64_t{image.width} * image.height;
+        report.bytes += image.byteCount(isBlitted ? most : image.levels);
+    }
+    return report;
 }
 
 std::string toText(const RenderReport& report, Detail detail) {
@@ -295,10 +338,13 @@ std::string toText(const RenderReport& report, Detail detail) {
         {"memory", fmt::format("{} in {} images and {} buffers", formatBytes(report.footprint.bytes),
                                report.footprint.images, report.footprint.buffers)});
     rows.push_back({"bytes moved", summaryOf(report.traffic)});
+    if (report.textures.images > 0) {
+        rows.push_back({"textures", toText(report.textures)});
+    }
     if (scene.narrowedTextures > 0) {
         rows.push_back(
-            {"textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",
-                                     scene.narrowedTextures)});
+            {"narrow textures", fmt::format("{} of 16 bits read as 8: the device filters no 16-bit images",
+                                            scene.narrowedTextures)});
     }
     if (counters.unknownShader > 0) {
         rows.push_back({"unknown shader", fmt::format("{} hits", counters.unknownShader)});

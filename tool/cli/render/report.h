@@ -9,10 +9,13 @@
 
 #include <glint/environment.h>
 #include <glint/renderer.h>
+#include <glint/scene_view.h>
 #include <glint/scene_view/sky.h>
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,6 +38,19 @@ struct FrameReport {
     double renderMs = 0.0;  // wall clock: all samples and the read-back
     double deviceMs = 0.0;  // the passes of the last sample
 };
+
+// The images of a scene as the device reads them.
+struct TextureReport {
+    std::uint32_t images = 0;
+    std::uint32_t found = 0;                       // compressed, and found in the cache
+    std::map<std::string, std::uint32_t> formats;  // how many have it
+    std::uint64_t texels = 0;                      // of the first levels
+    std::uint64_t bytes = 0;                       // of all levels
+    // With --texture-levels: the finest level that was read of each texture of the package; none if it was
+    // not read.
+    std::vector<std::optional<std::uint32_t>> levels;
+};
+TextureReport textureReport(std::span<const ImageView> images);
 
 struct RenderReport {
     std::string scene;
@@ -59,6 +75,7 @@ struct RenderReport {
     std::uint32_t cases = 0;
     std::vector<std::string> caseNames;  // by shader ID
     std::optional<EnvironmentReport> environment;
+    TextureReport textures;
     GpuScene::Statistics sceneStatistics;
     Renderer::Footprint footprint;
     bool countsLight = false;  // rays of shadow and ambient-occlusion are counted

@@ -27,6 +27,9 @@ const Codec* findCodec(ByteView bytes) {
     if (isWebp(text)) {
         return &kWebp;
     }
+    if (text.starts_with("DDS ")) {
+        return &kDds;
+    }
     return text.starts_with("\xABKTX 20\xBB") ? &kBasisu : nullptr;
 }
 
@@ -34,9 +37,6 @@ const char* foreignFormat(ByteView bytes) {
     const std::string_view text = textOf(bytes);
     if (text.starts_with("\xABKTX")) {
         return "KTX 1";
-    }
-    if (text.starts_with("DDS ")) {
-        return "DDS";
     }
     return text.size() >= 12 && text.substr(4).starts_with("ftypavif") ? "AVIF" : "";
 }

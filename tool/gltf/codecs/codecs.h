@@ -21,8 +21,9 @@ struct Codec {
 extern const Codec kPng;
 extern const Codec kJpeg;
 extern const Codec kWebp;
-// In a build without hasBasisu(), decode() of this codec fails and says why.
+// KTX2 and DDS. In a build without hasBasisu(), decode() fails for data that need it, and says why.
 extern const Codec kBasisu;
+extern const Codec kDds;
 
 // Returns the codec that matches the first bytes, or null if there is none.
 const Codec* findCodec(ByteView bytes);

@@ -103,7 +103,8 @@ std::optional<SchemaError> checkCompression(Json& root) {
     if (auto error = checkElements(root, "bufferViews", kMeshoptNames, kMeshopt)) {
         return error;
     }
-    constexpr std::array<std::string_view, 2> kImages{"EXT_texture_webp", "KHR_texture_basisu"};
+    constexpr std::array<std::string_view, 3> kImages{"EXT_texture_webp", "KHR_texture_basisu",
+                                                      "MSFT_texture_dds"};
     if (auto error = checkElements(root, "textures", kImages, kSource)) {
         return error;
     }

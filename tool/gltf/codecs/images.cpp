@@ -1,8 +1,8 @@
 #include "gltf/codecs/images.h"
 
 #include "gltf/codecs/basisu.h"
+#include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
-#include "gltf/codecs/ktx2.h"
 #include "gltf/document/uri.h"
 #include "gltf/image_content.h"
 
@@ -88,45 +88,64 @@ Status checkSize(Document& document, const Image& image) {
     return okStatus();
 }
 
-void warnOfDeviations(Document& document, ByteView bytes, const Image& image) {
+void warnOfDeviations(Document& document, ByteView bytes, const Codec& codec, const Image& image) {
+    if (&codec != &kBasisu && &codec != &kDds) {
+        return;
+    }
     std::string problem;
-    if (const std::optional<Ktx2> file = readKtx2(bytes, problem)) {
+    if (const std::optional<BlockFile> file = readBlockFile(bytes, problem)) {
         for (const std::string& deviation : file->deviations) {
             document.warn("ktx2-metadata", image.pointer, deviation,
-                          "make the KTX2 file by the rules of KHR_texture_basisu");
+                          &codec == &kDds ? "make the DDS file without it"
+                                          : "make the KTX2 file by the rules of KHR_texture_basisu");
         }
     }
 }
 
-Status decode(Document& document, ByteView bytes, Image& image) {
-    const auto fail = [&](std::string message, const char* hint) {
-        return document.error("image-decode", image.pointer, std::move(message), hint);
-    };
-    const Codec* codec = findCodec(bytes);
+// What went wrong with an image, and what to do.
+struct Failure {
+    std::string message;
+    const char* hint = kStore;
+};
+
+Failure cantDecode(const Codec& codec, const std::string& problem) {
+    return {fmt::format("is a {} image that can't be decoded: {}", codec.name, problem),
+            &codec == &kBasisu && !hasBasisu() ? kBasisuHint : kStore};
+}
+
+std::optional<Failure> readHeader(ByteView bytes, Image& image, const Codec*& codec) {
+    codec = findCodec(bytes);
     if (codec == nullptr) {
         const std::string_view format = foreignFormat(bytes);
-        return fail(bytes.empty()    ? "is empty"
-                    : format.empty() ? "is neither PNG nor JPEG, WebP or KTX2"
-                                     : fmt::format("is a {} image, which Glint does not read", format),
-                    kStore);
+        return Failure{bytes.empty()    ? "is empty"
+                       : format.empty() ? "is neither PNG nor JPEG, WebP, KTX2 or DDS"
+                                        : fmt::format("is a {} image, which Glint does not read", format)};
     }
-    const char* hint = codec == &kBasisu && !hasBasisu() ? kBasisuHint : kStore;
-    const auto failDecoding = [&](const std::string& problem) {
-        return fail(fmt::format("is a {} image that can't be decoded: {}", codec->name, problem), hint);
-    };
     std::string problem;
     if (!codec->readHeader(bytes, image, problem)) {
-        return failDecoding(problem);
+        return cantDecode(*codec, problem);
+    }
+    return std::nullopt;
+}
+
+// Reads the header, and the pixels if something needs them.
+Status read(Document& document, ByteView bytes, Image& image) {
+    const auto fail = [&](Failure failure) {
+        return document.error("image-decode", image.pointer, std::move(failure.message), failure.hint);
+    };
+    const Codec* codec = nullptr;
+    if (std::optional<Failure> failure = readHeader(bytes, image, codec)) {
+        return fail(std::move(*failure));
     }
     if (Status status = checkSize(document, image); !status) {
         return status;
     }
-    if (!codec->decode(bytes, image, problem)) {
-        return failDecoding(problem);
+    const ImportOptions& options = document.options();
+    std::string problem;
+    if ((options.decodeImages || options.trustTextures) && !codec->decode(bytes, image, problem)) {
+        return fail(cantDecode(*codec, problem));
     }
-    if (codec == &kBasisu) {
-        warnOfDeviations(document, bytes, image);
-    }
+    warnOfDeviations(document, bytes, *codec, image);
     return okStatus();
 }
 
@@ -143,8 +162,7 @@ Decodable decodability(const Document& document, int image) {
     if (type == "image/ktx2" || endsWith(".ktx2")) {
         return hasBasisu() ? Decodable::Yes : Decodable::NeedsBasisu;
     }
-    const bool isForeign = type == "image/vnd-ms.dds" || type == "image/avif" || endsWith(".ktx") ||
-                           endsWith(".dds") || endsWith(".avif");
+    const bool isForeign = type == "image/avif" || endsWith(".ktx") || endsWith(".avif");
     return isForeign ? Decodable::No : Decodable::Yes;
 }
 
@@ -162,7 +180,7 @@ Result<Image> importImage(Document& document, int index) {
                               "export the scene again");
     }
     const ImportOptions& options = document.options();
-    if (!options.decodeImages && !options.trustTextures) {
+    if (!options.decodeImages && !options.trustTextures && !options.keepImageFiles) {
         return image;
     }
     base::Bytes storage;
@@ -170,7 +188,7 @@ Result<Image> importImage(Document& document, int index) {
     if (!bytes) {
         return bytes.error();
     }
-    if (Status status = decode(document, *bytes, image); !status) {
+    if (Status status = read(document, *bytes, image); !status) {
         return status.error();
     }
     if (options.trustTextures) {
@@ -179,7 +197,24 @@ Result<Image> importImage(Document& document, int index) {
     if (!options.decodeImages) {
         image.pixels = {};
     }
+    if (options.keepImageFiles && storage.empty()) {
+        image.file.assign(bytes->begin(), bytes->end());
+    } else if (options.keepImageFiles) {
+        image.file = std::move(storage);
+    }
     return image;
+}
+
+Status decodeFile(const Scene& scene, Image& image) {
+    const Codec* codec = nullptr;
+    std::optional<Failure> failure = readHeader(image.file, image, codec);
+    std::string problem;
+    if (!failure && !codec->decode(image.file, image, problem)) {
+        failure = cantDecode(*codec, problem);
+    }
+    return failure ? makeError("image-decode", fmt::format("{}#{}", scene.path, image.pointer),
+                               std::move(failure->message), failure->hint)
+                   : okStatus();
 }
 
 }  // namespace glint::gltf

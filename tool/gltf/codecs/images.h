@@ -19,8 +19,11 @@ enum class Decodable : std::uint8_t {
 // Returns whether Glint can decode the image, judging by its type and the name of its file. It opens no file.
 Decodable decodability(const Document& document, int image);
 
-// Reads the image's name, and its pixels if ImportOptions::decodeImages is set. Errors: "image-data" (no
+// Reads the image's name, and its pixels or its file if ImportOptions ask for them. Errors: "image-data" (no
 // source or two), "image-decode", "image-size", and those of reading files.
 Result<Image> importImage(Document& document, int image);
+
+// Fills the pixels of an image of the scene that has its file. Error "image-decode".
+Status decodeFile(const Scene& scene, Image& image);
 
 }  // namespace glint::gltf

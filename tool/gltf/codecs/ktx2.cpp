@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <limits>
 #include <string_view>
 
@@ -43,31 +42,22 @@ constexpr std::uint8_t kTransferLinear = 1;
 constexpr std::uint8_t kTransferSrgb = 2;
 constexpr std::uint8_t kPremultiplied = 1;
 
-// Reads little-endian numbers at places that were found to lie in the file.
-class Ktx2Reader {
-public:
-    explicit Ktx2Reader(ByteView bytes) : bytes_(bytes) {}
-
-    bool has(std::uint64_t offset, std::uint64_t length) const {
-        return offset <= bytes_.size() && length <= bytes_.size() - offset;
-    }
-    std::uint8_t byte(std::uint64_t offset) const {
-        return bytes_[static_cast<std::size_t>(offset)];
-    }
-    std::uint32_t word(std::uint64_t offset) const {
-        return static_cast<std::uint32_t>(byte(offset) | byte(offset + 1) << 8U | byte(offset + 2) << 16U) |
-               static_cast<std::uint32_t>(byte(offset + 3)) << 24U;
-    }
-    std::uint64_t longWord(std::uint64_t offset) const {
-        return word(offset) | static_cast<std::uint64_t>(word(offset + 4)) << 32U;
-    }
-    std::string_view text(std::uint64_t offset, std::uint64_t length) const {
-        return {reinterpret_cast<const char*>(bytes_.data()) + offset, static_cast<std::size_t>(length)};
-    }
-
-private:
-    ByteView bytes_;
+// Numbers of VkFormat, which the file has. The one after it is the same in sRGB, or with signed values.
+struct FormatRow {
+    std::uint32_t linear;
+    TexelFormat format;
 };
+constexpr auto kBlockFormats = std::to_array<FormatRow>({
+    {131, TexelFormat::Bc1},       {133, TexelFormat::Bc1},       {135, TexelFormat::Bc2},
+    {137, TexelFormat::Bc3},       {139, TexelFormat::Bc4},       {141, TexelFormat::Bc5},
+    {145, TexelFormat::Bc7},       {147, TexelFormat::Etc2Rgb},   {149, TexelFormat::Etc2Rgba1},
+    {151, TexelFormat::Etc2Rgba},  {153, TexelFormat::EacR},      {155, TexelFormat::EacRg},
+    {157, TexelFormat::Astc4x4},   {159, TexelFormat::Astc5x4},   {161, TexelFormat::Astc5x5},
+    {163, TexelFormat::Astc6x5},   {165, TexelFormat::Astc6x6},   {167, TexelFormat::Astc8x5},
+    {169, TexelFormat::Astc8x6},   {171, TexelFormat::Astc8x8},   {173, TexelFormat::Astc10x5},
+    {175, TexelFormat::Astc10x6},  {177, TexelFormat::Astc10x8},  {179, TexelFormat::Astc10x10},
+    {181, TexelFormat::Astc12x10}, {183, TexelFormat::Astc12x12},
+});
 
 // The fields of the header that are needed twice.
 struct Header {
@@ -81,27 +71,35 @@ struct Header {
 
 // Each of these functions returns what is wrong, or an empty text.
 
-std::string checkShape(const Ktx2Reader& file, Header& header) {
+std::string checkShape(const FileReader& file, Header& header, BlockFile& image) {
     const std::uint32_t format = file.word(12);
     if (format != 0) {
-        return fmt::format(
-            "it holds data of VkFormat {}; KHR_texture_basisu allows ETC1S and UASTC, and "
-            "neither uncompressed data nor other block compression",
-            format);
+        const auto* const row = std::ranges::find_if(kBlockFormats, [format](const FormatRow& one) {
+            return one.linear == format || one.linear + 1 == format;
+        });
+        // Formats of one pair follow each other: linear, then sRGB or signed values.
+        if (row == kBlockFormats.end() || (format != row->linear && !infoOf(row->format).hasSrgb)) {
+            return fmt::format(
+                "it holds data of VkFormat {}; Glint reads ETC1S, UASTC, and BC1 to BC5, BC7, ETC2, EAC and "
+                "ASTC with unsigned values",
+                format);
+        }
+        constexpr std::uint32_t kBc1Opaque = 131;  // VK_FORMAT_BC1_RGB_UNORM_BLOCK
+        image.format = row->format;
+        image.hasAlpha = row->linear != kBc1Opaque;
+        image.transfer = format == row->linear ? Transfer::Linear : Transfer::Srgb;
+        image.deviations.push_back(
+            fmt::format("it holds {}, which KHR_texture_basisu does not allow; it is read all the same",
+                        infoOf(row->format).name));
     }
     header.width = file.word(20);
     header.height = file.word(24);
     if (file.word(28) != 0 || file.word(32) != 0 || file.word(36) != 1) {
         return "it is no single two-dimensional image, but has a depth, layers or faces";
     }
-    constexpr auto kLargest = static_cast<std::uint32_t>(std::numeric_limits<int>::max());
-    if (header.width == 0 || header.height == 0 || header.width > kLargest || header.height > kLargest) {
-        return fmt::format("its size is {} x {} pixels", header.width, header.height);
-    }
     header.levels = file.word(40);
-    const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(header.width, header.height)));
-    if (header.levels == 0 || header.levels > most) {
-        return fmt::format("it has {} levels; 1 to {} are possible", header.levels, most);
+    if (std::string problem = checkImageShape(header.width, header.height, header.levels); !problem.empty()) {
+        return problem;
     }
     header.scheme = static_cast<Scheme>(file.word(44));
     return file.has(kHeaderBytes, kLevelBytes * header.levels) ? "" : "it ends within its header";
@@ -119,8 +117,36 @@ std::string nameOf(Model model) {
     }
 }
 
-// Checks the data format descriptor.
-std::string checkFormat(const Ktx2Reader& file, Header& header, Ktx2& image) {
+// Checks what a descriptor says besides the format: primaries and whether alpha is premultiplied.
+void tellDeviations(const FileReader& file, std::uint64_t descriptor, BlockFile& image) {
+    const std::uint8_t primaries = file.byte(descriptor + 13);
+    if (primaries != kPrimariesUnspecified && primaries != kPrimariesBt709) {
+        image.deviations.push_back(fmt::format(
+            "its colour primaries have the number {}; they are taken for those of BT.709", primaries));
+    }
+    if ((file.byte(descriptor + 15) & kPremultiplied) != 0) {
+        image.deviations.emplace_back("its alpha is premultiplied; it is read as if it were not");
+    }
+}
+
+// Checks the data format descriptor of a block format, which VkFormat has decided.
+std::string checkBlockFormat(const FileReader& file, const Header& header, BlockFile& image) {
+    const std::uint64_t start = file.word(48);
+    const std::uint32_t length = file.word(52);
+    if (start < kHeaderBytes || !file.has(start, length) || length < kOneSample ||
+        file.word(start) != length) {
+        return "its data format descriptor is damaged";
+    }
+    if (header.scheme != Scheme::None && header.scheme != Scheme::Zstandard) {
+        return fmt::format("its supercompression scheme is {}, which Glint does not read for {}",
+                           static_cast<std::uint32_t>(header.scheme), infoOf(*image.format).name);
+    }
+    tellDeviations(file, start, image);
+    return "";
+}
+
+// Checks the data format descriptor of data of Basis Universal.
+std::string checkFormat(const FileReader& file, Header& header, BlockFile& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
     if (start < kHeaderBytes || !file.has(start, length) || (length != kOneSample && length != kTwoSamples) ||
@@ -155,26 +181,21 @@ std::string checkFormat(const Ktx2Reader& file, Header& header, Ktx2& image) {
     } else if (!isColor) {
         return "its channels are neither RGB nor RGBA, which is all that KHR_texture_basisu allows";
     }
-    const std::uint8_t primaries = file.byte(start + 13);
-    if (primaries != kPrimariesUnspecified && primaries != kPrimariesBt709) {
-        image.deviations.push_back(fmt::format(
-            "its colour primaries have the number {}; they are taken for those of BT.709", primaries));
-    }
     const std::uint8_t transfer = file.byte(start + 14);
     if (transfer != kTransferLinear && transfer != kTransferSrgb) {
         return fmt::format("its transfer function has the number {}, which is neither linear nor sRGB",
                            transfer);
     }
     image.transfer = transfer == kTransferSrgb ? Transfer::Srgb : Transfer::Linear;
-    if ((file.byte(start + 15) & kPremultiplied) != 0) {
-        image.deviations.emplace_back("its alpha is premultiplied; it is read as if it were not");
-    }
+    tellDeviations(file, start, image);
+    image.isEtc1s = isEtc1s;
+    image.hasAlpha = isEtc1s ? header.twoSamples : channel == kChannelUastcRgba;
     return "";
 }
 
 // Checks the key and value data. They are pairs of text, each with its length before it, at multiples of 4
 // bytes.
-std::string checkMetadata(const Ktx2Reader& file, Ktx2& image) {
+std::string checkMetadata(const FileReader& file, BlockFile& image) {
     std::uint64_t place = file.word(56);
     const std::uint64_t length = file.word(60);
     if (length == 0) {
@@ -215,15 +236,8 @@ std::string checkMetadata(const Ktx2Reader& file, Ktx2& image) {
     return "";
 }
 
-// Returns how many blocks the level has.
-std::uint64_t blocksOf(const Header& header, std::uint32_t level) {
-    const std::uint64_t width = std::max(header.width >> level, 1U);
-    const std::uint64_t height = std::max(header.height >> level, 1U);
-    return (width + 3) / 4 * ((height + 3) / 4);
-}
-
 // Checks the code books of ETC1S data, and where the data of each level lie in it.
-std::string checkGlobalData(const Ktx2Reader& file, const Header& header) {
+std::string checkGlobalData(const FileReader& file, const Header& header) {
     const std::uint64_t start = file.longWord(64);
     const std::uint64_t length = file.longWord(72);
     std::uint64_t needed = kEtc1sHeaderBytes + kEtc1sImageBytes * header.levels;
@@ -252,30 +266,33 @@ std::string checkGlobalData(const Ktx2Reader& file, const Header& header) {
     return "";
 }
 
-std::string checkLevels(const Ktx2Reader& file, const Header& header) {
+std::string checkLevels(const FileReader& file, const Header& header, BlockFile& image) {
+    // A block of UASTC is as large as one of BC7.
+    const TexelFormat format = image.format.value_or(TexelFormat::Bc7);
     for (std::uint32_t level = 0; level < header.levels; ++level) {
         const std::uint64_t entry = kHeaderBytes + kLevelBytes * level;
         const std::uint64_t start = file.longWord(entry);
         const std::uint64_t length = file.longWord(entry + 8);
         const std::uint64_t unpacked = file.longWord(entry + 16);
         const std::uint64_t wanted =
-            header.scheme == Scheme::BasisLz ? 0 : kBlockBytes * blocksOf(header, level);
+            header.scheme == Scheme::BasisLz ? 0 : bytesOfLevel(format, header.width, header.height, level);
         if (start < kHeaderBytes + kLevelBytes * header.levels || !file.has(start, length) || length == 0 ||
             unpacked != wanted || (header.scheme == Scheme::None && length != wanted)) {
             return fmt::format("its level {} is damaged", level);
         }
         // Section 3.9.7, "mipPadding", requires this. The transcoder reads blocks as structures.
-        if (header.scheme == Scheme::None && start % kBlockBytes != 0) {
+        if (header.scheme == Scheme::None && !image.format && start % kBlockBytes != 0) {
             return fmt::format("its level {} does not start at a multiple of {} bytes", level, kBlockBytes);
         }
+        image.places.push_back({start, length});
     }
     return header.scheme == Scheme::BasisLz ? checkGlobalData(file, header) : "";
 }
 
 }  // namespace
 
-std::optional<Ktx2> readKtx2(ByteView bytes, std::string& problem) {
-    const Ktx2Reader file(bytes);
+std::optional<BlockFile> readKtx2(ByteView bytes, std::string& problem) {
+    const FileReader file(bytes);
     // Every file has at least one level in its index.
     if (!file.has(0, kHeaderBytes + kLevelBytes) ||
         bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
@@ -284,16 +301,16 @@ std::optional<Ktx2> readKtx2(ByteView bytes, std::string& problem) {
         return std::nullopt;
     }
     Header header;
-    Ktx2 image;
-    problem = checkShape(file, header);
+    BlockFile image;
+    problem = checkShape(file, header, image);
     if (problem.empty()) {
-        problem = checkFormat(file, header, image);
+        problem = image.format ? checkBlockFormat(file, header, image) : checkFormat(file, header, image);
     }
     if (problem.empty()) {
         problem = checkMetadata(file, image);
     }
     if (problem.empty()) {
-        problem = checkLevels(file, header);
+        problem = checkLevels(file, header, image);
     }
     if (!problem.empty()) {
         return std::nullopt;
@@ -301,23 +318,11 @@ std::optional<Ktx2> readKtx2(ByteView bytes, std::string& problem) {
     image.width = static_cast<int>(header.width);
     image.height = static_cast<int>(header.height);
     image.levels = static_cast<int>(header.levels);
-    if (image.width % 4 != 0 || image.height % 4 != 0) {
+    image.isZstandard = header.scheme == Scheme::Zstandard;
+    if (!image.format && (image.width % 4 != 0 || image.height % 4 != 0)) {
         image.deviations.emplace_back("its width and height are not multiples of 4; it is read all the same");
     }
     return image;
-}
-
-bool readKtx2Header(ByteView bytes, Image& image, std::string& problem) {
-    const std::optional<Ktx2> file = readKtx2(bytes, problem);
-    if (!file) {
-        return false;
-    }
-    image.width = file->width;
-    image.height = file->height;
-    image.levels = file->levels;
-    image.transfer = file->transfer;
-    image.format = PixelFormat::Rgba8;
-    return true;
 }
 
 }  // namespace glint::gltf

@@ -20,7 +20,8 @@ namespace {
 constexpr auto kSupported = std::to_array<std::string_view>(
     {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_animation_pointer",
      "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_variants", "KHR_mesh_quantization",
-     "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_basisu", "KHR_texture_transform"});
+     "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_basisu", "KHR_texture_transform",
+     "MSFT_texture_dds"});
 
 // Ratified or registered extensions whose data a renderer may ignore even if a file requires them.
 constexpr auto kNoPicture = std::to_array<std::string_view>(
@@ -42,7 +43,7 @@ std::set<std::string> unreadOf(const Document& document) {
 }
 
 std::string extensionHint(std::string_view name) {
-    if (name == "MSFT_texture_dds" || name == "EXT_texture_avif") {
+    if (name == "EXT_texture_avif") {
         return "store the textures as PNG, JPEG or WebP";
     }
     if (name.starts_with("KHR_materials_")) {

@@ -13,7 +13,9 @@
 #include <glint/renderer.h>
 #include <glint/scene_view/scene_view.h>
 #include <glint/scene_view/sky.h>
+#include <glint/scene_view/textures.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -23,6 +25,7 @@
 #include <vector>
 
 namespace glint::compiler {
+class CacheStore;
 class ModuleCache;
 }  // namespace glint::compiler
 
@@ -96,10 +99,12 @@ struct SceneSize {
 class BenchBed {
 public:
     // Reads the environment map, and chooses the camera and the device. Messages go to `observer`.
-    // `observer`, `scene` and `cache`, which may be null, must outlive the result. Errors of
+    // `observer`, `scene`, `cache` and `store`, which may be null, must outlive the result. `store` keeps
+    // compressed textures. Errors of
     // Context::createHeadless() and of files.
     static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const compiler::Settings& base,
-                                                    const gltf::Scene& scene, compiler::ModuleCache* cache);
+                                                    const gltf::Scene& scene, compiler::ModuleCache* cache,
+                                                    compiler::CacheStore* store);
 
     // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
     // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
@@ -136,15 +141,20 @@ public:
 
 private:
     BenchBed(const Observer& observer, compiler::Settings base, const gltf::Scene& scene,
-             compiler::ModuleCache* cache)
-        : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache) {}
+             compiler::ModuleCache* cache, compiler::CacheStore* store)
+        : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache), store_(store) {}
     Status settleChoices();
     Result<std::shared_ptr<MountedPackage>> mountPackage(const compiler::Settings& arguments);
+    Result<std::shared_ptr<const scene_view::TextureSet>> textures(const compiler::Settings& settings,
+                                                                   const Package& package);
 
     const Observer& observer_;
     compiler::Settings base_;
     const gltf::Scene& scene_;
     compiler::ModuleCache* cache_;
+    compiler::CacheStore* store_;
+    // By whether they are compressed, and whether emission is unpacked as well.
+    std::map<std::array<bool, 2>, std::shared_ptr<const scene_view::TextureSet>> textures_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;
     CameraView camera_;

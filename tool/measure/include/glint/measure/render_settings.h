@@ -5,9 +5,11 @@
 #include "settings/configuration.h"
 
 #include <glint/context.h>
+#include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/scene_view/scene_view.h>
 #include <glint/scene_view/sky.h>
+#include <glint/scene_view/textures.h>
 
 #include <cstdint>
 #include <vector>
@@ -24,6 +26,9 @@ bool addsSun(const compiler::Settings& settings, const gltf::Scene& scene);
 HeadlessOptions deviceOptions(const compiler::Settings& settings);
 // Returns the scene as it is uploaded, with the light that it may lack and the sizes of lights.
 scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gltf::Scene& scene);
+// Returns how the scene's images are read for the device and the package. `cache` may be null.
+scene_view::TextureOptions textureOptions(const compiler::Settings& settings, const Context& context,
+                                          const Package& package, compiler::CacheStore* cache);
 // Gives lights the sizes that the settings ask for.
 void sizeLights(const compiler::Settings& settings, scene_view::SceneViewData& scene);
 // Returns the settings of a package with these strategies and tracers.

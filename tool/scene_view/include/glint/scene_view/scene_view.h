@@ -15,9 +15,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace glint::scene_view {
+
+struct TextureSet;  // glint/scene_view/textures.h
 
 // The arrays behind a SceneView. Spans point into the Scene, which must outlive it and must not change.
 struct SceneViewData {
@@ -37,6 +40,8 @@ struct SceneViewData {
         std::size_t placement = 0;  // index into its Instancing, if it has one
     };
     std::vector<Source> sources;
+    // Holds the images that useTextures() has given.
+    std::shared_ptr<const TextureSet> textures;
     // The data to which the spans of primitives, instances and materials point.
     compiler::MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
     std::vector<std::vector<std::uint8_t>> materialRecords;
@@ -63,7 +68,7 @@ struct SceneViewData {
 // Primitives without a triangle are left out, and so are instances of meshes that have no other, and nodes
 // that are never shown. Positions are in metres, lights in lux (directional) and candela (point and spot).
 // Copies no vertices and no pixels: `scene` must outlive the result. Its images must have been decoded, or
-// the runtime refuses them.
+// loadTextures() must read them, or the runtime refuses them.
 SceneViewData makeSceneView(const gltf::Scene& scene);
 
 // Returns the layout of the package's material records. `model` is that of the materials which it was

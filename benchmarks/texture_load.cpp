@@ -1,0 +1,181 @@
+// glint_texture_load: measures how much processor time the images of scenes take until a device can have
+// them, and how much memory they take there. Rounds of the scenes alternate. It can also write the images of
+// a scene as PNG, to compare the same picture in two kinds of files.
+#include "gltf/import.h"
+#include "gltf/texels/levels.h"
+#include "image/image_file.h"
+
+#include <glint/scene_view/textures.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <sys/resource.h>
+#include <vector>
+
+namespace glint {
+
+namespace {
+
+struct Arguments {
+    std::vector<std::string> scenes;
+    int rounds = 5;
+    bool compress = false;
+    bool unpack = false;
+    std::string png;
+};
+
+double processorMilliseconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto milliseconds = [](const timeval& time) {
+        return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
+    };
+    return milliseconds(usage.ru_utime) + milliseconds(usage.ru_stime);
+}
+
+// The formats of most desktop devices.
+TexelFormats desktopFormats(bool blocks) {
+    using enum TexelFormat;
+    TexelFormats formats;
+    for (const TexelFormat format : {Rgba8, Rgba16, Bc1, Bc2, Bc3, Bc4, Bc5, Bc7}) {
+        if (isBlockFormat(format) && !blocks) {
+            continue;
+        }
+        formats.add(format, false);
+        if (infoOf(format).hasSrgb) {
+            formats.add(format, true);
+        }
+    }
+    return formats;
+}
+
+struct Round {
+    double processorMs = 0.0;
+    std::uint64_t texels = 0;
+    std::uint64_t bytes = 0;
+    std::map<std::string, int> formats;
+};
+
+Result<Round> load(const std::string& file, const Arguments& arguments) {
+    const double begin = processorMilliseconds();
+    const Result<gltf::Scene> scene = gltf::importScene(file, {.keepImageFiles = true});
+    if (!scene) {
+        return scene.error();
+    }
+    scene_view::TextureOptions options;
+    options.fit.formats = desktopFormats(!arguments.unpack);
+    options.fit.compress = arguments.compress;
+    const auto textures = scene_view::loadTextures(*scene, options);
+    if (!textures) {
+        return textures.error();
+    }
+    Round round;
+    round.processorMs = processorMilliseconds() - begin;
+    for (const gltf::FittedImage& image : (*textures)->images) {
+        const auto width = static_cast<std::uint32_t>(image.width);
+        const auto height = static_cast<std::uint32_t>(image.height);
+        ++round.formats[infoOf(image.format).name];
+        round.texels += std::uint64_t{width} * height;
+        // The device makes the levels that texels lack.
+        const int levels =
+            isBlockFormat(image.format) ? image.levels : gltf::fullLevels(image.width, image.height);
+        round.bytes += bytesOfLevels(image.format, width, height, static_cast<std::uint32_t>(levels));
+    }
+    return round;
+}
+
+// Writes red, green and blue of the images of a scene.
+Status writePngs(const std::string& file, const std::filesystem::path& folder) {
+    const Result<gltf::Scene> scene = gltf::importScene(file, {.decodeImages = true});
+    if (!scene) {
+        return scene.error();
+    }
+    for (const gltf::Image& image : scene->images) {
+        image::DisplayImage picture{
+            static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), {}};
+        for (std::size_t i = 0; i < pixelCount(image, 0); ++i) {
+            picture.pixels.push_back({image.pixels[4 * i], image.pixels[4 * i + 1], image.pixels[4 * i + 2]});
+        }
+        const std::string name = std::filesystem::path(image.name).stem().string() + ".png";
+        if (Status written = image::writeImage(folder / name, picture); !written) {
+            return written;
+        }
+    }
+    return okStatus();
+}
+
+int fail(const Diagnostic& error) {
+    std::fprintf(stderr, "%s\n", toString(error).c_str());
+    return 1;
+}
+
+int run(const Arguments& arguments) {
+    if (!arguments.png.empty()) {
+        const Status written = writePngs(arguments.scenes.front(), arguments.png);
+        return written ? 0 : fail(written.error());
+    }
+    std::vector<std::vector<double>> times(arguments.scenes.size());
+    std::vector<Round> last(arguments.scenes.size());
+    for (int round = 0; round < arguments.rounds; ++round) {
+        for (std::size_t i = 0; i < arguments.scenes.size(); ++i) {
+            Result<Round> measured = load(arguments.scenes[i], arguments);
+            if (!measured) {
+                return fail(measured.error());
+            }
+            times[i].push_back(measured->processorMs);
+            last[i] = std::move(*measured);
+        }
+    }
+    for (std::size_t i = 0; i < arguments.scenes.size(); ++i) {
+        std::ranges::sort(times[i]);
+        std::string formats;
+        for (const auto& [name, count] : last[i].formats) {
+            formats += fmt::format(" {} {}", count, name);
+        }
+        fmt::print(
+            "{}: {:.0f} ms of processor time ({:.0f} to {:.0f}), {} texels, {} bytes, {:.2f} a texel;{}\n",
+            arguments.scenes[i], times[i][times[i].size() / 2], times[i].front(), times[i].back(),
+            last[i].texels, last[i].bytes,
+            static_cast<double>(last[i].bytes) /
+                static_cast<double>(std::max<std::uint64_t>(last[i].texels, 1)),
+            formats);
+    }
+    return 0;
+}
+
+int parseAndRun(int argc, char** argv) {
+    Arguments arguments;
+    CLI::App app("Measures how long the images of scenes take to load, and their size on a desktop device.");
+    app.add_option("scenes", arguments.scenes, "glTF files")->required();
+    app.add_option("--rounds", arguments.rounds, "rounds of each scene")->check(CLI::Range(1, 1000));
+    app.add_flag("--compress", arguments.compress, "compress PNG, JPEG and WebP, without a cache");
+    app.add_flag("--unpack", arguments.unpack, "as for a device without block formats");
+    app.add_option("--png", arguments.png,
+                   "write the first scene's images to this folder, and measure nothing");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error);
+    }
+    return run(arguments);
+}
+
+}  // namespace
+
+}  // namespace glint
+
+int main(int argc, char** argv) {
+    try {
+        return glint::parseAndRun(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "glint_texture_load: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,497 @@
+// Tests textures on the device: block formats against the same blocks unpacked on the CPU, levels that arrive
+// while frames are drawn, and the report of the levels that a frame reads.
+#include "gltf/codecs/basisu.h"
+#include "gltf/texels/block_decode.h"
+#include "gltf/texels/levels.h"
+#include "render/edited_scene.h"
+#include "render/pixel_test.h"
+#include "scene/texture_stream.h"
+#include "unit/gltf/block_files.h"
+
+#include <glint/scene_view/package.h>
+#include <glint/texture_stream.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+constexpr std::uint32_t kCells = 6;        // of the picture, each way
+constexpr std::uint32_t kCellTexels = 10;  // no multiple of most block sizes
+constexpr std::uint32_t kSide = kCells * kCellTexels;
+
+// A scene of unlit squares, of which each shows an image of its own, texel by pixel.
+gltf::Scene squares(std::size_t count) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    for (std::size_t i = 0; i < count; ++i) {
+        materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
+        material.texture("baseColorTexture").texture = addTexture(
+            scene, kCellTexels, kCellTexels, std::vector<std::uint8_t>(4 * kCellTexels * kCellTexels, 255));
+        const float size = 2.0F / kCells;
+        const float left = -1.0F + size * static_cast<float>(i % kCells);
+        const float bottom = -1.0F + size * static_cast<float>(i / kCells);
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {left, bottom, -1.0F},
+                                                   {size, 0, 0}, {0, size, 0})));
+    }
+    return scene;
+}
+
+// The images of the squares: one for each format, in blocks or unpacked.
+struct FormatImages {
+    std::vector<TexelFormat> formats;
+    std::vector<std::vector<std::uint8_t>> blocks;
+    std::vector<std::vector<std::uint8_t>> pixels;
+};
+
+FormatImages imagesOf(const TexelFormats& known) {
+    FormatImages images;
+    for (std::uint32_t i = 0; i < kTexelFormatCount; ++i) {
+        const auto format = static_cast<TexelFormat>(i);
+        const bool needsBasisu = format == TexelFormat::Bc7 || format >= TexelFormat::Astc4x4;
+        if (!isBlockFormat(format) || !known.has(format, true) || (needsBasisu && !gltf::hasBasisu())) {
+            continue;
+        }
+        base::Bytes blocks = test::randomBlocks(format, kCellTexels, kCellTexels, 1, i);
+        std::string problem;
+        const auto pixels = gltf::decodeBlocks(format, true, kCellTexels, kCellTexels, blocks, problem);
+        EXPECT_TRUE(pixels) << problem;
+        images.formats.push_back(format);
+        images.pixels.push_back(pixels.value_or(std::vector<std::uint8_t>()));
+        images.blocks.push_back(std::move(blocks));
+    }
+    return images;
+}
+
+double toSrgb(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+// Random blocks have every mode. Devices may round colours otherwise, by a step of 8 bits or two.
+TEST(TextureFormats, DevicesReadWhatTheCpuUnpacks) {
+    const FormatImages images = imagesOf(sharedContext().texelFormats());
+    ASSERT_LE(images.formats.size(), std::size_t{kCells} * kCells);
+    ASSERT_TRUE(sharedContext().texelFormats().has(TexelFormat::Bc1, true));
+    const gltf::Scene scene = squares(images.formats.size());
+    RenderSetup setup = defaultSetup(scene, kSide, kSide);
+    const auto picture = [&](bool inBlocks) {
+        const LoadedScene loaded(scene, compiler::CompileSettings(), [&](scene_view::SceneViewData& data) {
+            for (std::size_t i = 0; i < images.formats.size(); ++i) {
+                data.images[i].format = inBlocks ? images.formats[i] : TexelFormat::Rgba8;
+                data.images[i].pixels = inBlocks ? images.blocks[i] : images.pixels[i];
+            }
+        });
+        return loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+    };
+    const LinearImage blocks = picture(true);
+    const LinearImage pixels = picture(false);
+    ASSERT_EQ(blocks.pixels.size(), std::size_t{kSide} * kSide);
+    ASSERT_EQ(pixels.pixels.size(), blocks.pixels.size());
+    for (std::size_t i = 0; i < images.formats.size(); ++i) {
+        double worst = 0.0;
+        double sum = 0.0;
+        const std::size_t left = i % kCells * kCellTexels;
+        const std::size_t bottom = kSide - i / kCells * kCellTexels;
+        for (std::size_t y = bottom - kCellTexels; y < bottom; ++y) {
+            for (std::size_t x = left; x < left + kCellTexels; ++x) {
+                for (std::size_t channel = 0; channel < 3; ++channel) {
+                    const double error = 255.0 * std::abs(toSrgb(blocks.pixels[y * kSide + x][channel]) -
+                                                          toSrgb(pixels.pixels[y * kSide + x][channel]));
+                    worst = std::max(worst, error);
+                    sum += error;
+                }
+            }
+        }
+        const double mean = sum / (3.0 * kCellTexels * kCellTexels);
+        RecordProperty(infoOf(images.formats[i]).name, std::to_string(worst));
+        EXPECT_LE(worst, 2.5) << infoOf(images.formats[i]).name;
+        EXPECT_LE(mean, 1.0) << infoOf(images.formats[i]).name;
+    }
+    expectNoValidationMessages();
+}
+
+// A lit square with data textures: vectors with two channels, roughness and metal in two, occlusion in one.
+TEST(TextureFormats, DataInOneAndTwoChannels) {
+    if (!gltf::hasBasisu()) {
+        GTEST_SKIP() << "this build does not pack blocks";
+    }
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addDirectionalLight(scene, {0.3F, -0.5F, -0.8F}, 3.0F);
+    constexpr std::uint32_t kSize = 16;
+    std::vector<std::uint8_t> normals;
+    std::vector<std::uint8_t> data;
+    for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+        const double x = 0.4 * std::sin(0.7 * (i % kSize));
+        const double y = 0.4 * std::cos(0.5 * (i / kSize));
+        const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(255.0 * value)); };
+        normals.insert(normals.end(), {byte(0.5 + 0.5 * x), byte(0.5 + 0.5 * y),
+                                       byte(0.5 + 0.5 * std::sqrt(1.0 - x * x - y * y)), 255});
+        data.insert(data.end(), {byte(0.2 + 0.05 * (i % kSize)), byte(0.3 + 0.04 * (i / kSize)),
+                                 byte(0.05 * (i % kSize)), 255});
+    }
+    materials::Material material;
+    material.texture("normalTexture").texture = addTexture(scene, kSize, kSize, normals);
+    material.texture("metallicRoughnessTexture").texture = addTexture(scene, kSize, kSize, data);
+    material.texture("occlusionTexture").texture = addTexture(scene, kSize, kSize, data);
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    const auto packed = [&](TexelFormat format, const std::vector<std::uint8_t>& pixels,
+                            const std::array<int, 2>& channels) {
+        std::vector<std::uint8_t> blocks;
+        for (std::uint32_t block = 0; block < 16; ++block) {
+            gltf::BlockTexels texels;
+            for (std::uint32_t i = 0; i < 16; ++i) {
+                const std::size_t x = block % 4 * 4 + i % 4;
+                const std::size_t y = block / 4 * 4 + i / 4;
+                std::copy_n(&pixels[4 * (y * kSize + x)], 4, texels[i].begin());
+            }
+            std::array<std::uint8_t, 16> bytes{};
+            gltf::packBlock(format, texels, channels, bytes.data());
+            blocks.insert(blocks.end(), bytes.begin(), bytes.begin() + infoOf(format).blockBytes);
+        }
+        return blocks;
+    };
+    const std::vector<std::uint8_t> blocks[] = {packed(TexelFormat::Bc5, normals, {0, 1}),
+                                                packed(TexelFormat::Bc5, data, {1, 2}),
+                                                packed(TexelFormat::Bc4, data, {0, 0})};
+    RenderSetup setup = defaultSetup(scene, 32, 32);
+    compiler::CompileSettings settings;
+    const LoadedScene plain(scene, settings);
+    const LoadedScene compressed(scene, settings, [&](scene_view::SceneViewData& view) {
+        using enum TexelChannel;
+        ASSERT_EQ(view.images.size(), 3U);
+        constexpr TexelFormat kFormats[] = {TexelFormat::Bc5, TexelFormat::Bc5, TexelFormat::Bc4};
+        constexpr TexelChannels kChannels[] = {{R, G, Zero, One}, {Zero, R, G, One}, {R, Zero, Zero, One}};
+        for (std::size_t i = 0; i < 3; ++i) {
+            view.images[i].format = kFormats[i];
+            view.images[i].pixels = blocks[i];
+            view.images[i].channels = kChannels[i];
+        }
+    });
+    ASSERT_TRUE(plain.ok() && compressed.ok());
+    const LinearImage expected = plain.render(package::kStrategyUber, setup);
+    const LinearImage image = compressed.render(package::kStrategyUber, setup);
+    double sum = 0.0;
+    double light = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            sum += std::abs(image.pixels[i][channel] - expected.pixels[i][channel]);
+            light += expected.pixels[i][channel];
+        }
+    }
+    EXPECT_GT(light, 0.0);
+    EXPECT_LT(sum / light, 0.03);
+    expectNoValidationMessages();
+}
+
+TEST(TextureFormats, WhatADeviceCantReadIsRefused) {
+    const gltf::Scene scene = squares(1);
+    Context& context = sharedContext();
+    const auto compiled = compilePackage(scene, compiler::CompileSettings());
+    ASSERT_TRUE(compiled.ok());
+    const auto package = scene_view::loadPackage(*compiled);
+    ASSERT_TRUE(package.ok());
+    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    const auto errorOf = [&](TexelFormat format, std::uint32_t levels, std::size_t bytes) {
+        const std::vector<std::uint8_t> blocks(bytes);
+        data.images[0].format = format;
+        data.images[0].levels = levels;
+        data.images[0].pixels = blocks;
+        const auto uploaded = GpuScene::upload(context, *package, data.view());
+        return uploaded ? std::string() : uploaded.error().id + ": " + uploaded.error().message;
+    };
+    // BC4 has no sRGB, which a base colour is in.
+    EXPECT_NE(errorOf(TexelFormat::Bc4, 1, 72).find("scene-image: the device does not read BC4"),
+              std::string::npos);
+    EXPECT_NE(errorOf(TexelFormat::Bc1, 1, 71).find("scene-image: 71 bytes"), std::string::npos);
+    EXPECT_NE(errorOf(TexelFormat::Bc1, 5, 72).find("takes 1 to 4"), std::string::npos);
+    EXPECT_EQ(errorOf(TexelFormat::Bc1, 1, 72), "");
+}
+
+// --- Levels ---
+
+constexpr int kTextureSize = 64;
+
+// An image with all levels, with colours at random.
+gltf::Texels noise(std::uint32_t seed) {
+    std::mt19937 random(seed);
+    gltf::Texels texels{kTextureSize, kTextureSize, gltf::PixelFormat::Rgba8, 1, {}};
+    texels.bytes.resize(std::size_t{4} * kTextureSize * kTextureSize);
+    for (std::uint8_t& byte : texels.bytes) {
+        byte = static_cast<std::uint8_t>(random());
+    }
+    completeLevels(texels, gltf::LevelFilter::Color);
+    return texels;
+}
+
+// Two unlit squares side by side, with textures of 64 x 64 texels, and one behind the camera.
+gltf::Scene texturedPair() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    for (int i = 0; i < 3; ++i) {
+        const gltf::Texels texels = noise(static_cast<std::uint32_t>(i));
+        materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
+        material.texture("baseColorTexture").texture =
+            addTexture(scene, kTextureSize, kTextureSize, texels.bytes);
+        scene.images.back().levels = texels.levels;
+        scene.samplers.back() = gltf::Sampler();
+        const float z = i == 2 ? 1.0F : -1.0F;
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material),
+                                                   {i == 1 ? 0.0F : -1.0F, -1.0F, z}, {1, 0, 0}, {0, 2, 0})));
+    }
+    return scene;
+}
+
+// At 32 x 32 pixels a square shows 4 texels a pixel across and 2 down, so that the geometric mean is
+// level 1.5.
+TEST(TextureLevels, TheFinestLevelThatWasReadIsNoted) {
+    gltf::Scene scene = texturedPair();
+    for (gltf::Sampler& sampler : scene.samplers) {
+        sampler.mip = gltf::Filter::Nearest;  // such samplers have no anisotropy on any device
+    }
+    compiler::CompileSettings settings;
+    settings.textureLevels = true;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    EXPECT_TRUE(loaded.package().textureLevels());
+    for (const auto& [size, level] : {std::pair(32U, 1U), std::pair(16U, 2U), std::pair(8U, 3U)}) {
+        FrameCounters counters;
+        const RenderSetup setup = defaultSetup(scene, size, size);
+        for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
+            loaded.render(strategy, setup, &counters);
+            ASSERT_EQ(counters.textureLevels.size(), 3U);
+            EXPECT_EQ(counters.textureLevels[0], level) << size;
+            EXPECT_EQ(counters.textureLevels[1], level) << size;
+            EXPECT_EQ(counters.textureLevels[2], FrameCounters::kLevelNotRead) << size;
+        }
+    }
+    expectNoValidationMessages();
+}
+
+TEST(TextureLevels, WithoutTheSettingThereIsNeitherCodeNorCounter) {
+    const gltf::Scene scene = texturedPair();
+    compiler::CompileSettings noting;
+    noting.textureLevels = true;
+    const auto withLevels = compilePackage(scene, noting);
+    const auto without = compilePackage(scene, compiler::CompileSettings());
+    ASSERT_TRUE(withLevels.ok() && without.ok());
+    const LoadedScene loaded(scene, compiler::CompileSettings());
+    ASSERT_TRUE(loaded.ok());
+    EXPECT_FALSE(loaded.package().textureLevels());
+    FrameCounters counters;
+    loaded.render(package::kStrategyUber, defaultSetup(scene, 8, 8), &counters);
+    EXPECT_TRUE(counters.textureLevels.empty());
+    const auto atomicsOf = [](const compiler::CompiledPackage& package) {
+        std::size_t count = 0;
+        for (const compiler::CompiledModule& module : package.modules) {
+            for (std::size_t word = 5; word < module.spirv.size(); word += module.spirv[word] >> 16U) {
+                constexpr std::uint32_t kOpAtomicUMax = 239;
+                count += (module.spirv[word] & 0xFFFFU) == kOpAtomicUMax ? 1 : 0;
+            }
+        }
+        return count;
+    };
+    EXPECT_GT(atomicsOf(*withLevels), 0U);
+    EXPECT_EQ(atomicsOf(*without), 0U);
+}
+
+// --- Streaming ---
+
+class Streaming {
+public:
+    Streaming(const gltf::Scene& scene, bool editable, std::uint32_t firstTexels = 8)
+        : scene_(scene), frames_(sharedContext()) {
+        compiler::CompileSettings settings;
+        settings.plan.fallback = editable;
+        settings.strategies = package::kStrategyUber;
+        settings.tracers = tracerOfDevice();
+        auto compiled = compilePackage(scene_, settings);
+        EXPECT_TRUE(compiled.ok());
+        package_ = std::make_unique<Package>(std::move(*scene_view::loadPackage(*compiled)));
+        data_ = scene_view::makeSceneView(scene_);
+        SceneView view = data_.view();
+        whole_ = upload(view);
+        view.editable = editable;
+        view.streamsTextures = true;
+        view.firstTexels = firstTexels;
+        streamed_ = upload(view);
+        setup_ = defaultSetup(scene_, 32, 32);
+        setup_.frame.averagedSamples = 1;
+        renderer_ = makeRenderer(*streamed_);
+    }
+    ~Streaming() {
+        frames_.drain();
+    }
+
+    TextureStream& stream() {
+        return *streamed_->textureStream();
+    }
+    GpuScene& scene() {
+        return *streamed_;
+    }
+
+    // Submits a frame; returns how many levels were completed.
+    std::uint32_t frame(std::uint64_t bytes) {
+        VkCommandBuffer commands = frames_.begin();
+        stream().complete(frames_.completed());
+        if (streamed_->editor() != nullptr) {
+            streamed_->editor()->complete(frames_.completed());
+        }
+        const Result<std::uint32_t> levels = stream().record(commands, frames_.frame(), bytes);
+        EXPECT_TRUE(levels.ok()) << (levels ? "" : toString(levels.error()));
+        if (streamed_->editor() != nullptr) {
+            EXPECT_TRUE(streamed_->editor()->record(commands, frames_.frame()));
+        }
+        EXPECT_TRUE(renderer_->record(commands, setup_.frame));
+        frames_.submit();
+        return levels ? *levels : 0;
+    }
+    void drain() {
+        frames_.drain();
+        stream().complete(frames_.completed());
+        if (streamed_->editor() != nullptr) {
+            streamed_->editor()->complete(frames_.completed());
+        }
+    }
+    LinearImage picture() {
+        drain();
+        return *renderer_->render(setup_.frame);
+    }
+    LinearImage wholePicture() {
+        return *makeRenderer(*whole_)->render(setup_.frame);
+    }
+
+private:
+    std::unique_ptr<GpuScene> upload(const SceneView& view) {
+        auto uploaded = GpuScene::upload(sharedContext(), *package_, view);
+        EXPECT_TRUE(uploaded.ok()) << (uploaded ? "" : toString(uploaded.error()));
+        return std::move(*uploaded);
+    }
+    std::unique_ptr<Renderer> makeRenderer(GpuScene& scene) {
+        RendererOptions options;
+        options.strategy = package::kStrategyUber;
+        options.width = 32;
+        options.height = 32;
+        auto renderer = Renderer::create(sharedContext(), *package_, scene, options);
+        EXPECT_TRUE(renderer.ok()) << (renderer ? "" : toString(renderer.error()));
+        return std::move(*renderer);
+    }
+
+    gltf::Scene scene_;
+    std::unique_ptr<Package> package_;
+    scene_view::SceneViewData data_;
+    std::unique_ptr<GpuScene> whole_;
+    std::unique_ptr<GpuScene> streamed_;
+    std::unique_ptr<Renderer> renderer_;
+    RenderSetup setup_;
+    TwoFrames frames_;
+};
+
+class TextureStreaming : public ::testing::TestWithParam<bool> {};
+
+// Small steps, so that levels arrive in parts, with two frames in flight.
+TEST_P(TextureStreaming, LevelsArriveUntilThePictureIsThatOfTheWholeScene) {
+    Streaming streaming(texturedPair(), GetParam());
+    const LinearImage whole = streaming.wholePicture();
+    const LinearImage coarse = streaming.picture();
+    EXPECT_NE(coarse.pixels, whole.pixels);
+    EXPECT_EQ(streaming.stream().finest(0), 3U);
+    // Levels 0 to 2 of three textures.
+    EXPECT_EQ(streaming.stream().progress().textures, 3U);
+    EXPECT_EQ(streaming.stream().progress().bytes, 3U * 4 * (64 * 64 + 32 * 32 + 16 * 16));
+    std::uint32_t completed = 0;
+    std::uint32_t finest = 3;
+    int frames = 0;
+    for (; streaming.stream().progress().textures > 0 && frames < 100; ++frames) {
+        completed += streaming.frame(3000);
+        EXPECT_LE(streaming.stream().finest(1), finest);
+        finest = streaming.stream().finest(1);
+    }
+    EXPECT_EQ(completed, 9U);
+    EXPECT_GT(frames, 15);
+    EXPECT_LT(frames, 60);
+    const LinearImage fine = streaming.picture();
+    EXPECT_EQ(fine.pixels, whole.pixels);
+    EXPECT_EQ(streaming.stream().retiredBytes(), 0U);
+    EXPECT_EQ(streaming.frame(1U << 20), 0U);
+    streaming.drain();
+    expectNoValidationMessages();
+}
+
+TEST_P(TextureStreaming, CoarserLevelsComeFirstAndLimitsHold) {
+    Streaming streaming(texturedPair(), GetParam());
+    TextureStream& stream = streaming.stream();
+    stream.setFinest(0, 2);
+    stream.setFinest(99, 0);
+    // The level of 16 x 16 texels of every texture comes before any of 32 x 32.
+    EXPECT_EQ(streaming.frame(std::uint64_t{3} * 4 * 16 * 16), 3U);
+    for (const std::uint32_t texture : {0U, 1U, 2U}) {
+        EXPECT_EQ(stream.finest(texture), 2U);
+    }
+    while (stream.progress().textures > 0) {
+        streaming.frame(1U << 20);
+    }
+    EXPECT_EQ(stream.finest(0), 2U);
+    EXPECT_EQ(stream.finest(1), 0U);
+    stream.setFinest(0, 0);
+    EXPECT_EQ(stream.progress().textures, 1U);
+    streaming.frame(1U << 20);
+    EXPECT_EQ(stream.finest(0), 0U);
+    EXPECT_EQ(streaming.picture().pixels, streaming.wholePicture().pixels);
+    VkCommandBuffer none = VK_NULL_HANDLE;
+    const Result<std::uint32_t> earlier = stream.record(none, 0);
+    ASSERT_FALSE(earlier.ok());
+    EXPECT_EQ(earlier.error().id, "stream-frame");
+    expectNoValidationMessages();
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, TextureStreaming, ::testing::Bool(), [](const auto& editable) {
+    return editable.param ? std::string("Editable") : std::string("Still");
+});
+
+// A texture that is replaced while its levels arrive, by one that streams in turn, and one that is removed.
+TEST(TextureStreamingEdits, ReplacedTexturesStreamAnew) {
+    Streaming streaming(texturedPair(), true);
+    streaming.frame(3000);
+    SceneEditor& editor = *streaming.scene().editor();
+    const gltf::Texels other = noise(7);
+    ImageView view{kTextureSize, kTextureSize, other.bytes};
+    view.levels = static_cast<std::uint32_t>(other.levels);
+    ASSERT_TRUE(editor.replaceTexture(editor.texture(0), view));
+    EXPECT_EQ(streaming.stream().finest(0), 3U);
+    const Result<TextureHandle> added = editor.addTexture(view, true);
+    ASSERT_TRUE(added.ok());
+    EXPECT_EQ(streaming.stream().finest(added->index), 3U);
+    streaming.frame(3000);
+    ASSERT_TRUE(editor.removeTexture(*added));
+    // One without levels does not stream.
+    const std::vector<std::uint8_t> gray(std::size_t{4} * 32 * 32, 128);
+    ASSERT_TRUE(editor.replaceTexture(editor.texture(1), {32, 32, gray}));
+    EXPECT_EQ(streaming.stream().finest(1), 0U);
+    for (int i = 0; streaming.stream().progress().textures > 0 && i < 100; ++i) {
+        streaming.frame(3000);
+    }
+    EXPECT_EQ(streaming.stream().progress().textures, 0U);
+    const LinearImage streamed = streaming.picture();
+    // The same content without streaming.
+    gltf::Scene scene = texturedPair();
+    scene.images[0].pixels = other.bytes;
+    scene.images[1].pixels = gray;
+    scene.images[1].width = 32;
+    scene.images[1].height = 32;
+    scene.images[1].levels = 1;
+    Streaming whole(scene, true);
+    EXPECT_EQ(streamed.pixels, whole.wholePicture().pixels);
+    expectNoValidationMessages();
+}
+
+}  // namespace
+}  // namespace glint::testing

@@ -1,0 +1,78 @@
+// Images in block formats, as KTX2 and DDS files hold them.
+#pragma once
+
+#include "gltf/document/document.h"
+#include "gltf/scene.h"
+
+#include <glint/texel_format.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::gltf {
+
+// Reads little-endian numbers at places that were found to lie in the file.
+class FileReader {
+public:
+    explicit FileReader(ByteView bytes) : bytes_(bytes) {}
+
+    bool has(std::uint64_t offset, std::uint64_t length) const {
+        return offset <= bytes_.size() && length <= bytes_.size() - offset;
+    }
+    std::uint8_t byte(std::uint64_t offset) const {
+        return bytes_[static_cast<std::size_t>(offset)];
+    }
+    std::uint32_t word(std::uint64_t offset) const {
+        return static_cast<std::uint32_t>(byte(offset) | byte(offset + 1) << 8U | byte(offset + 2) << 16U) |
+               static_cast<std::uint32_t>(byte(offset + 3)) << 24U;
+    }
+    std::uint64_t longWord(std::uint64_t offset) const {
+        return word(offset) | static_cast<std::uint64_t>(word(offset + 4)) << 32U;
+    }
+    std::string_view text(std::uint64_t offset, std::uint64_t length) const {
+        return {reinterpret_cast<const char*>(bytes_.data()) + offset, static_cast<std::size_t>(length)};
+    }
+
+private:
+    ByteView bytes_;
+};
+
+// What the header of a file says, checked: every level lies in the file and is as long as its blocks are.
+struct BlockFile {
+    int width = 0;  // all sizes are in pixels
+    int height = 0;
+    int levels = 0;  // from 1 up to the levels of a full pyramid
+    Transfer transfer = Transfer::Unknown;
+    std::optional<TexelFormat> format;  // none: data of Basis Universal, in KTX2 alone
+    bool isEtc1s = false;               // of these: ETC1S, not UASTC
+    bool hasAlpha = true;               // false: alpha is 1 whatever the blocks say
+    bool isZstandard = false;           // each level is compressed by Zstandard
+    struct Level {
+        std::uint64_t offset = 0;  // bytes
+        std::uint64_t bytes = 0;
+    };
+    std::vector<Level> places;  // of each level, from the largest
+    // Where the file breaks rules, and what Glint does then; each is one clause.
+    std::vector<std::string> deviations;
+};
+
+// The size and the number of levels of an image, checked. Returns what is wrong, or an empty text.
+std::string checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels);
+
+// Reads the file by its first bytes. Returns nothing for a damaged file or one whose data Glint does not
+// read, and `problem` says why. Allocates nothing that depends on the file's sizes.
+std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem);
+
+// Returns all levels in their block format, one after the other. `file` must have been read from `bytes` and
+// have a format. Returns nothing if Zstandard data are damaged, and `problem` says so.
+std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
+                                                  std::string& problem);
+
+// These are Codec::readHeader and Codec::decode for block formats.
+bool readBlockHeader(ByteView bytes, Image& image, std::string& problem);
+bool decodeBlockFile(ByteView bytes, Image& image, std::string& problem);
+
+}  // namespace glint::gltf

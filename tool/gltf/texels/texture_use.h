@@ -1,0 +1,24 @@
+// What the materials of a scene read of its images.
+#pragma once
+
+#include "gltf/scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace glint::gltf {
+
+struct ImageUse {
+    bool isColor = false;        // some texture reads it as colour, in sRGB
+    bool isData = false;         // some texture reads it as linear data
+    bool isNormals = false;      // all of them read vectors
+    bool isEmission = false;     // some material emits what it shows
+    std::uint32_t channels = 0;  // that are read: bit 0 for red, to bit 3 for alpha
+
+    bool operator==(const ImageUse&) const = default;
+};
+
+// Returns the use of each of Scene::images. Materials that no primitive has count.
+std::vector<ImageUse> imageUses(const Scene& scene);
+
+}  // namespace glint::gltf
