@@ -21,6 +21,28 @@ void insertDefines(std::string& text, const std::string& defines) {
     }
 }
 
+std::shared_ptr<ModuleSource> makePart(std::string name, std::vector<std::string> functions) {
+    auto part = std::make_shared<ModuleSource>();
+    part->stage = ShaderStage::Compute;
+    part->name = std::move(name);
+    part->link = LinkNames{std::move(functions), {}, false};
+    return part;
+}
+
+void insertPartDefines(std::string& text, package::ShadingPrecision precision) {
+    insertDefines(text,
+                  precisionDefines(precision) + "#define GLINT_TRACER 0\n#define GLINT_RAY_GENERATION 0\n");
+}
+
+std::shared_ptr<ModuleSource> makeHead(const ModuleSource& module, std::vector<std::string> functions) {
+    auto head = std::make_shared<ModuleSource>();
+    head->key = module.key;
+    head->stage = module.stage;
+    head->name = module.name;
+    head->link = LinkNames{{}, std::move(functions), true};
+    return head;
+}
+
 void ModuleDrafts::add(std::shared_ptr<ModuleSource> module, std::string origin, std::string text,
                        const SourceSet& own) {
     drafts_.push_back({std::move(module), std::move(origin), std::move(text), &own});

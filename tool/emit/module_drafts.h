@@ -18,6 +18,13 @@ std::string precisionDefines(package::ShadingPrecision precision);
 // Inserts macros after the line of #version, which must come first.
 void insertDefines(std::string& text, const std::string& defines);
 
+// A part with functions, which traces no ray: it is the same for every strategy and tracer.
+std::shared_ptr<ModuleSource> makePart(std::string name, std::vector<std::string> functions);
+// Inserts the macros of such a part.
+void insertPartDefines(std::string& text, package::ShadingPrecision precision);
+// Makes the part of `module` that has its entry point and imports `functions`.
+std::shared_ptr<ModuleSource> makeHead(const ModuleSource& module, std::vector<std::string> functions);
+
 class ModuleDrafts {
 public:
     // `sources` and `warm`, which may be null, must outlive this.

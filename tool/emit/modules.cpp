@@ -141,8 +141,6 @@ Result<std::string> makeText(std::string_view source, const std::string& defines
     return text;
 }
 
-}
-
 std::vector<std::uint32_t> retiredIds(const Plan& plan) {
     std::vector<std::uint32_t> ids;
     for (const Case& shaderCase : plan.cases) {
@@ -151,6 +149,32 @@ std::vector<std::uint32_t> retiredIds(const Plan& plan) {
         }
     }
     return ids;
+}
+
+// Returns the part of the lighting pass that evaluates materials. An edit of their GLSL changes it alone.
+Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sources,
+                                                            const kainjow::mustache::data& context,
+                                                            package::ShadingPrecision precision,
+                                                            const SourceSet& own, ModuleDrafts& drafts) {
+    constexpr std::string_view kSource = "passes/primary_surface.comp";
+    Result<std::string> text = makeText(kSource, "", sources, context);
+    if (!text) {
+        return text.error();
+    }
+    insertPartDefines(*text, precision);
+    const std::shared_ptr<ModuleSource> part =
+        makePart("primary_surface.part", {"surfaceOfPrimary", "colorOfPrimary"});
+    drafts.add(part, std::string(kSource), std::move(*text), own);
+    return std::shared_ptr<const ModuleSource>(part);
+}
+
+// Adds the parts of the lighting pass, whose text is `text`: `surface`, and all else.
+void addLightingParts(ModuleSource& module, const std::string& origin, std::string text, const SourceSet& own,
+                      const std::shared_ptr<const ModuleSource>& surface, ModuleDrafts& drafts) {
+    insertDefines(text, "#define GLINT_SURFACE_APART\n");
+    const std::shared_ptr<ModuleSource> head = makeHead(module, surface->link->exported);
+    drafts.add(head, origin, std::move(text), own);
+    module.parts = {head, surface};
 }
 
 }  // namespace
@@ -189,6 +213,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     if (Status made = parts.makeSwitches(); !made) {
         return made.error();
     }
+    std::shared_ptr<const ModuleSource> surface;  // of the lighting pass, whatever traces its rays
     std::vector<std::shared_ptr<ModuleSource>> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
@@ -225,6 +250,16 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
             if (Status added = parts.addTo(*module, origin, *text, ofFallback); !added) {
                 return added.error();
             }
+        } else if (key.role == ModuleRole::Lighting) {
+            if (!surface) {
+                Result<std::shared_ptr<const ModuleSource>> part =
+                    makeSurfacePart(sources, context, settings.precision, none, drafts);
+                if (!part) {
+                    return part.error();
+                }
+                surface = std::move(*part);
+            }
+            addLightingParts(*module, origin, *text, none, surface, drafts);
         }
         drafts.add(module, origin, std::move(*text), *own);
         modules.push_back(std::move(module));

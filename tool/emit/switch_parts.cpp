@@ -2,6 +2,8 @@
 
 #include "emit/context.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace glint::compiler {
@@ -49,12 +51,8 @@ Result<std::shared_ptr<const ModuleSource>> SwitchParts::partOf(const Case& shad
     if (!text) {
         return text.error();
     }
-    insertDefines(*text, precisionDefines(settings_.precision) +
-                             "#define GLINT_TRACER 0\n#define GLINT_RAY_GENERATION 0\n");
-    auto part = std::make_shared<ModuleSource>();
-    part->stage = ShaderStage::Compute;
-    part->name = function + ".part";
-    part->link = LinkNames{{function}, {}, false};
+    insertPartDefines(*text, settings_.precision);
+    const std::shared_ptr<ModuleSource> part = makePart(function + ".part", {function});
     drafts_.add(part, part->name, std::move(*text), **code);
     made = part;
     return made;
@@ -76,21 +74,18 @@ Status SwitchParts::addTo(ModuleSource& module, const std::string& origin, const
     if (cases.empty()) {
         return okStatus();
     }
-    auto head = std::make_shared<ModuleSource>();
-    head->key = module.key;
-    head->stage = module.stage;
-    head->name = module.name;
-    head->link = LinkNames{{}, {}, true};
-    module.parts.push_back(head);
+    std::vector<std::shared_ptr<const ModuleSource>> parts;
     for (const Case& shaderCase : cases) {
         Result<std::shared_ptr<const ModuleSource>> part = partOf(shaderCase);
         if (!part) {
             return part.error();
         }
         module.functionsApart.push_back((*part)->link->exported.front());
-        module.parts.push_back(std::move(*part));
+        parts.push_back(std::move(*part));
     }
-    head->link->imported = module.functionsApart;
+    const std::shared_ptr<ModuleSource> head = makeHead(module, module.functionsApart);
+    module.parts.push_back(head);
+    std::ranges::move(parts, std::back_inserter(module.parts));
     drafts_.add(head, origin, text, head_[fallbackAlone ? 1 : 0]);
     return okStatus();
 }

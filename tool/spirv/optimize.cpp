@@ -249,6 +249,7 @@ Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>
 Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, bool keepNames) {
     const bool keepMembers = keepNames || tracesByPipeline(words);
     return runPasses(words, name, [&](spvtools::Optimizer& optimizer) {
+        optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
         if (!keepMembers) {
             optimizer.RegisterPass(spvtools::CreateEliminateDeadMembersPass());
         }

@@ -28,8 +28,8 @@ Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>
                                                 const std::string& name,
                                                 const std::vector<std::string>& linked, bool halvesAll);
 
-// Removes what parts of a shader declare and nothing reads, after they were joined: members, types and
-// constants. `keepNames` keeps the members. Error "spirv-optimize".
+// Removes what parts of a shader declare and nothing reads, after they were joined: functions, members,
+// types and constants. `keepNames` keeps the members. Error "spirv-optimize".
 Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, bool keepNames);
 
 // What a module is for.
