@@ -7,9 +7,9 @@
 #include "generated/effects.glsl"
 #include "hit/images.glsl"
 #include "hit/primary.glsl"
-#include "hit/primary_surface.glsl"
 #include "hit/shade.glsl"
 #include "hit/stage.glsl"
+#include "passes/primary_surface.glsl"
 
 GLINT_PIXEL_WORKGROUP
 

@@ -5,7 +5,7 @@
 #define GLINT_MODULE_ANY_LOBES (GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS)
 #include "hit/hit.glsl"
-#include "hit/primary_surface.glsl"
+#include "passes/primary_surface.glsl"
 
 layout(local_size_x = 1) in;
 
