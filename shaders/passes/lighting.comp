@@ -9,6 +9,7 @@
 #include "hit/primary.glsl"
 #include "hit/shade.glsl"
 #include "hit/stage.glsl"
+#include "passes/primary_surface.glsl"
 
 GLINT_PIXEL_WORKGROUP
 
@@ -100,10 +101,10 @@ void main() {
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
         if (hasLobe(features, GLINT_UNLIT)) {
-            radianceDepth.rgb = surfaceValues(hit, features).color.rgb;
+            radianceDepth.rgb = colorOfPrimary(hit, features.lobes, features.inputs);
             skipEffects(number, kRayUnlit);
         } else {
-            Surface surface = evaluateSurface(hit, features);
+            Surface surface = surfaceOfPrimary(hit, features.lobes, features.inputs);
             SkyShares sky = wholeSky();
             sampleEffects(hit, surface, features, sky);
             radianceDepth.rgb = surface.emission + directLight(hit, surface, features, sky) +

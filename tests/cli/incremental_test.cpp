@@ -60,6 +60,15 @@ int compiled(const Outcome& outcome) {
     return outcome.json().at("modules").at("compiled").get<int>();
 }
 
+// Of the modules that were joined in the run: how many parts were compiled.
+int partsCompiled(const Outcome& outcome) {
+    return outcome.json().at("modules").at("parts").at("compiled").get<int>();
+}
+
+int partsCached(const Outcome& outcome) {
+    return outcome.json().at("modules").at("parts").at("cached").get<int>();
+}
+
 bool isUpToDate(const Outcome& outcome) {
     return outcome.json().at("upToDate").get<bool>();
 }
@@ -121,9 +130,24 @@ TEST_F(Incremental, ACombinationCompilesItsModuleAndThoseOfAllCases) {
     // The scene has these features already; only the combination is new.
     writeManyKeys(path("scene"), {{"clearcoat", "sheen"}, {"clearcoat"}, {"sheen"}, {"textured"}});
     EXPECT_EQ(compiled(compile({"--strategy", "visibility", "-o", "other"})), 1);
-    EXPECT_EQ(compiled(compile()), 1);  // uber.comp
+    const Outcome changed = compile();
+    EXPECT_EQ(compiled(changed), 1);       // uber.comp
+    EXPECT_EQ(partsCompiled(changed), 2);  // the switch, and the new case
+    EXPECT_EQ(partsCached(changed), 3);
     writeManyKeys(path("scene"), kFourLobes);
     EXPECT_EQ(compiled(compile()), 0);
+}
+
+// The shaders of strategies that choose among cases are joined from the same parts.
+TEST_F(Incremental, StrategiesAndTracersShareTheParts) {
+    const Outcome uber = compile({"--strategy", "uber", "-o", "first"});
+    EXPECT_EQ(partsCompiled(uber), 7);  // the switch and four cases, the lighting pass and its materials
+    const Outcome both = compile({"--strategy", "uber,sorted-uber", "-o", "second"});
+    EXPECT_EQ(partsCompiled(both), 1);  // the other switch
+    EXPECT_EQ(partsCached(both), 4);
+    const Outcome traced = compile({"--strategy", "uber", "--tracer", "ray-pipeline", "-o", "third"});
+    EXPECT_EQ(partsCompiled(traced), 2);  // ray generation shaders
+    EXPECT_EQ(partsCached(traced), 5);
 }
 
 TEST_F(Incremental, WithoutACacheEverythingIsCompiledAndNothingRewritten) {

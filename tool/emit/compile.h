@@ -38,6 +38,10 @@ struct CompiledModule {
     SpirvStatistics statistics;
     std::uint64_t hash = 0;
     bool compiled = true;  // in this run; false if it was cached or has the text of another module
+    // Of those that it was joined from in this run: how many were compiled, and how many were cached. Parts
+    // of several modules count for the first of them.
+    int partsCompiled = 0;
+    int partsCached = 0;
 };
 
 struct PackageFile {
@@ -57,11 +61,12 @@ struct CompiledPackage {
     double tablesMs = 0.0;
 };
 
-// A text to compile. Several modules of a package may have the same text.
+// A text to compile, of a module or a part of modules. Several modules of a package may have the same text.
 struct PlannedModule {
-    std::string file;  // without a suffix; no other text of the package has this name
-    std::string name;  // name of the first module that has the text, for people
-    std::string text;  // as made by makeModuleText()
+    std::string file;                // without a suffix: nameOfModuleText()
+    std::string name;                // name of the first module that has the text, for people
+    std::string text;                // as made by makeModuleText()
+    std::vector<std::string> parts;  // files that have to be compiled before it
 };
 
 // What a package will consist of, known before anything is compiled.

@@ -1,5 +1,6 @@
 #include "emit/compile_modules.h"
 
+#include "base/parallel.h"
 #include "emit/context.h"
 #include "emit/module_files.h"
 #include "emit/module_text.h"
@@ -10,10 +11,9 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string_view>
-#include <system_error>
-#include <thread>
 #include <utility>
 
 namespace glint::compiler {
@@ -26,33 +26,30 @@ struct CompiledText {
     bool compiled = false;
 };
 
-Result<CompiledText> compileText(const ModuleSource& source, const std::string& text, bool debugInfo,
-                                 ModuleCache* cache, WarmModules* warm) {
+std::optional<CachedModule> findCompiled(const std::string& text, ModuleCache* cache, WarmModules* warm) {
     if (warm != nullptr) {
         if (std::optional<CachedModule> found = warm->findModule(text)) {
-            return CompiledText{std::move(*found), false};
+            return found;
         }
     }
-    if (cache != nullptr) {
-        if (std::optional<CachedModule> found = cache->find(text)) {
-            if (warm != nullptr) {
-                warm->putModule(text, *found);
-            }
-            return CompiledText{std::move(*found), false};
-        }
+    std::optional<CachedModule> found = cache != nullptr ? cache->find(text) : std::nullopt;
+    if (found && warm != nullptr) {
+        warm->putModule(text, *found);
     }
-    Result<CachedModule> module = compileMeasured(
-        {source.name, source.stage, source.glsl.withPlaces(), source.functionsApart}, {debugInfo});
-    if (!module) {
-        return module.error();
-    }
+    return found;
+}
+
+void putCompiled(const std::string& text, const CachedModule& module, ModuleCache* cache, WarmModules* warm) {
     if (cache != nullptr) {
-        cache->put(text, *module);
+        cache->put(text, module);
     }
     if (warm != nullptr) {
-        warm->putModule(text, *module);
+        warm->putModule(text, module);
     }
-    return CompiledText{std::move(*module), true};
+}
+
+ShaderSource shaderOf(const ModuleSource& source) {
+    return {source.name, source.stage, source.glsl.withPlaces(), source.functionsApart};
 }
 
 Result<CompiledText> takeText(const ModuleSource& source, const std::string& text,
@@ -86,33 +83,6 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     return module;
 }
 
-// Runs work(0) … work(count - 1). They are started in order, and none is started after one has returned
-// false.
-template <typename Work>
-void runParallel(std::size_t count, int jobs, const Work& work) {
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> failed{false};
-    const auto loop = [&] {
-        for (std::size_t i = next++; i < count && !failed; i = next++) {
-            if (!work(i)) {
-                failed = true;
-            }
-        }
-    };
-    const std::size_t wanted =
-        jobs > 0 ? static_cast<std::size_t>(jobs) : std::max(1U, std::thread::hardware_concurrency());
-    std::vector<std::jthread> threads;
-    try {
-        // This thread works too, so one thread fewer is started.
-        for (std::size_t i = 1; i < std::min(wanted, count); ++i) {
-            threads.emplace_back(loop);
-        }
-    } catch (const std::system_error&) {
-        // No more threads can be created, so the existing ones do the work.
-    }
-    loop();
-}
-
 // Words are compared too, because modules with equal hashes may still differ.
 void shareFiles(std::vector<CompiledModule>& modules) {
     std::multimap<std::uint64_t, std::size_t> firsts;
@@ -128,58 +98,191 @@ void shareFiles(std::vector<CompiledModule>& modules) {
     }
 }
 
-// The distinct texts of the modules, in the order of the modules.
-struct DistinctTexts {
-    std::map<std::string, std::size_t> places;
-    std::vector<std::size_t> textOf;        // by module: index of its text
-    std::vector<std::size_t> firsts;        // by text: the first module that has it
-    std::vector<const std::string*> texts;  // by text; they point into `places`
+// The distinct texts of modules and their parts.
+class DistinctTexts {
+public:
+    struct Text {
+        const ModuleSource* source = nullptr;  // the first that has it
+        const std::string* text = nullptr;     // points into places_
+        std::vector<std::size_t> parts;        // texts, the one with the entry point first
+    };
+
+    DistinctTexts(std::span<const ModuleSource> sources, bool debugInfo) : debugInfo_(debugInfo) {
+        for (std::size_t i = 0; i < sources.size(); ++i) {
+            const std::size_t known = texts_.size();
+            textOf_.push_back(add(sources[i]));
+            isFirst_.push_back(textOf_.back() >= known);
+        }
+    }
+    const std::vector<Text>& texts() const {
+        return texts_;
+    }
+    std::size_t textOf(std::size_t module) const {
+        return textOf_[module];
+    }
+    // Returns whether no module before this one has its text.
+    bool isFirst(std::size_t module) const {
+        return isFirst_[module];
+    }
+
+private:
+    // Texts of parts come before those that are joined from them.
+    std::size_t add(const ModuleSource& source) {
+        std::vector<std::size_t> parts;
+        for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
+            parts.push_back(add(*part));
+        }
+        const auto [place, added] = places_.emplace(makeModuleText(source, debugInfo_), texts_.size());
+        if (added) {
+            texts_.push_back({&source, &place->first, std::move(parts)});
+        }
+        return place->second;
+    }
+
+    bool debugInfo_;
+    std::map<std::string, std::size_t> places_;
+    std::vector<Text> texts_;
+    std::vector<std::size_t> textOf_;
+    std::vector<bool> isFirst_;
 };
 
-DistinctTexts findTexts(std::span<const ModuleSource> sources, bool debugInfo) {
-    DistinctTexts distinct;
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        const auto [place, added] =
-            distinct.places.emplace(makeModuleText(sources[i], debugInfo), distinct.firsts.size());
-        distinct.textOf.push_back(place->second);
-        if (added) {
-            distinct.firsts.push_back(i);
-            distinct.texts.push_back(&place->first);
+// Compiles texts on several threads, and joins what is joined as soon as its parts are there.
+class TextCompiler {
+public:
+    TextCompiler(const std::vector<DistinctTexts::Text>& texts, bool debugInfo, ModuleCache* cache,
+                 WarmModules* warm)
+        : texts_(texts),
+          options_{debugInfo},
+          cache_(cache),
+          warm_(warm),
+          results_(texts.size()),
+          done_(texts.size()) {}
+
+    // Returns the result of each text; texts of parts that nothing needed have none. The reported error is
+    // that of the first text in the order of the work, whatever the jobs.
+    Result<std::vector<std::optional<CompiledText>>> run(int jobs) {
+        const std::vector<std::size_t> order = orderOfWork();
+        base::runParallel(order.size(), jobs, [&](std::size_t place) {
+            const std::size_t text = order[place];
+            results_[text] = compile(text);
+            done_[text] = true;
+            done_[text].notify_all();
+            return results_[text]->ok();
+        });
+        for (const std::size_t text : order) {
+            if (!results_[text]->ok()) {
+                return results_[text]->error();
+            }
+        }
+        std::vector<std::optional<CompiledText>> compiled(texts_.size());
+        for (std::size_t i = 0; i < texts_.size(); ++i) {
+            if (results_[i]) {
+                compiled[i] = std::move(**results_[i]);
+            }
+        }
+        return compiled;
+    }
+
+private:
+    // What is joined comes last, so that its parts were started before it. Parts of what is there already are
+    // not needed.
+    std::vector<std::size_t> orderOfWork() {
+        std::vector<bool> needed(texts_.size(), true);
+        for (std::size_t i = 0; i < texts_.size(); ++i) {
+            if (texts_[i].source->link) {
+                needed[i] = false;
+            } else if (!texts_[i].parts.empty()) {
+                if (std::optional<CachedModule> found = findCompiled(*texts_[i].text, cache_, warm_)) {
+                    results_[i] = CompiledText{std::move(*found), false};
+                }
+            }
+        }
+        for (std::size_t i = 0; i < texts_.size(); ++i) {
+            if (!results_[i]) {
+                for (const std::size_t part : texts_[i].parts) {
+                    needed[part] = true;
+                }
+            }
+        }
+        std::vector<std::size_t> order;
+        for (const bool joined : {false, true}) {
+            for (std::size_t i = 0; i < texts_.size(); ++i) {
+                if (needed[i] && !results_[i] && texts_[i].parts.empty() != joined) {
+                    order.push_back(i);
+                }
+            }
+        }
+        return order;
+    }
+
+    Result<CompiledText> compile(std::size_t index) {
+        const DistinctTexts::Text& text = texts_[index];
+        if (!text.parts.empty()) {
+            return join(text);
+        }
+        if (std::optional<CachedModule> found = findCompiled(*text.text, cache_, warm_)) {
+            return CompiledText{std::move(*found), false};
+        }
+        return keep(text, compileMeasured(shaderOf(*text.source), options_, text.source->link));
+    }
+
+    Result<CompiledText> join(const DistinctTexts::Text& text) {
+        std::vector<const CachedModule*> parts;
+        for (const std::size_t part : text.parts) {
+            done_[part].wait(false);
+            if (!results_[part]->ok()) {
+                return results_[part]->error();
+            }
+            parts.push_back(&(*results_[part])->module);
+        }
+        return keep(text, joinMeasured(shaderOf(*text.source), options_, parts));
+    }
+
+    Result<CompiledText> keep(const DistinctTexts::Text& text, Result<CachedModule> module) {
+        if (!module) {
+            return module.error();
+        }
+        putCompiled(*text.text, *module, cache_, warm_);
+        return CompiledText{std::move(*module), true};
+    }
+
+    const std::vector<DistinctTexts::Text>& texts_;
+    ShaderCompileOptions options_;
+    ModuleCache* cache_;
+    WarmModules* warm_;
+    std::vector<std::optional<Result<CompiledText>>> results_;
+    std::vector<std::atomic<bool>> done_;
+};
+
+// Counts the parts of a module that were made in this run, each once.
+void countParts(const DistinctTexts::Text& text, const std::vector<std::optional<CompiledText>>& compiled,
+                std::vector<bool>& counted, CompiledModule& module) {
+    for (const std::size_t part : text.parts) {
+        if (compiled[part] && !counted[part]) {
+            counted[part] = true;
+            ++(compiled[part]->compiled ? module.partsCompiled : module.partsCached);
         }
     }
-    return distinct;
 }
 
-// Makes the modules of `sources` from the results of work(0) … work(texts - 1), each a Result<CompiledText>.
-// The names and texts of `sources` are moved into the modules.
-template <typename Work>
-Result<std::vector<CompiledModule>> makeModules(std::vector<ModuleSource>& sources,
-                                                const DistinctTexts& distinct, int jobs, const Work& work) {
-    std::vector<std::optional<Result<CompiledText>>> results(distinct.firsts.size());
-    runParallel(results.size(), jobs, [&](std::size_t text) {
-        results[text] = work(text);
-        return results[text]->ok();
-    });
-    // Texts are started in order, so every text before the first error has a result.
-    for (const std::optional<Result<CompiledText>>& result : results) {
-        if (!result->ok()) {
-            return result->error();
-        }
-    }
+// Makes the modules of `sources` from the compiled texts. The names and texts of `sources` are moved into the
+// modules.
+std::vector<CompiledModule> makeModules(std::vector<ModuleSource>& sources, const DistinctTexts& distinct,
+                                        const std::vector<std::optional<CompiledText>>& compiled) {
     std::vector<CompiledModule> modules;
     modules.reserve(sources.size());
+    std::vector<bool> counted(compiled.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {
-        const std::size_t text = distinct.textOf[i];
-        modules.push_back(makeCompiled(sources[i], **results[text], distinct.firsts[text] == i));
+        const std::size_t text = distinct.textOf(i);
+        const DistinctTexts::Text& distinctText = distinct.texts()[text];
+        modules.push_back(makeCompiled(sources[i], *compiled[text], distinct.isFirst(i)));
+        countParts(distinctText, compiled, counted, modules.back());
     }
     shareFiles(modules);
     return modules;
 }
 
-}  // namespace
-
-Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options) {
-    Result<std::vector<std::uint32_t>> spirv = compileShader(source, options);
+Result<CachedModule> measured(Result<std::vector<std::uint32_t>> spirv) {
     if (!spirv) {
         return spirv.error();
     }
@@ -188,26 +291,58 @@ Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCom
                       : statistics.error();
 }
 
+}  // namespace
+
+Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
+                                     const std::optional<LinkNames>& link) {
+    return measured(link ? compilePart(source, *link, options) : compileShader(source, options));
+}
+
+Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
+                                  std::span<const CachedModule* const> parts) {
+    std::vector<std::span<const std::uint32_t>> words;
+    for (const CachedModule* const part : parts) {
+        if (!isJoinable(part->spirv)) {
+            return measured(compileShader(source, options));
+        }
+        words.emplace_back(part->spirv);
+    }
+    return measured(joinParts(words, source.name, options));
+}
+
 std::string moduleCompiler() {
     return fmt::format("glint {}; {}", toolVersion(), compilerIdentity());
 }
 
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
                                                    bool debugInfo, ModuleCache* cache, WarmModules* warm) {
-    const DistinctTexts distinct = findTexts(sources, debugInfo);
-    return makeModules(sources, distinct, jobs, [&](std::size_t text) {
-        return compileText(sources[distinct.firsts[text]], *distinct.texts[text], debugInfo, cache, warm);
-    });
+    const DistinctTexts distinct(sources, debugInfo);
+    Result<std::vector<std::optional<CompiledText>>> compiled =
+        TextCompiler(distinct.texts(), debugInfo, cache, warm).run(jobs);
+    if (!compiled) {
+        return compiled.error();
+    }
+    return makeModules(sources, distinct, *compiled);
 }
 
 Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
                                                 const std::filesystem::path& folder) {
-    const DistinctTexts distinct = findTexts(sources, debugInfo);
-    const std::vector<std::string> files = nameModuleTexts(distinct.texts);
-    return makeModules(sources, distinct, 1, [&](std::size_t text) {
-        return takeText(sources[distinct.firsts[text]], *distinct.texts[text],
-                        folder / (files[text] + std::string(kCompiledModuleSuffix)));
-    });
+    const DistinctTexts distinct(sources, debugInfo);
+    std::vector<std::optional<CompiledText>> taken;
+    for (const DistinctTexts::Text& text : distinct.texts()) {
+        taken.emplace_back();
+        if (text.source->link) {
+            continue;  // the module that was joined from it has been made already
+        }
+        Result<CompiledText> module =
+            takeText(*text.source, *text.text,
+                     folder / (nameOfModuleText(*text.text) + std::string(kCompiledModuleSuffix)));
+        if (!module) {
+            return module.error();
+        }
+        taken.back() = std::move(*module);
+    }
+    return makeModules(sources, distinct, taken);
 }
 
 }  // namespace glint::compiler

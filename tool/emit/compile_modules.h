@@ -7,21 +7,30 @@
 #include "spirv/compiler.h"
 
 #include <filesystem>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace glint::compiler {
 
-// Calls compileShader() and measureSpirv().
-Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options);
+// Compiles a shader, or the part that `link` says, and measures it. Has the errors of compileShader() and
+// compilePart().
+Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
+                                     const std::optional<LinkNames>& link = {});
+
+// Joins compiled parts, the one with the entry point first. If a part can't be joined, `source` is compiled
+// as a whole.
+Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
+                                  std::span<const CachedModule* const> parts);
 
 // Returns a text that differs between compilers that may give different words for the same source.
 std::string moduleCompiler();
 
-// Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, and texts that `cache`
-// or `warm` has are not compiled; both may be null. Neither the result nor the reported error depends on
-// `jobs`: if there are several errors, it is that of the first module. Modules with equal SPIR-V get the same
-// `file`, that of the first of them.
+// Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
+// texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported
+// error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
+// SPIR-V get the same `file`, that of the first of them.
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
                                                    bool debugInfo, ModuleCache* cache = nullptr,
                                                    WarmModules* warm = nullptr);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -33,42 +34,13 @@ std::string packFile(std::string_view text, const CachedModule& module) {
     return std::string(kModuleMagic) + Packer().add(base::hashBytes(body)).take() + body;
 }
 
-}  // namespace
+struct ModuleFile {
+    std::string text;
+    CachedModule module;
+};
 
-std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bool debugInfo) {
-    std::vector<PlannedModule> modules;
-    std::set<std::string> known;
-    std::vector<const std::string*> texts;
-    for (const ModuleSource& source : sources) {
-        const auto [text, added] = known.insert(makeModuleText(source, debugInfo));
-        if (added) {
-            modules.push_back({{}, source.name, *text});
-            texts.push_back(&*text);
-        }
-    }
-    const std::vector<std::string> names = nameModuleTexts(texts);
-    for (std::size_t i = 0; i < modules.size(); ++i) {
-        modules[i].file = names[i];
-    }
-    return modules;
-}
-
-Status compileModuleFile(const fs::path& input, const fs::path& output) {
-    const Result<base::Bytes> bytes = base::readFile(input, kMaxModuleFileBytes);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const std::string_view text = base::asText(*bytes);
-    const Result<ModuleText> module = readModuleText(text, input.string());
-    if (!module) {
-        return module.error();
-    }
-    const Result<CachedModule> compiled = compileMeasured(module->source, module->options);
-    return compiled ? base::writeFile(output, packFile(text, *compiled)) : Status(compiled.error());
-}
-
-Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view text,
-                                        const std::string& name) {
+// Reads a file that packFile() made with this compiler. `name` is for messages.
+Result<ModuleFile> readModuleFile(const fs::path& file, const std::string& name) {
     std::error_code error;
     if (!fs::exists(file, error)) {
         return makeError("module-missing", file.string(), fmt::format("there is no compiled {}", name),
@@ -105,11 +77,82 @@ Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view t
                          fmt::format("{} was compiled by another compiler: {}", name, *compiler),
                          kBuildAgain);
     }
-    if (*held != text) {
+    return ModuleFile{std::string(*held), std::move(*module)};
+}
+
+// Joins the modules that lie beside `output`.
+Status joinModuleFile(const ModuleText& source, std::string_view text, const fs::path& output) {
+    std::vector<CachedModule> parts;
+    for (const std::string& name : source.parts) {
+        const fs::path file = output.parent_path() / (name + std::string(kCompiledModuleSuffix));
+        Result<ModuleFile> part = readModuleFile(file, "part of " + source.source.name);
+        if (!part) {
+            return part.error();
+        }
+        if (nameOfModuleText(part->text) != name) {
+            return makeError("module-stale", file.string(), "was compiled from another text", kBuildAgain);
+        }
+        parts.push_back(std::move(part->module));
+    }
+    std::vector<const CachedModule*> pointers;
+    for (const CachedModule& part : parts) {
+        pointers.push_back(&part);
+    }
+    const Result<CachedModule> joined = joinMeasured(source.source, source.options, pointers);
+    return joined ? base::writeFile(output, packFile(text, *joined)) : Status(joined.error());
+}
+
+}  // namespace
+
+std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bool debugInfo) {
+    std::vector<PlannedModule> modules;
+    std::set<std::string> known;
+    const auto add = [&](const auto& self, const ModuleSource& source) -> std::string {
+        std::vector<std::string> parts;
+        for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
+            parts.push_back(self(self, *part));
+        }
+        std::string text = makeModuleText(source, debugInfo);
+        std::string file = nameOfModuleText(text);
+        if (known.insert(file).second) {
+            modules.push_back({file, source.name, std::move(text), std::move(parts)});
+        }
+        return file;
+    };
+    for (const ModuleSource& source : sources) {
+        add(add, source);
+    }
+    return modules;
+}
+
+Status compileModuleFile(const fs::path& input, const fs::path& output) {
+    const Result<base::Bytes> bytes = base::readFile(input, kMaxModuleFileBytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    const std::string_view text = base::asText(*bytes);
+    const Result<ModuleText> module = readModuleText(text, input.string());
+    if (!module) {
+        return module.error();
+    }
+    if (!module->parts.empty()) {
+        return joinModuleFile(*module, text, output);
+    }
+    const Result<CachedModule> compiled = compileMeasured(module->source, module->options, module->link);
+    return compiled ? base::writeFile(output, packFile(text, *compiled)) : Status(compiled.error());
+}
+
+Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view text,
+                                        const std::string& name) {
+    Result<ModuleFile> read = readModuleFile(file, name);
+    if (!read) {
+        return read.error();
+    }
+    if (read->text != text) {
         return makeError("module-stale", file.string(),
                          fmt::format("was compiled from another text than that of {}", name), kBuildAgain);
     }
-    return std::move(*module);
+    return std::move(read->module);
 }
 
 }  // namespace glint::compiler

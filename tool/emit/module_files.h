@@ -19,11 +19,14 @@ namespace glint::compiler {
 inline constexpr std::string_view kModuleTextSuffix = ".glsl";
 inline constexpr std::string_view kCompiledModuleSuffix = ".module";
 
-// Returns each distinct text once, in the order of the modules. nameModuleTexts() names them.
+// Returns each distinct text once, in the order of the modules, those of parts before what is joined from
+// them.
 std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bool debugInfo);
 
-// Implements `glint compile-module`: reads a module's text from `input` and writes `output`. It touches
-// nothing else. Errors are those of readFile(), readModuleText(), compileShader() and writeFile().
+// Implements `glint compile-module`: reads a module's text from `input` and writes `output`. If the module is
+// joined from parts, it reads their compiled files in the folder of `output`. It touches nothing else. Errors
+// are those of readFile(), readModuleText(), compileMeasured(), joinMeasured(), readCompiledModule() and
+// writeFile().
 Status compileModuleFile(const std::filesystem::path& input, const std::filesystem::path& output);
 
 // Reads the compiled `file` of a folder for `text`. `name` is the module's name, for messages. Errors:

@@ -1,11 +1,12 @@
 #include "emit/module_text.h"
 
 #include "base/files.h"
+#include "base/staged_file.h"
 #include "emit/glsl/prune.h"
 
 #include <fmt/format.h>
 
-#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -13,9 +14,13 @@ namespace glint::compiler {
 
 namespace {
 
-constexpr std::string_view kFirstLine = "// glint module 1";
+constexpr std::string_view kFirstLine = "// glint module 2";
 constexpr std::string_view kStage = "// stage ";
 constexpr std::string_view kApart = "// apart ";
+constexpr std::string_view kExport = "// export ";
+constexpr std::string_view kImport = "// import ";
+constexpr std::string_view kEntry = "// entry point";
+constexpr std::string_view kPart = "// part ";
 constexpr std::string_view kNamed = "// names of ";
 constexpr std::string_view kLastLine = "//";
 
@@ -54,12 +59,54 @@ Diagnostic formatError(const std::string& name, const std::string& why) {
                      "give a file that `glint compile --plan-only` of this version wrote");
 }
 
+// Reads a line about another input than the stage. Returns false if it is no such line.
+bool takeInput(std::string_view line, ModuleText& module) {
+    const auto rest = [&](std::string_view key) { return std::string(line.substr(key.size())); };
+    const auto link = [&]() -> LinkNames& {
+        if (!module.link) {
+            module.link.emplace();
+        }
+        return *module.link;
+    };
+    if (line.starts_with(kApart)) {
+        module.source.functionsApart.push_back(rest(kApart));
+    } else if (line.starts_with(kExport)) {
+        link().exported.push_back(rest(kExport));
+    } else if (line.starts_with(kImport)) {
+        link().imported.push_back(rest(kImport));
+    } else if (line == kEntry) {
+        link().keepsEntryPoint = true;
+    } else if (line.starts_with(kPart)) {
+        module.parts.push_back(rest(kPart));
+    } else if (line.starts_with(kNamed)) {
+        module.source.name = rest(kNamed);
+        module.options.debugInfo = true;
+    } else {
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
     std::string text = fmt::format("{}\n{}{}\n", kFirstLine, kStage, nameInText(source.stage));
     for (const std::string& function : source.functionsApart) {
         text += fmt::format("{}{}\n", kApart, function);
+    }
+    if (source.link) {
+        for (const std::string& function : source.link->exported) {
+            text += fmt::format("{}{}\n", kExport, function);
+        }
+        for (const std::string& function : source.link->imported) {
+            text += fmt::format("{}{}\n", kImport, function);
+        }
+        if (source.link->keepsEntryPoint) {
+            text += fmt::format("{}\n", kEntry);
+        }
+    }
+    for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
+        text += fmt::format("{}{}\n", kPart, nameOfModuleText(makeModuleText(*part, debugInfo)));
     }
     if (debugInfo) {
         text += fmt::format("{}{}\n", kNamed, source.name);
@@ -69,7 +116,7 @@ std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
     if (debugInfo) {
         return text + source.glsl.withPlaces();
     }
-    return text + (source.warm ? source.warm->essential : essentialText(source.glsl.text()));
+    return text + (source.prepared ? source.prepared->essential : essentialText(source.glsl.text()));
 }
 
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name) {
@@ -96,12 +143,7 @@ Result<ModuleText> readModuleText(std::string_view text, const std::string& name
         }
         if (line->starts_with(kStage)) {
             stage = findStage(line->substr(kStage.size()));
-        } else if (line->starts_with(kApart)) {
-            module.source.functionsApart.emplace_back(line->substr(kApart.size()));
-        } else if (line->starts_with(kNamed)) {
-            module.source.name = line->substr(kNamed.size());
-            module.options.debugInfo = true;
-        } else {
+        } else if (!takeInput(*line, module)) {
             return formatError(name, fmt::format("has an unknown line: {}", *line));
         }
     }
@@ -112,16 +154,9 @@ Result<ModuleText> readModuleText(std::string_view text, const std::string& name
     return module;
 }
 
-std::vector<std::string> nameModuleTexts(std::span<const std::string* const> texts) {
-    std::map<std::uint64_t, int> counts;
-    std::vector<std::string> names;
-    names.reserve(texts.size());
-    for (const std::string* const text : texts) {
-        const std::uint64_t hash = base::hashBytes(std::string_view(*text));
-        const int before = counts[hash]++;
-        names.push_back(base::hexHash(hash) + (before == 0 ? "" : fmt::format("-{}", before)));
-    }
-    return names;
+std::string nameOfModuleText(std::string_view text) {
+    return base::hexHash(base::hashBytes(base::asBytes(text))) +
+           base::hexHash(base::hashBytes(base::asBytes(text), 1));
 }
 
 }  // namespace glint::compiler

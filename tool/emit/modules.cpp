@@ -2,9 +2,10 @@
 
 #include "emit/context.h"
 #include "emit/effects.h"
-#include "emit/glsl/prune.h"
 #include "emit/lights.h"
 #include "emit/material_code.h"
+#include "emit/module_drafts.h"
+#include "emit/switch_parts.h"
 #include "scene/deformed.h"
 
 #include <fmt/format.h>
@@ -109,11 +110,7 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
 // Returns the macros about the module itself, which precede the rest of its text.
 std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKey& key,
                           package::ShadingPrecision precision) {
-    std::string defines;
-    if (precision == package::ShadingPrecision::Half) {
-        // Without these, values without a precision take that of their neighbours, even mediump.
-        defines += "precision highp float;\nprecision highp int;\n";
-    }
+    std::string defines = precisionDefines(precision);
     const ShaderStage stage = stageOf(info, key.tracer);
     if (stage != ShaderStage::Vertex && stage != ShaderStage::Fragment) {
         defines += fmt::format("#define GLINT_TRACER {}\n#define GLINT_RAY_GENERATION {}\n", key.tracer,
@@ -125,70 +122,23 @@ std::string moduleDefines(const package::RoleInfo& info, const package::ModuleKe
     return defines;
 }
 
-// Inserts the macros after the line of #version, which must come first.
-void insertDefines(std::string& text, const std::string& defines) {
-    if (!defines.empty()) {
-        text.insert(text.find('\n') + 1, defines + "#line 2\n");
-    }
-}
-
-// Files of `own` stand in for those of `sources` that have their names.
-Result<ModuleSource> makeModule(std::string_view source, const package::ModuleKey& key,
-                                std::string_view caseName, const SourceSet& sources, const SourceSet& own,
-                                const kainjow::mustache::data& context, const materials::MaterialModel& model,
-                                package::ShadingPrecision precision, WarmModules* warm) {
-    const package::RoleInfo& info = *package::findRole(key.role);
-    ModuleSource module{
-        key, stageOf(info, key.tracer), moduleName(source, info, key, caseName, model), {}, {}, {}};
+// Returns the text of a shader or of a template, with the macros about the module itself.
+Result<std::string> makeText(std::string_view source, const std::string& defines, const SourceSet& sources,
+                             const kainjow::mustache::data& context) {
     std::string text;
-    std::string origin(source);
     if (source.ends_with(kTemplateSuffix)) {
         Result<std::string> rendered = renderTemplate(sources, source, context);
         if (!rendered) {
-            return rendered.error();
+            return rendered;
         }
         text = std::move(*rendered);
-        origin = module.name;
     } else if (const std::optional<std::string_view> found = sources.find(source)) {
         text = *found;
     } else {
-        return makeError("source-include", origin, "there is no such shader");
+        return makeError("source-include", std::string(source), "there is no such shader");
     }
-    insertDefines(text, moduleDefines(info, key, precision));
-    const auto lookup = [&](std::string_view name) {
-        const std::optional<std::string_view> found = own.find(name);
-        return found ? found : sources.find(name);
-    };
-    if (warm == nullptr) {
-        const Result<GlslUnit> flattened = flatten(origin, text, lookup, FlattenSide::Glsl);
-        if (!flattened) {
-            return flattened.error();
-        }
-        module.glsl = dropUnused(*flattened);
-        return module;
-    }
-    module.warm = warm->findGlsl(origin, text, lookup);
-    if (!module.warm) {
-        const SourceLookup plain = lookup;
-        WarmModules::Reader reader(plain);
-        const Result<GlslUnit> flattened = flatten(origin, text, reader.recording(), FlattenSide::Glsl);
-        if (!flattened) {
-            return flattened.error();
-        }
-        GlslUnit unit = dropUnused(*flattened);
-        std::string essential = essentialText(unit.text());
-        module.warm =
-            std::make_shared<const PreparedGlsl>(PreparedGlsl{std::move(unit), std::move(essential)});
-        warm->putGlsl(origin, text, reader, module.warm);
-    }
-    module.glsl = module.warm->unit;
-    return module;
-}
-
-// Returns the switch of shaders that have the fallback alone.
-Result<std::string> fallbackCases(const SourceSet& sources, kainjow::mustache::data context) {
-    context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
-    return renderTemplate(sources, "cases.glsl.mustache", context);
+    insertDefines(text, defines);
+    return text;
 }
 
 std::vector<std::uint32_t> retiredIds(const Plan& plan) {
@@ -199,6 +149,32 @@ std::vector<std::uint32_t> retiredIds(const Plan& plan) {
         }
     }
     return ids;
+}
+
+// Returns the part of the lighting pass that evaluates materials. An edit of their GLSL changes it alone.
+Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sources,
+                                                            const kainjow::mustache::data& context,
+                                                            package::ShadingPrecision precision,
+                                                            const SourceSet& own, ModuleDrafts& drafts) {
+    constexpr std::string_view kSource = "passes/primary_surface.comp";
+    Result<std::string> text = makeText(kSource, "", sources, context);
+    if (!text) {
+        return text.error();
+    }
+    insertPartDefines(*text, precision);
+    const std::shared_ptr<ModuleSource> part =
+        makePart("primary_surface.part", {"surfaceOfPrimary", "colorOfPrimary"});
+    drafts.add(part, std::string(kSource), std::move(*text), own);
+    return std::shared_ptr<const ModuleSource>(part);
+}
+
+// Adds the parts of the lighting pass, whose text is `text`: `surface`, and all else.
+void addLightingParts(ModuleSource& module, const std::string& origin, std::string text, const SourceSet& own,
+                      const std::shared_ptr<const ModuleSource>& surface, ModuleDrafts& drafts) {
+    insertDefines(text, "#define GLINT_SURFACE_APART\n");
+    const std::shared_ptr<ModuleSource> head = makeHead(module, surface->link->exported);
+    drafts.add(head, origin, std::move(text), own);
+    module.parts = {head, surface};
 }
 
 }  // namespace
@@ -232,21 +208,19 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     }
     const SourceSet none;
     const Case fallback = fallbackCase(plan);
-    SourceSet fallbackSwitch;  // the switch of shaders that have the fallback alone
-    if (settings.plan.fallback) {
-        Result<std::string> text = fallbackCases(sources, context);
-        if (!text) {
-            return text.error();
-        }
-        fallbackSwitch.add("generated/cases.glsl", std::move(*text));
+    ModuleDrafts drafts(sources, warm);
+    SwitchParts parts(context, scenes, plan, sources, settings, drafts, codeOfCases, ofEmitters);
+    if (Status made = parts.makeSwitches(); !made) {
+        return made.error();
     }
-    std::vector<ModuleSource> modules;
+    std::shared_ptr<const ModuleSource> surface;  // of the lighting pass, whatever traces its rays
+    std::vector<std::shared_ptr<ModuleSource>> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool ofCase = info.repeated == package::Repeated::ByCase;
         const bool ofSwitch = info.hasSwitch();
         const bool ofFallback = info.purpose == package::Purpose::Fallback;
-        const SourceSet* own = ofFallback && ofSwitch ? &fallbackSwitch : &none;
+        const SourceSet* own = ofSwitch ? &parts.wholeSwitch(ofFallback) : &none;
         if (ofCase || (ofFallback && !ofSwitch)) {
             const Case& shaderCase = ofCase ? plan.cases[key.index] : fallback;
             addCase(context, scenes, *plan.model, shaderCase);
@@ -260,25 +234,45 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, *plan.model, plan.effects.effects, key.index);
         }
-        Result<ModuleSource> module = makeModule(
-            sourceOf(info, key, *plan.model), key, ofCase ? std::string_view(plan.cases[key.index].name) : "",
-            sources, *own, context, *plan.model, settings.precision, warm);
-        if (!module) {
-            return module.error();
+        const std::string_view source = sourceOf(info, key, *plan.model);
+        Result<std::string> text =
+            makeText(source, moduleDefines(info, key, settings.precision), sources, context);
+        if (!text) {
+            return text.error();
         }
+        const std::string_view caseName = ofCase ? std::string_view(plan.cases[key.index].name) : "";
+        auto module = std::make_shared<ModuleSource>();
+        module->key = key;
+        module->stage = stageOf(info, key.tracer);
+        module->name = moduleName(source, info, key, caseName, *plan.model);
+        const std::string origin = source.ends_with(kTemplateSuffix) ? module->name : std::string(source);
         if (ofSwitch) {
-            for (const Case& shaderCase : plan.cases) {
-                if (!ofFallback && !shaderCase.isRetired()) {
-                    module->functionsApart.push_back("shade" + shaderCase.name);
+            if (Status added = parts.addTo(*module, origin, *text, ofFallback); !added) {
+                return added.error();
+            }
+        } else if (key.role == ModuleRole::Lighting) {
+            if (!surface) {
+                Result<std::shared_ptr<const ModuleSource>> part =
+                    makeSurfacePart(sources, context, settings.precision, none, drafts);
+                if (!part) {
+                    return part.error();
                 }
+                surface = std::move(*part);
             }
-            if (settings.plan.fallback) {
-                module->functionsApart.push_back("shade" + fallback.name);
-            }
+            addLightingParts(*module, origin, *text, none, surface, drafts);
         }
-        modules.push_back(std::move(*module));
+        drafts.add(module, origin, std::move(*text), *own);
+        modules.push_back(std::move(module));
     }
-    return modules;
+    if (Status finished = drafts.finish(settings.jobs); !finished) {
+        return finished.error();
+    }
+    std::vector<ModuleSource> made;
+    made.reserve(modules.size());
+    for (const std::shared_ptr<ModuleSource>& module : modules) {
+        made.push_back(std::move(*module));
+    }
+    return made;
 }
 
 }  // namespace glint::compiler

@@ -8,6 +8,7 @@
 #include "spirv/compiler.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,10 +18,14 @@ namespace glint::compiler {
 struct ModuleSource {
     package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
-    std::string name;                            // "uber.comp"
-    GlslUnit glsl;                               // without unused functions, constants and macros
-    std::vector<std::string> functionsApart{};   // as in ShaderSource
-    std::shared_ptr<const PreparedGlsl> warm{};  // the same GLSL, if an earlier run has made it
+    std::string name;                                // "uber.comp"
+    GlslUnit glsl;                                   // without unused functions, constants and macros
+    std::vector<std::string> functionsApart{};       // as in ShaderSource
+    std::shared_ptr<const PreparedGlsl> prepared{};  // the same GLSL, if a package has made it
+    // Not empty if the module is compiled in parts, the one with the entry point first: see compilePart().
+    // They make what `glsl` says.
+    std::vector<std::shared_ptr<const ModuleSource>> parts{};
+    std::optional<LinkNames> link{};  // of a part
 };
 
 package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,

@@ -1,6 +1,9 @@
 #include "spirv/compiler.h"
 
+#include "spirv/join/join.h"
+#include "spirv/join/parsed_module.h"
 #include "spirv/optimize.h"
+#include "spirv/reader.h"
 #include "spirv_source_hash.h"
 
 #include <fmt/format.h>
@@ -165,6 +168,54 @@ Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, c
         }
     }
     return linkable;
+}
+
+Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const LinkNames& names,
+                                               const ShaderCompileOptions& options) {
+    if (!initializeGlslang()) {
+        return makeError("glsl", source.name, "glslang can't be initialised");
+    }
+    Result<std::vector<std::uint32_t>> translated = translate(source);
+    if (!translated) {
+        return translated;
+    }
+    if (!names.exported.empty()) {
+        const Result<ParsedModule> parsed = parseModule(*translated, source.name);
+        if (!parsed) {
+            return parsed.error();
+        }
+        if (sharesVariables(*parsed)) {
+            translated->resize(kSpirvHeaderWords);
+            return translated;
+        }
+    }
+    std::vector<std::string> linked = names.exported;
+    linked.insert(linked.end(), names.imported.begin(), names.imported.end());
+    const Result<std::vector<std::uint32_t>> optimized =
+        optimizePart(*translated, source.name, linked, options.halvesAll);
+    if (!optimized) {
+        return optimized;
+    }
+    return makeLinkable(*optimized, names, source.name, true);
+}
+
+bool isJoinable(std::span<const std::uint32_t> part) {
+    return part.size() > kSpirvHeaderWords;
+}
+
+Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std::uint32_t>> parts,
+                                             const std::string& name, const ShaderCompileOptions& options) {
+    Result<std::vector<std::uint32_t>> joined = joinModules(parts, name, options.debugInfo);
+    if (!joined) {
+        return joined;
+    }
+    if (Status cleared = clearJoined(*joined, name, options.debugInfo); !cleared) {
+        return cleared.error();
+    }
+    if (Status valid = validateSpirv(*joined, name); !valid) {
+        return valid.error();
+    }
+    return joined;
 }
 
 std::string compilerIdentity() {

@@ -6,6 +6,7 @@
 #include <glint/result.h>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,20 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
 // SPIR-V 1.5, but no Vulkan shader. Errors are those of compileShader(), and "spirv-linkage".
 Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, const LinkNames& names,
                                                    const ShaderCompileOptions& options);
+
+// Compiles a part of a shader, which joinParts() makes whole: functions that others call, or the entry point
+// with calls of functions of others. `names` and bodies of what is imported are as for compileLinkable().
+// Where the functions of a part share variables with the rest of the shader (a global variable of GLSL), the
+// part cannot be compiled by itself; it is then an empty module: see isJoinable(). Errors are those of
+// compileShader(), and "spirv-linkage".
+Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const LinkNames& names,
+                                               const ShaderCompileOptions& options);
+bool isJoinable(std::span<const std::uint32_t> part);
+
+// Makes a shader of its parts, the one with the entry point first. `name` is for messages. Errors are those
+// of joinModules(), "spirv-optimize" and "spirv-validate".
+Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std::uint32_t>> parts,
+                                             const std::string& name, const ShaderCompileOptions& options);
 
 // Returns a text that is equal for two programs whose compileShader() gives the same words for the same
 // source. It consists of the versions of glslang and SPIRV-Tools and a hash of the code around them.

@@ -194,6 +194,28 @@ Status makeHalves(std::vector<std::uint32_t>& words, const std::string& name, bo
     return status ? runPasses(words, name, share) : status;
 }
 
+// Inlines what may be inlined, and removes what is not needed.
+Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name, bool keepNames,
+                      bool halvesAll) {
+    // Payloads have no offsets, and the stages of a pipeline must agree on their members, so members stay.
+    // Debuggers show them all.
+    const bool keepMembers = keepNames || tracesByPipeline(words);
+    const auto inlineAll = [&](spvtools::Optimizer& optimizer) { registerInlining(optimizer, keepNames); };
+    const auto clearUp = [&](spvtools::Optimizer& optimizer) { registerClearing(optimizer, keepMembers); };
+    Status status = runPasses(words, name, inlineAll);
+    if (status && (halvesAll || relaxesPrecision(words))) {
+        status = makeHalves(words, name, halvesAll);
+    }
+    if (status) {
+        status = runPasses(words, name, clearUp);
+    }
+    if (status) {
+        // Drivers may inline as they like, so the marks are removed.
+        keepApart(words, findFunctions(words), {});
+    }
+    return status;
+}
+
 }  // namespace
 
 Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
@@ -206,24 +228,35 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
             return status.error();
         }
     }
-    // Payloads have no offsets, and the stages of a pipeline must agree on their members, so members stay.
-    // Debuggers show them all.
-    const bool keepMembers = keepNames || tracesByPipeline(optimized);
-    const auto inlineAll = [&](spvtools::Optimizer& optimizer) { registerInlining(optimizer, keepNames); };
-    const auto clearUp = [&](spvtools::Optimizer& optimizer) { registerClearing(optimizer, keepMembers); };
-    Status status = runPasses(optimized, name, inlineAll);
-    if (status && (halvesAll || relaxesPrecision(optimized))) {
-        status = makeHalves(optimized, name, halvesAll);
-    }
-    if (status) {
-        status = runPasses(optimized, name, clearUp);
-    }
-    if (!status) {
+    if (Status status = inlineAndClear(optimized, name, keepNames, halvesAll); !status) {
         return status.error();
     }
-    // Drivers may inline as they like, so the marks are removed.
-    keepApart(optimized, findFunctions(optimized), {});
     return optimized;
+}
+
+Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>& words,
+                                                const std::string& name,
+                                                const std::vector<std::string>& linked, bool halvesAll) {
+    std::vector<std::uint32_t> optimized = words;
+    const std::vector<SpirvFunction> functions = findFunctions(optimized);
+    keepApart(optimized, functions, idsOf(functions, linked));
+    if (Status status = inlineAndClear(optimized, name, true, halvesAll); !status) {
+        return status.error();
+    }
+    return optimized;
+}
+
+Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, bool keepNames) {
+    const bool keepMembers = keepNames || tracesByPipeline(words);
+    return runPasses(words, name, [&](spvtools::Optimizer& optimizer) {
+        optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+        if (!keepMembers) {
+            optimizer.RegisterPass(spvtools::CreateEliminateDeadMembersPass());
+        }
+        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
+            .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
+            .RegisterPass(spvtools::CreateCompactIdsPass());
+    });
 }
 
 Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string& name, SpirvUse use) {

@@ -1,6 +1,6 @@
 # Usage: cmake -DFOLDER=… -DOUTPUT=file.h -P source_hash.cmake. Writes a header with one hash of the folder's
 # C++ files.
-file(GLOB files RELATIVE "${FOLDER}" "${FOLDER}/*.h" "${FOLDER}/*.cpp")
+file(GLOB_RECURSE files RELATIVE "${FOLDER}" "${FOLDER}/*.h" "${FOLDER}/*.cpp")
 list(SORT files)
 set(all "")
 foreach(name IN LISTS files)

@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "emit/module_files.h"
+#include "emit/module_text.h"
 
 #include <fmt/format.h>
 
@@ -82,16 +83,15 @@ std::optional<Diagnostic> findImpossible(const NinjaPlan& plan) {
 }
 
 constexpr const char* kModuleFolder = "modules";
-constexpr std::size_t kHashDigits = 16;
 
 fs::path moduleFolder(const CompileArguments& arguments) {
     return fs::path(arguments.planOnly) / kModuleFolder;
 }
 
-// Returns whether nameModuleTexts() may have made the name, whatever the suffix is.
+// Returns whether nameOfModuleText() may have made the name, whatever the suffix is.
 bool isModuleName(const std::string& stem) {
-    return stem.size() >= kHashDigits && stem.find_first_not_of("0123456789abcdef") >= kHashDigits &&
-           (stem.size() == kHashDigits || stem[kHashDigits] == '-');
+    return stem.size() == compiler::kModuleNameLength &&
+           stem.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
 Status checkFolder(const CompileArguments& arguments) {
@@ -149,9 +149,15 @@ NinjaPlan describe(const CompileArguments& arguments, const compiler::PackagePla
     ninja.folder = arguments.planOnly;
     ninja.file = planFile(arguments);
     for (const compiler::PlannedModule& module : plan.modules) {
-        const std::string stem = (moduleFolder(arguments) / module.file).string();
-        ninja.modules.push_back({module.name, stem + std::string(compiler::kModuleTextSuffix),
-                                 stem + std::string(compiler::kCompiledModuleSuffix)});
+        const auto pathOf = [&](const std::string& stem, std::string_view suffix) {
+            return (moduleFolder(arguments) / (stem + std::string(suffix))).string();
+        };
+        NinjaModule entry{module.name, pathOf(module.file, compiler::kModuleTextSuffix),
+                          pathOf(module.file, compiler::kCompiledModuleSuffix)};
+        for (const std::string& part : module.parts) {
+            entry.parts.push_back(pathOf(part, compiler::kCompiledModuleSuffix));
+        }
+        ninja.modules.push_back(std::move(entry));
     }
     ninja.outputs = mainOutputs(arguments);
     const fs::path folder = arguments.planOnly;
@@ -236,8 +242,9 @@ Result<std::string> makeNinjaFile(const NinjaPlan& plan) {
     }
     text += ": plan | " + tool + "\n\n";
     for (const NinjaModule& module : plan.modules) {
-        text += fmt::format("build {}: module {} | {}\n  name = {}\n", escapePath(module.output),
-                            escapePath(module.input), tool, escapeValue(module.name));
+        text +=
+            fmt::format("build {}: module {} | {}{}\n  name = {}\n", escapePath(module.output),
+                        escapePath(module.input), tool, escapePaths(module.parts), escapeValue(module.name));
     }
     text += "\nbuild" + escapePaths(plan.outputs) + ": package";
     for (const NinjaModule& module : plan.modules) {

@@ -14,9 +14,10 @@
 namespace glint::cli {
 
 struct NinjaModule {
-    std::string name;    // for people
-    std::string input;   // path of the module's text
-    std::string output;  // path of the compiled module
+    std::string name;                  // for people
+    std::string input;                 // path of the module's text
+    std::string output;                // path of the compiled module
+    std::vector<std::string> parts{};  // paths of compiled modules that it reads, too
 };
 
 struct NinjaPlan {

@@ -15,7 +15,12 @@ namespace glint::cli {
 namespace {
 
 std::string describe(const ModuleCounts& modules) {
-    return fmt::format("{} compiled, {} taken from the cache", modules.compiled, modules.cached);
+    std::string text = fmt::format("{} compiled, {} taken from the cache", modules.compiled, modules.cached);
+    if (modules.partsCompiled + modules.partsCached > 0) {
+        text += fmt::format("; parts: {} compiled, {} taken from the cache", modules.partsCompiled,
+                            modules.partsCached);
+    }
+    return text;
 }
 
 }  // namespace
@@ -24,6 +29,8 @@ ModuleCounts countModules(const compiler::CompiledPackage& package) {
     ModuleCounts counts;
     for (const compiler::CompiledModule& module : package.modules) {
         ++(module.compiled ? counts.compiled : counts.cached);
+        counts.partsCompiled += module.partsCompiled;
+        counts.partsCached += module.partsCached;
     }
     return counts;
 }
@@ -33,7 +40,10 @@ void tell(const Console& console, CompileSummary summary, const std::optional<Mo
     if (console.isJson()) {
         summary.json["milliseconds"] = milliseconds;
         summary.json["modules"] =
-            modules ? base::Json{{"compiled", modules->compiled}, {"cached", modules->cached}}
+            modules ? base::Json{{"compiled", modules->compiled},
+                                 {"cached", modules->cached},
+                                 {"parts",
+                                  {{"compiled", modules->partsCompiled}, {"cached", modules->partsCached}}}}
                     : base::Json(nullptr);
         summary.json["upToDate"] = upToDate;
         console.result(summary.json);

@@ -234,12 +234,14 @@ private:
 
     static std::string describe(const WatchedRun& run, bool fresh, double milliseconds) {
         return fmt::format(
-            "{}; cases: {} compiled, {} kept; other modules: {} compiled, {} kept; {:.0f} ms: read {:.0f}, "
-            "plan "
-            "{:.0f}, compile {:.0f}, write {:.0f}",
+            "{}; cases: {} compiled, {} kept; other modules: {} compiled, {} kept{}; {:.0f} ms: "
+            "read {:.0f}, plan {:.0f}, compile {:.0f}, write {:.0f}",
             fresh ? "new package" : "same package", run.casesCompiled, run.cases - run.casesCompiled,
-            run.modulesCompiled, run.modules - run.modulesCompiled, milliseconds, run.readMs, run.planMs,
-            run.compileMs, run.writeMs);
+            run.modulesCompiled, run.modules - run.modulesCompiled,
+            run.parts == 0 ? std::string()
+                           : fmt::format("; parts: {} compiled, {} kept", run.partsCompiled,
+                                         run.parts - run.partsCompiled),
+            milliseconds, run.readMs, run.planMs, run.compileMs, run.writeMs);
     }
 
     // Counts the stamp up if the package is not the one that it is about. Returns whether it did.
@@ -284,6 +286,8 @@ void describeRun(const compiler::CompiledPackage& package, WatchedRun& run) {
             ++run.modules;
             run.modulesCompiled += module.compiled ? 1 : 0;
         }
+        run.parts += module.partsCompiled + module.partsCached;
+        run.partsCompiled += module.partsCompiled;
     }
     run.cases = static_cast<int>(cases.size());
     run.casesCompiled = static_cast<int>(compiled.size());

@@ -30,6 +30,8 @@ struct WatchedRun {
     int casesCompiled = 0;  // those of which a module was compiled
     int modules = 0;        // other modules
     int modulesCompiled = 0;
+    int parts = 0;  // of modules that were joined
+    int partsCompiled = 0;
     std::uint64_t tables = 0;  // hash of tables.bin, which has the hashes of all modules
 };
 

@@ -316,6 +316,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"sparse-index", kError, "A sparse accessor replaces an element that it does not have."},
     {"spirv-format", kError, "A file is not a SPIR-V module, or is cut short."},
     {"spirv-invalid", kError, "`glint lint`: a module is not valid SPIR-V."},
+    {"spirv-join", kError, "The parts of a shader do not fit together: a defect of Glint."},
     {"spirv-linkage", kError,
      "`--emit linkable`: a function of the library is missing from its SPIR-V; a defect of Glint."},
     {"spirv-optimize", kError, "A generated shader can't be optimised: a defect of Glint."},

@@ -1,0 +1,155 @@
+// For spv::HasResultAndType().
+#define SPV_ENABLE_UTILITY_CODE
+
+#include "spirv/join/parsed_module.h"
+
+#include "spirv/reader.h"
+
+#include <glslang/SPIRV/spirv.hpp>
+#include <spirv-tools/libspirv.h>
+
+#include <algorithm>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+namespace glint::compiler {
+
+namespace {
+
+constexpr std::size_t kLinkageName = 3;  // word of OpDecorate … LinkageAttributes
+
+struct Reading {
+    ParsedModule* module = nullptr;
+    std::size_t at = kSpirvHeaderWords;
+    bool hasGroups = false;
+};
+
+bool isIdOperand(spv_operand_type_t type) {
+    return type == SPV_OPERAND_TYPE_ID || type == SPV_OPERAND_TYPE_TYPE_ID ||
+           type == SPV_OPERAND_TYPE_RESULT_ID || type == SPV_OPERAND_TYPE_MEMORY_SEMANTICS_ID ||
+           type == SPV_OPERAND_TYPE_SCOPE_ID;
+}
+
+bool isDecorating(std::uint32_t opcode) {
+    return opcode == spv::OpDecorate || opcode == spv::OpMemberDecorate || opcode == spv::OpDecorateId ||
+           opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;
+}
+
+// Places in the source say nothing about what a module does.
+bool isPlace(std::uint32_t opcode) {
+    return opcode == spv::OpLine || opcode == spv::OpNoLine || opcode == spv::OpString ||
+           opcode == spv::OpModuleProcessed;
+}
+
+void addDecoration(ParsedModule& module, const ParsedInstruction& instruction) {
+    const std::span<const std::uint32_t> words = module.wordsOf(instruction);
+    if (instruction.opcode == spv::OpDecorate && words[2] == spv::DecorationLinkageAttributes) {
+        const bool exported = words.back() == spv::LinkageTypeExport;
+        (exported ? module.exports : module.imports)[words[1]] = spirvString(words.subspan(kLinkageName));
+    } else {
+        module.decorations[words[1]].push_back(instruction);
+    }
+}
+
+void add(Reading& reading, const ParsedInstruction& instruction) {
+    ParsedModule& module = *reading.module;
+    const std::uint32_t opcode = instruction.opcode;
+    const bool inFunction =
+        !module.functions.empty() && (module.functions.back().body.empty() ||
+                                      module.functions.back().body.back().opcode != spv::OpFunctionEnd);
+    if (opcode == spv::OpFunction) {
+        module.functions.push_back({instruction.result, {instruction}});
+    } else if (isPlace(opcode)) {
+        return;
+    } else if (inFunction) {
+        module.functions.back().body.push_back(instruction);
+    } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
+        module.names[module.words[instruction.at + 1]].push_back(instruction);
+    } else if (isDecorating(opcode)) {
+        addDecoration(module, instruction);
+    } else if (opcode == spv::OpDecorationGroup || opcode == spv::OpGroupDecorate ||
+               opcode == spv::OpGroupMemberDecorate) {
+        reading.hasGroups = true;
+    } else {
+        module.globals.push_back(instruction);
+    }
+}
+
+spv_result_t readInstruction(void* data, const spv_parsed_instruction_t* parsed) {
+    Reading& reading = *static_cast<Reading*>(data);
+    for (std::size_t i = 0; i < parsed->num_operands; ++i) {
+        const spv_parsed_operand_t& operand = parsed->operands[i];
+        if (isIdOperand(operand.type)) {
+            reading.module->isId[reading.at + operand.offset] = true;
+        }
+    }
+    add(reading, {reading.at, parsed->num_words, parsed->opcode, parsed->result_id});
+    reading.at += parsed->num_words;
+    return SPV_SUCCESS;
+}
+
+}  // namespace
+
+std::string ParsedModule::nameOf(std::uint32_t id) const {
+    const auto found = names.find(id);
+    if (found == names.end()) {
+        return {};
+    }
+    for (const ParsedInstruction& name : found->second) {
+        if (name.opcode == spv::OpName) {
+            return spirvString(wordsOf(name).subspan(2));
+        }
+    }
+    return {};
+}
+
+Result<ParsedModule> parseModule(std::span<const std::uint32_t> words, const std::string& shader) {
+    const auto refuse = [&](const std::string& why) {
+        return makeError("spirv-join", shader, why,
+                         "this is a defect of Glint; please report it with the scene");
+    };
+    ParsedModule module;
+    module.words = words;
+    module.isId.resize(words.size());
+    Reading reading{&module};
+    const std::unique_ptr<std::remove_pointer_t<spv_context>, decltype(&spvContextDestroy)> context(
+        spvContextCreate(SPV_ENV_UNIVERSAL_1_5), &spvContextDestroy);
+    spv_diagnostic diagnostic = nullptr;
+    const spv_result_t result = spvBinaryParse(context.get(), &reading, words.data(), words.size(), nullptr,
+                                               readInstruction, &diagnostic);
+    const std::string why = diagnostic != nullptr ? diagnostic->error : "no reason given";
+    spvDiagnosticDestroy(diagnostic);
+    if (result != SPV_SUCCESS) {
+        return refuse("a part is no SPIR-V module: " + why);
+    }
+    if (reading.hasGroups) {
+        return refuse("a part has groups of decorations, which can't be joined");
+    }
+    return module;
+}
+
+bool sharesVariables(const ParsedModule& module) {
+    std::vector<bool> shared(module.bound());
+    bool any = false;
+    for (const ParsedInstruction& global : module.globals) {
+        if (global.opcode == spv::OpVariable) {
+            const std::uint32_t storage = module.words[global.at + 3];
+            shared[global.result] =
+                storage == spv::StorageClassPrivate || storage == spv::StorageClassWorkgroup;
+            any = any || shared[global.result];
+        }
+    }
+    return any && std::ranges::any_of(module.functions, [&](const ParsedFunction& function) {
+               return std::ranges::any_of(function.body, [&](const ParsedInstruction& instruction) {
+                   for (std::size_t i = instruction.at; i < instruction.at + instruction.length; ++i) {
+                       if (module.isId[i] && shared[module.words[i]]) {
+                           return true;
+                       }
+                   }
+                   return false;
+               });
+           });
+}
+
+}  // namespace glint::compiler

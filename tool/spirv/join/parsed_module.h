@@ -1,0 +1,56 @@
+// A SPIR-V module as the join reads it: which words are IDs, what annotates an ID, and where functions begin.
+#pragma once
+
+#include <glint/result.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::compiler {
+
+struct ParsedInstruction {
+    std::size_t at = 0;  // index of its first word
+    std::size_t length = 0;
+    std::uint32_t opcode = 0;
+    std::uint32_t result = 0;  // ID, or 0
+};
+
+struct ParsedFunction {
+    std::uint32_t id = 0;
+    std::vector<ParsedInstruction> body;  // from OpFunction to OpFunctionEnd, without places in the source
+};
+
+struct ParsedModule {
+    std::span<const std::uint32_t> words;    // those that were parsed, which must live as long
+    std::vector<bool> isId;                  // by word
+    std::vector<ParsedInstruction> globals;  // before the functions, without annotations
+    std::vector<ParsedFunction> functions;
+    // By ID: its decorations, without linkage, and its names.
+    std::map<std::uint32_t, std::vector<ParsedInstruction>> decorations;
+    std::map<std::uint32_t, std::vector<ParsedInstruction>> names;
+    // By ID of a function: the name under which it is linked.
+    std::map<std::uint32_t, std::string> exports;
+    std::map<std::uint32_t, std::string> imports;
+
+    std::uint32_t bound() const {
+        return words[3];
+    }
+    std::span<const std::uint32_t> wordsOf(const ParsedInstruction& instruction) const {
+        return words.subspan(instruction.at, instruction.length);
+    }
+    // Returns the name of an ID, or "".
+    std::string nameOf(std::uint32_t id) const;
+};
+
+// `shader` is for messages. Error "spirv-join" if this is no module, or has groups of decorations.
+Result<ParsedModule> parseModule(std::span<const std::uint32_t> words, const std::string& shader);
+
+// Returns whether a function of the module uses a variable that the functions of an invocation or of a
+// workgroup share (a global variable of GLSL).
+bool sharesVariables(const ParsedModule& module);
+
+}  // namespace glint::compiler
