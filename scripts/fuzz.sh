@@ -14,10 +14,12 @@ coverage (edges, and libFuzzer's features), time, findings. Inputs that are new 
 in build/fuzz/findings; exit 1 if there is any. Needs Clang: scripts/setup.sh --sanitize.
 
   SECONDS         run each target that long (60), two at a time
-  --executions N  run one target after the other until each has had N executions since its last finding. They are
-                  counted over all runs, in build/fuzz/state: a run that was stopped goes on where it ended
+  --executions N  run one target after the other until each has had N executions since its last finding
   --seconds S     with --executions: no longer than that for a target
   --report        run nothing; print what the runs so far have counted
+
+Every run adds its executions to tests/fuzz/executions.txt, or sets a target back to 0 that had a finding. Commit the
+file, so that the runs of all machines add up. Its head says what it counts.
 TEXT
 }
 
@@ -68,8 +70,8 @@ if [[ -z ${GLINT_FUZZ_BUILD:-} && $report == false ]]; then
     cmake --preset fuzz >/dev/null
     cmake --build --preset fuzz >&2
 fi
-state=$build/state
-mkdir -p "$build/findings" "$build/logs" "$state"
+counts=${GLINT_FUZZ_COUNTS:-tests/fuzz/executions.txt}
+mkdir -p "$build/findings" "$build/logs"
 
 # Inputs are files, thousands each second. They are kept in memory if there is such a folder.
 scratch=$(mktemp -d "$([[ -w /dev/shm ]] && echo /dev/shm || echo "${TMPDIR:-/tmp}")/glint-fuzz-XXXXXX")
@@ -121,28 +123,32 @@ found() {
     grep -qE '^SUMMARY: ' "$1"
 }
 
-# counted NAME FILE: prints a number of the state, or 0 if there is none yet.
+# counted NAME: prints how many executions the target has had since its last finding.
 counted() {
-    cat "$state/$1.$2" 2>/dev/null || echo 0
+    awk -v name="$1" '$1 == name { count = $2 } END { print count + 0 }' "$counts"
 }
 
-# count_run NAME SECONDS: adds the run in the log to the state. A finding sets the state back to 0.
+# count_run NAME: adds the run in the log to the file of counts. A finding sets the target back to 0. Targets that run
+# at the same time take turns.
 count_run() {
-    local name=$1 log=$build/logs/$1.log ran
+    local name=$1 log=$build/logs/$1.log ran count
     ran=$(executions_of "$log")
-    if found "$log"; then
-        echo 0 >"$state/$name.executions"
-        echo 0 >"$state/$name.seconds"
-    else
-        echo $(($(counted "$name" executions) + ${ran:-0})) >"$state/$name.executions"
-        echo $(($(counted "$name" seconds) + $2)) >"$state/$name.seconds"
-    fi
+    (
+        flock 9
+        count=$(($(counted "$name") + ${ran:-0}))
+        found "$log" && count=0
+        awk -v name="$name" -v count="$count" -v day="$(date -u +%F)" '
+            $1 == name { $0 = name " " count " " day; there = 1 }
+            { print }
+            END { if (!there) print name " " count " " day }' "$counts" >"$scratch/counts"
+        cat "$scratch/counts" >"$counts"
+    ) 9<"$counts"
 }
 
 # run_until NAME: runs until the target has its executions, has a finding, or has used its time.
 run_until() {
     local name=$1 spent=0 left slice began
-    while left=$((executions - $(counted "$name" executions))) && [[ $left -gt 0 ]]; do
+    while left=$((executions - $(counted "$name"))) && [[ $left -gt 0 ]]; do
         slice=$kSlice
         if [[ -n $seconds ]]; then
             slice=$((seconds - spent < kSlice ? seconds - spent : kSlice))
@@ -150,9 +156,9 @@ run_until() {
         fi
         began=$SECONDS
         run_target "$name" "-runs=$left" "-max_total_time=$slice"
-        count_run "$name" $((SECONDS - began))
+        count_run "$name"
         spent=$((spent + SECONDS - began))
-        printf 'fuzz: %s: %s executions since the last finding\n' "$name" "$(counted "$name" executions)" >&2
+        printf 'fuzz: %s: %s executions since the last finding\n' "$name" "$(counted "$name")" >&2
         found "$build/logs/$name.log" && return 0
         # A target that does not start must not be started for ever.
         [[ $(executions_of "$build/logs/$name.log") -gt 0 ]] || return 0
@@ -160,12 +166,11 @@ run_until() {
 }
 
 print_counts() {
-    local name count time
-    printf '| target | executions since the last finding | a second |\n|---|---|---|\n'
+    local name
+    printf '| target | executions since the last finding | last run |\n|---|---:|---|\n'
     for name in "${targets[@]}"; do
-        count=$(counted "$name" executions)
-        time=$(counted "$name" seconds)
-        printf "| \`%s\` | %s | %s |\n" "$name" "$count" $((count / (time > 0 ? time : 1)))
+        printf "| \`%s\` | %s | %s |\n" "$name" "$(counted "$name" | sed -E ':a; s/([0-9])([0-9]{3})($|,)/\1,\2\3/; ta')" \
+            "$(awk -v name="$name" '$1 == name { day = $3 } END { print day == "" ? "-" : day }' "$counts")"
     done
 }
 
@@ -180,7 +185,7 @@ table_row() {
 
 # The shell reads the whole file before anything runs, so that the file may change during a run of hours.
 main() {
-    local name began
+    local name
     if [[ $report == true ]]; then
         print_counts
         exit 0
@@ -197,9 +202,8 @@ main() {
             done
             printf 'fuzz: %s\n' "$name" >&2
             {
-                began=$SECONDS
                 run_target "$name" "-max_total_time=${seconds:-60}"
-                count_run "$name" $((SECONDS - began))
+                count_run "$name"
             } &
         done
         wait

@@ -13,8 +13,9 @@ Sets up, builds, and runs all parts, or those that are named:
 
   sweep     test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values;
-            test_strategies_agree with every merge policy for every scene; test_half with
-            the gallery
+            test_strategies_agree with every merge policy for every scene; test_half and
+            test_library with the gallery; the orderings with other subgroup sizes. All with
+            lavapipe's LLVM passes, which scripts/test.sh leaves out
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -55,9 +56,13 @@ scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
         sweep)
-            build test_combinations test_strategies_agree test_half test_live_edit
-            for program in test_combinations test_strategies_agree test_half test_live_edit; do
+            build test_combinations test_strategies_agree test_half test_library test_live_edit \
+                test_ordering
+            for program in test_combinations test_strategies_agree test_half test_library test_live_edit; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"
+            done
+            for bits in 128 512; do
+                LP_NATIVE_VECTOR_WIDTH=$bits GLINT_NIGHTLY=1 build/release/tests/test_ordering --gtest_filter='Buckets/*'
             done
             ;;
         sanitize) scripts/sanitize.sh --all ;;

@@ -12,9 +12,10 @@ scripts/setup.sh --sanitize) and runs
   - every file of tests/fuzz/corpus through the reader that it was made for, and invalid scenes through both readers
     of scenes;
   - every eighth of these files through the command;
-  - every command over the small example scenes, with each strategy;
-  - explain over the gallery and the scenes of scripts/models.sh where they are. The gallery and every fourth of these
-    scenes are also compiled and rendered, each with one of the strategies in turn.
+  - every command over the scene of the example program, with each strategy;
+  - explain over the gallery and the scenes of scripts/models.sh where they are. The other example scenes, those of
+    packs with their packs, the gallery and every fourth of these scenes are also compiled and rendered, each with one
+    of the strategies in turn.
 With --all, as in scripts/nightly.sh, every file goes through the command, and every scene through every command and
 strategy.
 Exit 1 on a report of a sanitizer, on a command that takes 15 minutes, and where one ends in another way than done or
@@ -41,6 +42,8 @@ build=build/sanitize
 # The command has no such exit code, so that a report is noticed whatever the command would have returned.
 export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=exitcode=99
 export NO_COLOR=1
+# Lavapipe's machine code is not what is tested here, and pictures are small.
+export GALLIVM_PERF=nopt
 models=${GLINT_MODELS:-../shared/models}
 # Bounds what a hang costs; the longest command takes two minutes.
 export kTimeout=900
@@ -76,24 +79,30 @@ check() {
     fi
 }
 
+# packs_of SCENE: prints the option that names the packs of material features beside an example scene, if it has some.
+packs_of() {
+    [[ $1 != examples/materials/* ]] || printf -- '--materials=%s' "${1%/*}"
+}
+
 # check_scene SCENE: runs everything that reads the scene or its package.
 check_scene() {
-    local scene=$1 glint=$build/bin/glint package
+    local scene=$1 glint=$build/bin/glint package packs
     package=$(mktemp -d "$work/packages/XXXXXX")
-    check 0 "$glint" explain "$scene" --json
-    check 0 "$glint" explain "$scene" --plan --merge auto
-    check 0 "$glint" compile "$scene" -o "$package/a" --strategy all --tracer all \
+    packs=$(packs_of "$scene")
+    check 0 "$glint" explain "$scene" ${packs:+"$packs"} --json
+    check 0 "$glint" explain "$scene" ${packs:+"$packs"} --plan --merge auto
+    check 0 "$glint" compile "$scene" ${packs:+"$packs"} -o "$package/a" --strategy all --tracer all \
         --emit glsl,header --lock "$package/ids.lock" --depfile "$package/list.d" --embed "$package/embedded.cpp"
-    check 0 "$glint" compile "$scene" -o "$package/b" --merge all --alpha tested --shadows deferred \
+    check 0 "$glint" compile "$scene" ${packs:+"$packs"} -o "$package/b" --merge all --alpha tested --shadows deferred \
         --hit-record packed --jobs 1
     check 0 "$glint" inspect "$package/a" --json
     check 01 "$glint" lint "$package/a" --json
     check 0 "$glint" diff "$package/a" "$package/b" --json
     for strategy in uber visibility sorted-uber hit-shaders; do
-        check 0 "$glint" render "$scene" -o "$package/$strategy.exr" --package "$package/a" --size 32x18 \
-            --strategy "$strategy" --stats "$package/$strategy.json"
+        check 0 "$glint" render "$scene" ${packs:+"$packs"} -o "$package/$strategy.exr" --package "$package/a" \
+            --size 32x18 --strategy "$strategy" --stats "$package/$strategy.json"
     done
-    check 0 "$glint" render "$scene" -o "$package/b.png" --package "$package/b" --size 32x18 --ssr 8
+    check 0 "$glint" render "$scene" ${packs:+"$packs"} -o "$package/b.png" --package "$package/b" --size 32x18 --ssr 8
     check 0 "$glint" compare "$package/uber.exr" "$package/hit-shaders.exr" --diff "$package/diff.png" --json
     rm -rf "$package"
 }
@@ -105,10 +114,13 @@ explain_scene() {
 
 # render_scene STRATEGY:SCENE: compiles and renders for one strategy.
 render_scene() {
-    local strategy=${1%%:*} scene=${1#*:} glint=$build/bin/glint package
+    local strategy=${1%%:*} scene=${1#*:} glint=$build/bin/glint package packs
     package=$(mktemp -d "$work/packages/XXXXXX")
-    check 0 "$glint" compile "$scene" -o "$package/a" --strategy "$strategy" --lock "$package/ids.lock"
-    check 0 "$glint" render "$scene" -o "$package/a.exr" --package "$package/a" --size 32x18 --strategy "$strategy"
+    packs=$(packs_of "$scene")
+    check 0 "$glint" compile "$scene" ${packs:+"$packs"} -o "$package/a" --strategy "$strategy" \
+        --lock "$package/ids.lock"
+    check 0 "$glint" render "$scene" ${packs:+"$packs"} -o "$package/a.exr" --package "$package/a" --size 32x18 \
+        --strategy "$strategy"
     rm -rf "$package"
 }
 
@@ -192,7 +204,7 @@ every() {
 }
 
 export build work models
-export -f check check_scene explain_scene render_scene replay replay_scenes check_input
+export -f packs_of check check_scene explain_scene render_scene replay replay_scenes check_input
 
 say "replays of the corpus"
 each 1 replay tests/fuzz/corpus/*
@@ -221,13 +233,13 @@ scenes_in() {
 check 0 "$build/bin/gallery" "$work/gallery"
 gallery=$work/gallery/gallery.gltf
 farm=(examples/cmake-consumer/scene/cubes.gltf examples/engine/scene/engine.gltf)
-mapfile -d '' scenes < <(scenes_in examples)
+scenes=(examples/cmake-consumer/scene/cubes.gltf)
+mapfile -d '' examples < <(scenes_in examples/engine examples/materials)
 mapfile -d '' others < <(scenes_in "$models/large" "$models/features")
 if [[ $all == true ]]; then
     farm[1]=$gallery
     # The gallery comes first, because it takes longest.
-    scenes=("$gallery" "${scenes[@]}" "${others[@]}")
-    others=()
+    scenes=("$gallery" "${scenes[@]}" "${examples[@]}" "${others[@]}")
 fi
 say "a plan of two scenes, by Ninja"
 check_farm "${farm[@]}"
@@ -237,11 +249,12 @@ if [[ $all == false ]]; then
     say "$((${#others[@]} + 1)) scenes through explain"
     each 2 explain_scene "$gallery" "${others[@]}"
     mapfile -d '' rendered < <(every 4 "$gallery" "${others[@]}")
+    rendered+=("${examples[@]}")
     strategies=(hit-shaders uber visibility sorted-uber)
     for i in "${!rendered[@]}"; do
         rendered[i]=${strategies[i % 4]}:${rendered[i]}
     done
-    say "${#rendered[@]} of them through compile and render"
+    say "${#rendered[@]} scenes through compile and render"
     each 1 render_scene "${rendered[@]}"
 fi
 

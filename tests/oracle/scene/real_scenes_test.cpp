@@ -7,6 +7,7 @@
 #include "render/harness.h"
 #include "support/effect_bits.h"
 #include "support/models.h"
+#include "support/nightly.h"
 #include "support/temporary_folder.h"
 
 #include <cstdlib>
@@ -109,8 +110,9 @@ TEST(RealScenes, TheDeviceDecodesTexelsWithinHalfAStep) {
 }
 
 // llvmpipe filters 8-bit textures in 8 bits unless this is set before the device is created. Other drivers
-// ignore it.
-const int kFiltersInFloats = ::setenv("GALLIVM_PERF", "no_aos_sampling", 1);
+// ignore it. tests/support/test_main.cpp gives the reason for the other word.
+const int kFiltersInFloats =
+    ::setenv("GALLIVM_PERF", test::nightly() ? "no_aos_sampling" : "no_aos_sampling,nopt", 1);
 
 class RealScenes : public ::testing::TestWithParam<RealScene> {};
 

@@ -56,7 +56,7 @@ TEST(Header, CompilesOnItsOwnAndBesideTheInteropHeaders) {
 TEST(Header, CompilesForASceneWithoutPrimitives) {
     gltf::Scene scene;
     scene.path = "9 empty.gltf";
-    const Result<compiler::CompiledPackage> package = compiler::compilePackage(scene, {});
+    const Result<compiler::CompiledPackage> package = compiler::compilePackage(scene, {}, &sharedModules());
     ASSERT_TRUE(package) << toString(package.error());
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "glint_tables.h") << textOf(findFile(*package, "glint_tables.h"));

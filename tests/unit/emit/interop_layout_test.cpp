@@ -179,7 +179,7 @@ TEST(InteropLayout, OfThePassThatDeformsLikewise) {
     scene.nodes.push_back(node);
     compiler::CompileSettings settings;
     settings.debugInfo = true;
-    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings);
+    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings, &sharedModules());
     ASSERT_TRUE(package) << toString(package.error());
     expectInModules(*package, layoutsOf(Of::Deform));
 }

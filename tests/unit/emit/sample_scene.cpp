@@ -56,7 +56,7 @@ gltf::Scene makeSampleScene() {
 }
 
 compiler::CompiledPackage compileSample(const compiler::CompileSettings& settings) {
-    Result<compiler::CompiledPackage> package = compilePackage(makeSampleScene(), settings);
+    Result<compiler::CompiledPackage> package = compilePackage(makeSampleScene(), settings, &sharedModules());
     EXPECT_TRUE(package) << toString(package.error());
     return package ? std::move(*package) : compiler::CompiledPackage{};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "emit/compile.h"
+#include "support/shared_modules.h"
 #include "support/temporary_folder.h"
 
 #include <filesystem>
@@ -13,7 +14,7 @@ namespace glint::testing {
 // as base colour and occlusion with a transform; unlit and masked.
 gltf::Scene makeSampleScene();
 
-// Compiles with small settings. Fails the test if that fails.
+// Compiles with small settings, and takes modules from the cache of the tests. Fails the test if that fails.
 compiler::CompiledPackage compileSample(const compiler::CompileSettings& settings = {});
 
 const compiler::PackageFile* findFile(const compiler::CompiledPackage& package, std::string_view name);

@@ -351,7 +351,7 @@ TEST(Tables, GoSceneByScene) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::None;
-    const Result<compiler::CompiledPackage> compiled = compilePackage(scenes, settings);
+    const Result<compiler::CompiledPackage> compiled = compilePackage(scenes, settings, &sharedModules());
     ASSERT_TRUE(compiled) << toString(compiled.error());
     const TableReader reader(findFile(*compiled, package::kTablesFile)->bytes);
     const auto entries = reader.read<package::SceneEntry>(SectionKind::Scenes);
@@ -393,7 +393,8 @@ TEST(CheckScene, RefusesIndicesThatLeadNowhere) {
     const auto idAfter = [](auto change) {
         gltf::Scene scene = makeSampleScene();
         change(scene);
-        const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, {});
+        const Result<compiler::CompiledPackage> compiled =
+            compiler::compilePackage(scene, {}, &sharedModules());
         return compiled ? std::string("none") : compiled.error().id;
     };
     EXPECT_EQ(idAfter([](gltf::Scene& scene) { scene.textures[0].image = 2; }), "scene-index");
