@@ -281,11 +281,11 @@ TEST(PathMeans, AreThoseOfEveryStrategyAndNumberOfLights) {
     std::uint32_t seed = 100;
     for (const std::optional<std::uint32_t> lights :
          {std::optional<std::uint32_t>(0), std::optional<std::uint32_t>(1)}) {
-        for (const package::Strategy strategy : package::kStrategies) {
+        for (const package::Strategy strategy : package::strategies()) {
             if (lights == 1U && strategy != package::kStrategyVisibility) {
                 continue;
             }
-            Yard yard(scene, settingsOf(lights, package::kAllStrategies), strategy, true);
+            Yard yard(scene, settingsOf(lights, package::allStrategies()), strategy, true);
             ASSERT_TRUE(yard.ok());
             yard.frame().sky = SkyView{};
             const std::string name =
