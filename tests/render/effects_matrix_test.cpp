@@ -141,6 +141,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     options.ordering = package::Ordering::GlobalAtomics;
     options.width = 16;
     options.height = 9;
+    options.screenMarch = true;
     const Result<std::unique_ptr<Renderer>> renderer =
         Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
     ASSERT_TRUE(renderer) << toString(renderer.error());
@@ -157,9 +158,9 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     // The images are surface, radiance, mean, residual and depth; the march over the screen also needs
     // positions.
     EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
-    // The buffers are constants, counters, read-back; samples, radiance, rays, hits, order, buckets and two
-    // dispatches.
-    EXPECT_EQ(footprint.buffers, 3U + (rays ? 11U : 0U));
+    // The buffers are constants, counters, read-back; samples in three parts, rays, hits, order, buckets and
+    // two dispatches.
+    EXPECT_EQ(footprint.buffers, 3U + (rays ? 12U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
     frame.timing = Timing::Passes;

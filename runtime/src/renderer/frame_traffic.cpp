@@ -74,6 +74,9 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const TrafficRow shaded{"", Unit::Hit, kWord + hit + arrivalBytes(shape), answer};
     const TrafficRow traced{
         "", Unit::Ray, kRay + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0), answer};
+    const bool missesApart = std::ranges::any_of(strategy.modules, [](const package::StrategyModule& module) {
+        return module.over == package::Over::Misses;
+    });
     const auto add = [&](std::string_view pass, TrafficRow row) {
         row.pass = pass;
         rows.push_back(row);
@@ -86,7 +89,9 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
                 add(module.pass, traced);
                 break;
             case package::Over::OrderedHits:
-                add(module.pass, miss);
+                if (!missesApart) {
+                    add(module.pass, miss);
+                }
                 add(module.pass, shaded);
                 break;
             case package::Over::Misses:
