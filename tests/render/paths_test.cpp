@@ -489,10 +489,10 @@ TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
         setup.frame.seed = seed;
         return loaded.render(pathOptions(4, package::kStrategyUber), setup);
     };
-    const LinearImage reference = render(1024, 1);
+    const LinearImage reference = render(4096, 1);
     ASSERT_FALSE(reference.pixels.empty());
     std::vector<double> errors;
-    for (const std::uint32_t samples : {4U, 64U}) {
+    for (const std::uint32_t samples : {4U, 256U}) {
         double squares = 0.0;
         for (std::uint32_t seed = 2; seed < 6; ++seed) {
             const LinearImage image = render(samples, seed);
@@ -506,7 +506,7 @@ TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
         errors.push_back(std::sqrt(squares));
         std::printf("%u samples: error %.5f\n", samples, errors.back());
     }
-    const double slope = std::log2(errors[1] / errors[0]) / 4.0;
+    const double slope = std::log2(errors[1] / errors[0]) / 6.0;
     std::printf("slope %.3f\n", slope);
     EXPECT_NEAR(slope, -0.5, 0.12);
 }
