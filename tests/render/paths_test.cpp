@@ -1,10 +1,10 @@
 // Paths of several bounces: every way to trace and shade them gives the same picture, and closed scenes have
 // the radiance that their series say.
+#include "frame/bounce_levels.h"
 #include "render/hall.h"
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
-#include "renderer/bounce_levels.h"
 
 #include <gtest/gtest.h>
 

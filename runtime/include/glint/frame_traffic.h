@@ -47,7 +47,7 @@ constexpr std::span<const Named<TrafficUnit>> namesOf(TrafficUnit /*type*/) {
 
 // What decides how many bytes there are.
 struct TrafficShape {
-    package::Strategy strategy = package::kStrategyVisibility;
+    package::Strategy strategy = package::kDefaultStrategy;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
     std::uint32_t effects = 0;  // those that send rays
     std::uint32_t walks = 0;    // those of them with a pass that follows their rays first

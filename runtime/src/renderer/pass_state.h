@@ -2,7 +2,7 @@
 #pragma once
 
 #include "context/timer.h"
-#include "renderer/frame_resources.h"
+#include "frame/frame_resources.h"
 #include "renderer/pipelines.h"
 
 #include <glint/renderer.h>

@@ -1,5 +1,5 @@
 // The passes of a frame in order.
-#include "renderer/frame_constants.h"
+#include "frame/frame_constants.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_state.h"
 

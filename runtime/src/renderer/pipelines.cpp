@@ -1,9 +1,9 @@
 #include "renderer/pipelines.h"
 
 #include "context/vulkan_error.h"
+#include "frame/frame_resources.h"
 #include "package/shader_modules.h"
 #include "renderer/background_pipelines.h"
-#include "renderer/frame_resources.h"
 #include "renderer/pipeline_plan.h"
 #include "renderer/ray_passes.h"
 #include "renderer/tile_sort.h"

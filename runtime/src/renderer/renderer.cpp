@@ -1,9 +1,9 @@
 // Renderer: creation, frame constants, results.
 #include "context/readback.h"
 #include "context/vulkan_error.h"
+#include "frame/frame_constants.h"
 #include "renderer/background_pipelines.h"
 #include "renderer/camera.h"
-#include "renderer/frame_constants.h"
 #include "renderer/renderer_choice.h"
 #include "renderer/renderer_state.h"
 

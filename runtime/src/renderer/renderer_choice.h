@@ -1,7 +1,7 @@
 // Chooses what a renderer runs from its options, its package and the device.
 #pragma once
 
-#include "renderer/frame_resources.h"
+#include "frame/frame_resources.h"
 #include "renderer/pipelines.h"
 
 #include <glint/package.h>

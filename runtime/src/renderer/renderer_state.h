@@ -1,7 +1,7 @@
 // The state that the passes of a Renderer work on.
 #pragma once
 
-#include "renderer/bounce_levels.h"
+#include "frame/bounce_levels.h"
 #include "renderer/pass_state.h"
 #include "replacement/replacement.h"
 #include "scene/gpu_scene_state.h"

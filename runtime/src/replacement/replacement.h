@@ -2,8 +2,8 @@
 #pragma once
 
 #include "context/timer.h"
+#include "frame/frame_resources.h"
 #include "renderer/background_pipelines.h"
-#include "renderer/frame_resources.h"
 #include "renderer/pipelines.h"
 #include "replacement/scene_package.h"
 

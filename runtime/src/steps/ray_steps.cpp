@@ -1,5 +1,5 @@
 #include "context/readback.h"
-#include "renderer/frame_constants.h"
+#include "frame/frame_constants.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_choice.h"
 #include "steps/engine_scene_state.h"

@@ -1,5 +1,5 @@
 // Tests which bounces of a frame are recorded, and that leaving out the others loses no light in the mean.
-#include "renderer/bounce_levels.h"
+#include "frame/bounce_levels.h"
 
 #include <gtest/gtest.h>
 

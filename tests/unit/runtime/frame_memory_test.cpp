@@ -1,5 +1,5 @@
 // The memory of a frame, and the bytes that its passes move, stay within bounds. docs/memory.md states them.
-#include "renderer/frame_resources.h"
+#include "frame/frame_resources.h"
 #include "renderer/renderer_choice.h"
 
 #include <glint/frame_traffic.h>

@@ -1,8 +1,8 @@
-#include "renderer/frame_resources.h"
+#include "frame/frame_resources.h"
 
 #include "context/commands.h"
 #include "context/vulkan_error.h"
-#include "renderer/bounce_levels.h"
+#include "frame/bounce_levels.h"
 
 #include <algorithm>
 #include <limits>

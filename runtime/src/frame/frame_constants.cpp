@@ -1,4 +1,4 @@
-#include "renderer/frame_constants.h"
+#include "frame/frame_constants.h"
 
 #include "scene/instance_math.h"
 

@@ -1,5 +1,5 @@
+#include "frame/frame_resources.h"
 #include "interop/frame.h"
-#include "renderer/frame_resources.h"
 
 #include <glint/frame_traffic.h>
 #include <glint/package.h>

@@ -1,4 +1,4 @@
-#include "renderer/bounce_levels.h"
+#include "frame/bounce_levels.h"
 
 #include <algorithm>
 
