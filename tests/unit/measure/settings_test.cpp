@@ -37,14 +37,15 @@ compiler::Configuration usual() {
             {"binning", "none"},
             {"batch-effects", "off"},
             {"bands", "0"},
-            {"vertices", "compact"}};
+            {"vertices", "compact"},
+            {"compress-textures", "off"}};
 }
 
 compiler::BenchFacts rich() {
     compiler::BenchFacts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.manyLights = facts.sizedLights = true;
     facts.passesLight = facts.emits = facts.lightsMayEmit = true;
-    facts.rayPipeline = facts.positionFetch = facts.float16 = true;
+    facts.rayPipeline = facts.positionFetch = facts.float16 = facts.packsTextures = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.effectsOfAnyRoughness = facts.effects;
     facts.sendsRays = true;

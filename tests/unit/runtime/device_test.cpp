@@ -333,7 +333,7 @@ TEST_F(UploadTest, BrokenScenesAreErrors) {
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 3; }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.height = 0; }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = I::Format::Rgba16; }), "scene-image");
-    EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = static_cast<I::Format>(7); }), "scene-image");
+    EXPECT_EQ(withScene([](P&, S&, I& i) { i.format = static_cast<I::Format>(255); }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.width = 1U << 30; }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.levels = 0; }), "scene-image");
     EXPECT_EQ(withScene([](P&, S&, I& i) { i.levels = 2; }), "scene-image");

@@ -22,4 +22,6 @@ void main() {
         radiance = vec4(float(surface.x) + 1.0, float(surface.y), texel.r, 1.0);
     }
     imageStore(radianceImage, ivec2(pixel), radiance);
+    // Where no ray is sent, no light is found.
+    FRAME.sampleStarts.data[pixel.x + pixel.y * FRAME.width] = SampleStart(vec3(0.0), 0u);
 }
