@@ -147,7 +147,8 @@ constexpr std::uint32_t kCasesOfBands = 256;
 }  // namespace
 
 std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted) {
-    if (size.hostRays || size.sampleCount == 0 || size.marchesScreen) {
+    const bool isEmpty = size.width == 0 || size.height == 0;  // an error that checkFrameSize() reports
+    if (isEmpty || size.hostRays || size.sampleCount == 0 || size.marchesScreen) {
         return 0;
     }
     std::uint64_t bands = wanted;
