@@ -11,7 +11,7 @@
 namespace glint::oracle {
 namespace {
 
-// A pixel of the truth is uneven if one sample has this share of it.
+// A truth's pixel is uneven if one sample has this share of it.
 constexpr double kUneven = 0.1;
 constexpr double kDeviations = 4.0;
 
@@ -68,32 +68,16 @@ double deviationsOf(const Vec3& device, const Pixel& truth, std::uint32_t sample
     return worst;
 }
 
-// Whether one sample has much of the light of the pixel or of a neighbour: where highlights are as rare as
-// that, a pixel may have missed them, and its own variance does not tell.
-bool isUneven(const PathPicture& truth, std::uint32_t x, std::uint32_t y) {
-    for (std::uint32_t row = std::max(y, 1U) - 1; row < std::min(y + 2, truth.picture.height); ++row) {
-        for (std::uint32_t column = std::max(x, 1U) - 1; column < std::min(x + 2, truth.picture.width);
-             ++column) {
-            const std::size_t pixel = static_cast<std::size_t>(row) * truth.picture.width + column;
-            if (truth.notes[pixel].largestSample > kUneven) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
 // `reflecting` may be null.
-PathCause causeOf(const PathDifferentPixel& pixel, const PathPicture& truth, const Pixel* reflecting,
+PathCause causeOf(const PathDifferentPixel& pixel, const PathPixel& notes, const Pixel* reflecting,
                   std::uint32_t samples) {
-    const PathPixel& notes = truth.notes[static_cast<std::size_t>(pixel.y) * truth.picture.width + pixel.x];
     if (pixel.deviations <= kDeviations) {
         return PathCause::Noise;
     }
     if (reflecting != nullptr && deviationsOf(pixel.device, *reflecting, samples) <= kDeviations) {
         return PathCause::Below;
     }
-    if (isUneven(truth, pixel.x, pixel.y)) {
+    if (notes.largestSample > kUneven) {
         return PathCause::Uneven;
     }
     if (notes.glass > 0.0) {
@@ -217,7 +201,7 @@ PathDifference pathDifference(const LinearImage& device, const PathPicture& trut
                 reflected != nullptr ? (different.device[channel] - reflected->mean[channel]) / 3.0 : 0.0;
         }
         if (different.relative > kDiffers) {
-            different.cause = causeOf(different, truth, reflected, samples);
+            different.cause = causeOf(different, truth.notes[i], reflected, samples);
             const int material = truth.notes[i].material;
             different.material =
                 material < 0 ? "sky" : scene.materials[static_cast<std::size_t>(material)].name;

@@ -39,7 +39,7 @@ Estimate pathLight(const PathTracer& tracer, const Ray& ray, std::uint32_t sampl
 // Why a pixel differs from the truth by more than kDiffers. The first cause that applies counts.
 enum class PathCause : std::uint8_t {
     Noise,    // by less than four standard errors of truth and device together
-    Uneven,   // one sample has a tenth of the light of this pixel of the truth, or of a neighbour
+    Uneven,   // one sample of the truth has a tenth of the pixel's light, so its standard error says little
     Glass,    // paths from here meet clear glass
     Blended,  // paths from here meet surfaces of BLEND
     Below,    // the truth that reflects directions below a surface once more, as the device does, is within
