@@ -133,6 +133,7 @@ counted() {
 count_run() {
     local name=$1 log=$build/logs/$1.log ran count
     ran=$(executions_of "$log")
+    # shellcheck disable=SC2094 # descriptor 9 is a lock and is never read
     (
         flock 9
         count=$(($(counted "$name") + ${ran:-0}))

@@ -32,7 +32,8 @@ int compileModule(const Console& console, const ModuleArguments& arguments) {
 void addCompileModule(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<ModuleArguments>();
     CLI::App& command =
-        addCommand(app, "compile-module", "Compile one module of a plan; reads its text and compiled parts, writes one file",
+        addCommand(app, "compile-module",
+                   "Compile one module of a plan; reads its text and compiled parts, writes one file",
                    "glint compile-module plan/modules/0.glsl -o plan/modules/0.module");
     addText(command, "IN", arguments->input, "FILE", "a module that glint compile --plan-only wrote")
         .required();

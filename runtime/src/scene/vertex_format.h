@@ -16,8 +16,8 @@ namespace glint {
 // vector's length is not within 1e-3 of 1.
 std::optional<std::vector<std::uint32_t>> packNormals(std::span<const std::array<float, 3>> normals);
 
-// Octahedral, 16 and 15 bits, and the sign of w: within 7.5e-5 rad. None if a vector is no unit vector, or w is
-// not ±1.
+// Octahedral, 16 and 15 bits, and the sign of w: within 7.5e-5 rad. None if a vector is no unit vector, or w
+// is not ±1.
 std::optional<std::vector<std::uint32_t>> packTangents(std::span<const std::array<float, 4>> tangents);
 
 // Two coordinates of 16 bits between the least and the largest of the primitive. The first four words are the
