@@ -229,14 +229,14 @@ TEST_F(Farm, MisuseIsRefused) {
     EXPECT_EQ(bar.exit, 1);
     EXPECT_TRUE(has(bar.err, "[ninja-name]")) << bar.err;
 
-    const std::string sound = "// glint module 1\n// stage comp\n//\n#version 460\nvoid main() {}\n";
+    const std::string sound = "// glint module 2\n// stage comp\n//\n#version 460\nvoid main() {}\n";
     for (const auto& [text, id] : std::vector<std::pair<std::string, std::string>>{
              {"", "[module-format]"},
              {"#version 460\nvoid main() {}\n", "[module-format]"},
-             {"// glint module 1\n// stage comp\n", "[module-format]"},
-             {"// glint module 1\n// stage tess\n//\n", "[module-format]"},
-             {"// glint module 1\n//\n#version 460\n", "[module-format]"},
-             {"// glint module 1\n// colour red\n//\n", "[module-format]"},
+             {"// glint module 2\n// stage comp\n", "[module-format]"},
+             {"// glint module 2\n// stage tess\n//\n", "[module-format]"},
+             {"// glint module 2\n//\n#version 460\n", "[module-format]"},
+             {"// glint module 2\n// colour red\n//\n", "[module-format]"},
              {sound + "wrong", "[glsl]"}}) {
         writeText(path("in"), text);
         const Outcome outcome = run({"compile-module", "in", "-o", "out"});

@@ -31,18 +31,18 @@ TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
     const std::vector<Words> expected{
         {"compile", "--strategy auto|all|LIST how hits can be shaded, separated by commas;"},
         {"compile",
-         "--tracer all|LIST what traces rays, separated by commas; hit-shaders always has its own; "
-         "ray-query: "
+         "--tracer all|LIST what traces rays, separated by commas; strategies of hit shaders always have "
+         "their own; ray-query: "
          "compute shaders trace; ray-pipeline: ray generation shaders trace, for devices without ray "
          "queries"},
-        {"compile", "what is kept of a hit between passes (visibility, sorted-uber);"},
+        {"compile", "what strategies that sort hits keep of a hit between passes;"},
         {"compile",
          "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no limit, "
          "or 32 for auto and profile"},
         {"compile", "if the lock file would change (needs --lock)"},
         {"compile", "(needs --lock, excludes --locked)"},
         {"compile", "-Wno-ID"},
-        {"render", "how visibility and sorted-uber sort hits by shader; auto: by the device and the number"},
+        {"render", "how strategies that sort hits by shader do so; auto: by the device and the number"},
         {"render", "any message is an error; also checks the order of hits"},
         {"render", "1 to 16384 each way, 67108864 in all"},
         {"render", "needs --environment (-360 to 360, default: 0)"},

@@ -203,6 +203,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"energyCompensation", manifest.energyCompensation},
           {"trustTextures", manifest.trustTextures},
           {"textureLod", manifest.textureLod},
+          {"textureLevels", package.textureLevels()},
           {"precision", package::bitsOf(package.precision())},
           {"shadows", std::string(package::nameOf(package.shape().shadows))},
           {"shadowThrough", std::string(package::nameOf(package.shadowThrough()))},

@@ -168,10 +168,20 @@ Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sou
     return std::shared_ptr<const ModuleSource>(part);
 }
 
+// Returns what stands in for the functions of that part in the rest of the lighting pass, which evaluates the
+// materials of emissive lights alone.
+SourceSet surfaceApart(const SourceSet& sources, EmissiveLights emissive) {
+    SourceSet apart;
+    if (emissive != EmissiveLights::On) {
+        apart.add("light/emitter.glsl", "");
+    }
+    apart.add("passes/primary_surface.glsl", std::string(*sources.find("passes/primary_surface_apart.glsl")));
+    return apart;
+}
+
 // Adds the parts of the lighting pass, whose text is `text`: `surface`, and all else.
 void addLightingParts(ModuleSource& module, const std::string& origin, std::string text, const SourceSet& own,
                       const std::shared_ptr<const ModuleSource>& surface, ModuleDrafts& drafts) {
-    insertDefines(text, "#define GLINT_SURFACE_APART\n");
     const std::shared_ptr<ModuleSource> head = makeHead(module, surface->link->exported);
     drafts.add(head, origin, std::move(text), own);
     module.parts = {head, surface};
@@ -214,6 +224,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         return made.error();
     }
     std::shared_ptr<const ModuleSource> surface;  // of the lighting pass, whatever traces its rays
+    const SourceSet apart = surfaceApart(sources, settings.emissiveLights);
     std::vector<std::shared_ptr<ModuleSource>> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
@@ -259,7 +270,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                 }
                 surface = std::move(*part);
             }
-            addLightingParts(*module, origin, *text, none, surface, drafts);
+            addLightingParts(*module, origin, *text, apart, surface, drafts);
         }
         drafts.add(module, origin, std::move(*text), *own);
         modules.push_back(std::move(module));
