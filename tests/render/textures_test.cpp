@@ -75,6 +75,12 @@ double toSrgb(double linear) {
 }
 
 // Random blocks have every mode. Devices may round colours otherwise, by a step of 8 bits or two.
+compiler::CompileSettings settingsForDevice() {
+    compiler::CompileSettings settings;
+    settings.tracers = tracerOfDevice();
+    return settings;
+}
+
 TEST(TextureFormats, DevicesReadWhatTheCpuUnpacks) {
     const FormatImages images = imagesOf(sharedContext().texelFormats());
     ASSERT_LE(images.formats.size(), std::size_t{kCells} * kCells);
@@ -82,7 +88,7 @@ TEST(TextureFormats, DevicesReadWhatTheCpuUnpacks) {
     const gltf::Scene scene = squares(images.formats.size());
     RenderSetup setup = defaultSetup(scene, kSide, kSide);
     const auto picture = [&](bool inBlocks) {
-        const LoadedScene loaded(scene, compiler::CompileSettings(), [&](scene_view::SceneViewData& data) {
+        const LoadedScene loaded(scene, settingsForDevice(), [&](scene_view::SceneViewData& data) {
             for (std::size_t i = 0; i < images.formats.size(); ++i) {
                 data.images[i].format = inBlocks ? images.formats[i] : TexelFormat::Rgba8;
                 data.images[i].pixels = inBlocks ? images.blocks[i] : images.pixels[i];
@@ -163,7 +169,7 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
                                                 packed(TexelFormat::Bc5, data, {1, 2}),
                                                 packed(TexelFormat::Bc4, data, {0, 0})};
     RenderSetup setup = defaultSetup(scene, 32, 32);
-    compiler::CompileSettings settings;
+    const compiler::CompileSettings settings = settingsForDevice();
     const LoadedScene plain(scene, settings);
     const LoadedScene compressed(scene, settings, [&](scene_view::SceneViewData& view) {
         using enum TexelChannel;
@@ -195,7 +201,7 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
 TEST(TextureFormats, WhatADeviceCantReadIsRefused) {
     const gltf::Scene scene = squares(1);
     Context& context = sharedContext();
-    const auto compiled = compilePackage(scene, compiler::CompileSettings());
+    const auto compiled = compilePackage(scene, settingsForDevice());
     ASSERT_TRUE(compiled.ok());
     const auto package = scene_view::loadPackage(*compiled);
     ASSERT_TRUE(package.ok());
@@ -257,7 +263,7 @@ TEST(TextureLevels, TheFinestLevelThatWasReadIsNoted) {
     for (gltf::Sampler& sampler : scene.samplers) {
         sampler.mip = gltf::Filter::Nearest;  // such samplers have no anisotropy on any device
     }
-    compiler::CompileSettings settings;
+    compiler::CompileSettings settings = settingsForDevice();
     settings.textureLevels = true;
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
@@ -278,12 +284,12 @@ TEST(TextureLevels, TheFinestLevelThatWasReadIsNoted) {
 
 TEST(TextureLevels, WithoutTheSettingThereIsNeitherCodeNorCounter) {
     const gltf::Scene scene = texturedPair();
-    compiler::CompileSettings noting;
+    compiler::CompileSettings noting = settingsForDevice();
     noting.textureLevels = true;
     const auto withLevels = compilePackage(scene, noting);
-    const auto without = compilePackage(scene, compiler::CompileSettings());
+    const auto without = compilePackage(scene, settingsForDevice());
     ASSERT_TRUE(withLevels.ok() && without.ok());
-    const LoadedScene loaded(scene, compiler::CompileSettings());
+    const LoadedScene loaded(scene, settingsForDevice());
     ASSERT_TRUE(loaded.ok());
     EXPECT_FALSE(loaded.package().textureLevels());
     FrameCounters counters;

@@ -538,8 +538,7 @@ constexpr Descriptor kRows[] = {
      .stage = SettingStage::Renderer,
      .group = kEffectOptions,
      .what = "light the picture in N bands of rows, one after the other: less memory, more dispatches; 0: "
-             "bands of "
-             "at most 2^19 pixels",
+             "one on a discrete GPU, elsewhere bands of at most 2^19 pixels",
      .values = number<&Settings::renderer, &RendererOptions::bands>(0, 1024),
      .bench = changesTime(withoutRays, "1 4"),
      .document = "memory.md#bands"},

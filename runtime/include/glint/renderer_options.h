@@ -36,8 +36,9 @@ struct RendererOptions {
     // more in packages with such effects, 16 bytes a pixel, and frames in one band.
     bool screenMarch = false;
     // Lights the frame in that many bands of rows, one after the other. Samples, rays and hits then take
-    // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses:
-    // bands of at most kPixelsOfBand pixels, but no more of them than keep the passes of a frame few.
+    // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses: one
+    // on discrete GPUs, which bands cost time; elsewhere bands of at most kPixelsOfBand pixels, but no more
+    // of them than keep the passes of a frame few.
     std::uint32_t bands = 0;
     // The most bounces of a path in this renderer's frames: 1 to what the package was compiled for
     // (PackageShape::maxBounces). With 1, the hits of the effects' rays send no further rays.
@@ -54,7 +55,7 @@ struct RendererOptions {
     bool pipelineStatistics = false;
 };
 
-// The most pixels of a band if RendererOptions::bands is 0. A ray of each keeps large GPUs busy.
+// The most pixels of a band if RendererOptions::bands is 0, but for discrete GPUs.
 inline constexpr std::uint32_t kPixelsOfBand = 1U << 19;
 
 // The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the direction,

@@ -25,6 +25,7 @@ struct PipelineChoice {
     bool checksOrder = false;
     bool batchEffects = false;
     std::uint32_t bounces = 1;  // the most of a path
+    std::uint32_t bands = 0;    // what chooseBandRows() takes
     // Pipelines with shaders of cases are made later, by threads; until then a fallback is in their place.
     bool background = false;
 };

@@ -133,6 +133,9 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.ordering = options.ordering.value_or(orderingFor(context.limits, package.bucketCount()));
     choice.checksOrder = options.checkOrder;
     choice.batchEffects = options.batchEffects;
+    // Bands cost a GPU with memory of its own a fifth of its time and more (docs/memory.md).
+    const bool isDiscrete = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+    choice.bands = options.bands == 0 && isDiscrete ? 1 : options.bands;
     if (Status status = checkOrdering(context.limits, choice.ordering, package.bucketCount()); !status) {
         return status.error();
     }
@@ -193,7 +196,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     size.accumulates = options.accumulate;
     size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
-    size.bandRows = chooseBandRows(size, choice.strategy, options.bands);
+    size.bandRows = chooseBandRows(size, choice.strategy, choice.bands);
     return size;
 }
 
