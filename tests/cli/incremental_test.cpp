@@ -60,7 +60,7 @@ int compiled(const Outcome& outcome) {
     return outcome.json().at("modules").at("compiled").get<int>();
 }
 
-// Of the modules that were joined in the run: how many parts were compiled.
+// Returns how many parts were compiled for the modules that were joined in the run.
 int partsCompiled(const Outcome& outcome) {
     return outcome.json().at("modules").at("parts").at("compiled").get<int>();
 }

@@ -38,8 +38,8 @@ struct CompiledModule {
     SpirvStatistics statistics;
     std::uint64_t hash = 0;
     bool compiled = true;  // in this run; false if it was cached or has the text of another module
-    // Of those that it was joined from in this run: how many were compiled, and how many were cached. Parts
-    // of several modules count for the first of them.
+    // How many of the parts that it was joined from in this run were compiled, and how many were cached.
+    // Parts of several modules count for the first of them.
     int partsCompiled = 0;
     int partsCached = 0;
 };

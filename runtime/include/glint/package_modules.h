@@ -64,7 +64,7 @@ struct RoleInfo {
     Purpose purpose = Purpose::Hits;
     Repeated repeated = Repeated::Once;
 
-    // Of a strategy's roles alone, as the strategy declares them.
+    // Only roles of strategies have these, as the strategy declares them.
     const StrategyModule* declared = nullptr;
     Over over = Over::Nothing;  // of the fallback of Buckets: Misses; other fallbacks have no pass
     ModuleRole fallback{};      // the role of its fallback

@@ -90,7 +90,7 @@ constexpr std::uint64_t bytesOfLevel(TexelFormat format, std::uint32_t width, st
     return std::uint64_t{blocksAcross(sizeAtLevel(width, level), info.blockWidth)} *
            blocksAcross(sizeAtLevel(height, level), info.blockHeight) * info.blockBytes;
 }
-// Of the levels [0, count).
+// Returns the bytes of the levels [0, count) together.
 constexpr std::uint64_t bytesOfLevels(TexelFormat format, std::uint32_t width, std::uint32_t height,
                                       std::uint32_t count) {
     std::uint64_t bytes = 0;

@@ -24,7 +24,7 @@ struct CompileSummary {
 struct ModuleCounts {
     int compiled = 0;
     int cached = 0;  // or with the text of another
-    // Of the modules that were joined in this run.
+    // These count the parts of the modules that were joined in this run.
     int partsCompiled = 0;
     int partsCached = 0;
 };
