@@ -2,7 +2,10 @@
 
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "emit/compile.h"
 #include "image/image_file.h"
+
+#include <fmt/format.h>
 
 namespace glint::cli {
 
