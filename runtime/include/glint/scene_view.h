@@ -153,8 +153,8 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    // What a vertex has besides its position takes 20 bytes or less in the compact form and up to 60 in the
-    // full one. docs/memory.md says what becomes of its values.
+    // The attributes of a vertex besides its position take at most 20 bytes in the compact form and up to 60
+    // in the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
     // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;
