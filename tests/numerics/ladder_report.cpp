@@ -71,7 +71,8 @@ std::string headline(const Ladder& ladder) {
 std::string summary(const Ladder& ladder) {
     const LadderCounts counts = countRungs(ladder);
     return fmt::format(
-        "Compared with their textbook forms, {} of Glint's functions in float are faster, {} are slower and {} "
+        "Compared with their textbook forms, {} of Glint's functions in float are faster, {} are slower and "
+        "{} "
         "tie; {} are too short to measure.",
         counts.faster, counts.slower, counts.ties, counts.unknown);
 }
