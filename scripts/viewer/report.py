@@ -217,8 +217,8 @@ def markdown(scenes, results, package):
     size = next((result["size"] for scene, result in zip(scenes, results) if not scene.rows), None)
     sizes = (f"models at {size[0]} × {size[1]}, " if size else "") + "spheres at 64 × 64"
     head = (f"{package}; {sizes}. Every number is a ratio, Glint to the viewer; a pair is the ratio of luminance, "
-            "prefiltered and traced. \"Difference\" is the mean of the absolute differences of luminance, over the mean "
-            "luminance.")
+            "prefiltered and traced. \"Difference\" is the mean of the absolute differences of luminance, over the "
+            "mean luminance.")
     lines = textwrap.wrap(head, 120) + [""]
     models = [result for scene, result in zip(scenes, results) if not scene.rows]
     if models:
