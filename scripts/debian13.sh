@@ -7,11 +7,11 @@ usage() {
     cat <<'TEXT'
 usage: scripts/debian13.sh ROOT [COMMAND…]
 
-Makes a Debian 13 root in the folder ROOT by debootstrap, where there is none, from
-the mirror that apt has here. Copies the commit that is checked out to ROOT/glint, and
-runs COMMAND there, scripts/test.sh if none is given. Models are those of $GLINT_MODELS,
-else of ../shared/models, where they are. What was built there before is kept, so that a
-second run builds what changed.
+Makes a Debian 13 root in the folder ROOT by debootstrap, if there is none, from the
+mirror that apt uses here. Copies the commit that is checked out to ROOT/glint and runs
+COMMAND there (default: scripts/test.sh). Models are those of $GLINT_MODELS, else those
+of ../shared/models, if they exist. Files that were built there before are kept, so that
+a second run builds only what changed.
 
 Needs root, some 4 GB and the package debootstrap, which it installs.
 TEXT
