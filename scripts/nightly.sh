@@ -14,8 +14,9 @@ Sets up, builds, and runs all parts, or those that are named:
   sweep     test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values;
             test_strategies_agree with every merge policy for every scene; test_half and
-            test_library with the gallery; the orderings with other subgroup sizes. All with
-            lavapipe's LLVM passes, which scripts/test.sh leaves out
+            test_library with the gallery; the orderings with other subgroup sizes; twice to three
+            times as many materials in test_furnace and test_sampling; a fault at every call that
+            writes. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -56,9 +57,10 @@ scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
         sweep)
-            build test_combinations test_strategies_agree test_half test_library test_live_edit \
-                test_ordering
-            for program in test_combinations test_strategies_agree test_half test_library test_live_edit; do
+            whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
+                test_ordering test_furnace test_sampling test_cli_robustness)
+            build "${whole[@]}" glint
+            for program in "${whole[@]}"; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"
             done
             for bits in 128 512; do
