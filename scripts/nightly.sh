@@ -23,19 +23,20 @@ Sets up, builds, and runs all parts, or those that are named:
             out/specification.json and out/specification.md
   viewer    scripts/viewer_compare.sh, which is left out without Chromium, npm or network
   lint      scripts/lint.sh
-  debian13  scripts/debian13.sh: builds and runs every test with the newer compiler and
-            libraries of Debian 13, below build/debian13; needs root
+  debian    scripts/debian_root.sh: the README's first command in a fresh root of Debian 12,
+            below build/debian12, and every test with the newer compiler and libraries of
+            Debian 13, below build/debian13; needs root
   fuzz      scripts/fuzz.sh --executions 10000000
 TEXT
 }
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep sanitize spec viewer lint debian13 fuzz)
+    parts=(sweep sanitize spec viewer lint debian fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | sanitize | spec | viewer | lint | debian13 | fuzz) ;;
+        sweep | sanitize | spec | viewer | lint | debian | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -80,11 +81,13 @@ for part in "${parts[@]}"; do
             scripts/viewer_compare.sh
             ;;
         lint) scripts/lint.sh ;;
-        debian13)
+        debian)
             if [[ $(id -u) -eq 0 ]]; then
-                scripts/debian13.sh build/debian13
+                rm -rf build/debian12
+                scripts/debian_root.sh 12 build/debian12 scripts/demo.sh
+                scripts/debian_root.sh 13 build/debian13
             else
-                printf 'nightly: debian13 is left out: it needs root\n'
+                printf 'nightly: debian is left out: it needs root\n'
             fi
             ;;
         fuzz) scripts/fuzz.sh --executions 10000000 ;;
