@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""Compares the pictures' cost of two builds of glint, interleaved.
+
+    benchmarks/compare_builds.py BEFORE NOW SCENE... [--ways STRATEGY:TRACER,...] [--size WxH] [--spp N] [--rounds N]
+                                 [--merge POLICY] [--sky S] [--passes]
+
+BEFORE and NOW are two programs `glint`. Each compiles a package of every scene for every way. In a round both render
+every scene in every way, once with 1 sample and once with N, one build after the other, first the one and in the next
+round the other. Prints Markdown: the bytes of the package's SPIR-V, and the medians of ratios of the same round, NOW
+over BEFORE, with their 95 % intervals (order statistics): of the device time of a sample's passes, and of the
+processor time of all threads for a sample, which other programs disturb less; on a GPU it says nothing. --passes adds
+the device time of each pass.
+"""
+import argparse
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def run(*words):
+    """Runs a command; returns the seconds of processor time that it took, and what it printed."""
+    with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen([str(word) for word in words], stdout=output, stderr=errors)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        output.seek(0)
+        errors.seek(0)
+        if process.returncode != 0:
+            sys.exit(f"{' '.join(map(str, words))}: exit {process.returncode}\n{errors.read().decode()}")
+        return usage.ru_utime + usage.ru_stime, output.read().decode()
+
+
+def interval(values):
+    """The median, and the order statistics that hold it with at least 95 % confidence if there are six values."""
+    ordered = sorted(values)
+    count = len(ordered)
+    low, outside = 0, 2 * 0.5**count
+    while low + 1 < count // 2 and outside + 2 * math.comb(count, low + 1) * 0.5**count <= 0.05:
+        low += 1
+        outside += 2 * math.comb(count, low) * 0.5**count
+    return statistics.median(ordered), ordered[low], ordered[count - 1 - low]
+
+
+def ratio(now, before):
+    return "{:.3f} ({:.3f} to {:.3f})".format(*interval([b / a for a, b in zip(before, now)]))
+
+
+class Case:
+    """A scene that one build renders in one way."""
+
+    def __init__(self, arguments, glint, scene, way, folder):
+        self.arguments, self.glint, self.scene, self.folder = arguments, glint, scene, folder
+        self.strategy, self.tracer = way
+        self.package = folder / "package"
+        folder.mkdir(parents=True)
+        self.device, self.processor, self.passes = [], [], []
+        run(glint, "compile", scene, "-o", self.package, "--strategy", self.strategy, "--tracer", self.tracer, "--merge",
+            arguments.merge)
+        self.bytes = sum(path.stat().st_size for path in self.package.rglob("*.spv"))
+
+    def render(self, spp):
+        seconds, report = run(self.glint, "render", self.scene, "-o", self.folder / "picture.exr", "--package", self.package,
+                              "--strategy", self.strategy, "--tracer", self.tracer, "--size", self.arguments.size, "--spp",
+                              spp, "--json", *(["--sky", self.arguments.sky] if self.arguments.sky else []))
+        return seconds, json.loads(report)["passes"]
+
+    def measure(self):
+        spp = self.arguments.spp
+        once, _ = self.render(1)
+        seconds, passes = self.render(spp)
+        self.processor.append((seconds - once) / (spp - 1))
+        self.device.append(sum(entry["milliseconds"] for entry in passes))
+        times = {}
+        for entry in passes:
+            times[entry["name"]] = times.get(entry["name"], 0.0) + entry["milliseconds"]
+        self.passes.append(times)
+
+
+def print_passes(before, now):
+    for name in now.passes[0]:
+        if all(name in times for times in before.passes + now.passes):
+            old, new = ([times[name] for times in case.passes] for case in (before, now))
+            print(f"|  | {name} |  | {statistics.median(old):.3g} ms | {ratio(new, old)} |  |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("before", type=pathlib.Path, help="a program glint")
+    parser.add_argument("now", type=pathlib.Path, help="another one")
+    parser.add_argument("scenes", nargs="+", help="glTF files")
+    parser.add_argument("--ways", default="uber:ray-query,visibility:ray-query,visibility:ray-pipeline,"
+                        "hit-shaders:ray-pipeline", help="default uber and visibility with ray queries, visibility and "
+                        "hit-shaders with ray tracing pipelines")
+    parser.add_argument("--size", default="96x54", help="default 96x54")
+    parser.add_argument("--spp", type=int, default=17, help="samples, at least 2; default 17")
+    parser.add_argument("--rounds", type=int, default=9, help="default 9")
+    parser.add_argument("--merge", default="family", help="merge policy; default family")
+    parser.add_argument("--sky", help="as of glint render")
+    parser.add_argument("--passes", action="store_true", help="print each pass, too")
+    arguments = parser.parse_args()
+    ways = [way.split(":") for way in arguments.ways.split(",")]
+    with tempfile.TemporaryDirectory(prefix="glint-builds-") as name:
+        folder = pathlib.Path(name)
+        pairs = [tuple(Case(arguments, glint, scene, way, folder / f"{number}-{'-'.join(way)}-{build}")
+                       for build, glint in (("before", arguments.before), ("now", arguments.now)))
+                 for number, scene in enumerate(arguments.scenes) for way in ways]
+        for number in range(arguments.rounds):
+            for pair in pairs:
+                for case in pair if number % 2 == 0 else reversed(pair):
+                    case.measure()
+        print(f"{arguments.size}, {arguments.spp} samples, {arguments.rounds} rounds\n")
+        print("| scene | strategy, tracer | SPIR-V, bytes | device time of a sample, before | now / before | processor "
+              "time, now / before |\n|---|---|---|---|---|---|")
+        for before, now in pairs:
+            print(f"| {pathlib.Path(now.scene).stem} | {now.strategy}, {now.tracer} | {now.bytes / before.bytes:.3f} of "
+                  f"{before.bytes:,} | {statistics.median(before.device):.3g} ms | {ratio(now.device, before.device)} | "
+                  f"{ratio(now.processor, before.processor)} |", flush=True)
+            if arguments.passes:
+                print_passes(before, now)
+
+
+if __name__ == "__main__":
+    main()
