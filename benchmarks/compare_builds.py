@@ -2,16 +2,17 @@
 """Compares the pictures' cost of two builds of glint, interleaved.
 
     benchmarks/compare_builds.py BEFORE NOW SCENE... [--ways STRATEGY:TRACER,...] [--size WxH] [--spp N] [--rounds N]
-                                 [--merge POLICY] [--sky S] [--passes]
+                                 [--merge POLICY] [--sky S] [--processor] [--passes]
 
 BEFORE and NOW are two programs `glint`. Each compiles a package of every scene for every way. In a round both render
-every scene in every way, once with 1 sample and once with N, one build after the other, first the one and in the next
-round the other. Prints Markdown: the bytes of the package's SPIR-V, and the medians of ratios of the same round, NOW
-over BEFORE, with their 95 % intervals (order statistics): of the device time of a sample's passes, and of the
-processor time of all threads for a sample, which other programs disturb less; on a GPU it says nothing. --passes adds
+every scene in every way, one build after the other, first the one and in the next round the other. Prints Markdown:
+the bytes of the package's SPIR-V, and the median of ratios of the same round, NOW over BEFORE, with its 95 % interval
+(order statistics), of the device time of a sample's passes. --processor adds the processor time of all threads for a
+sample, which other programs on a CPU driver's machine disturb less: that of N samples less that of one. --passes adds
 the device time of each pass.
 """
 import argparse
+import concurrent.futures
 import json
 import math
 import os
@@ -61,8 +62,10 @@ class Case:
         self.package = folder / "package"
         folder.mkdir(parents=True)
         self.device, self.processor, self.passes = [], [], []
-        run(glint, "compile", scene, "-o", self.package, "--strategy", self.strategy, "--tracer", self.tracer, "--merge",
-            arguments.merge)
+
+    def compile(self):
+        run(self.glint, "compile", self.scene, "-o", self.package, "--strategy", self.strategy, "--tracer", self.tracer,
+            "--merge", self.arguments.merge)
         self.bytes = sum(path.stat().st_size for path in self.package.rglob("*.spv"))
 
     def render(self, spp):
@@ -73,7 +76,7 @@ class Case:
 
     def measure(self):
         spp = self.arguments.spp
-        once, _ = self.render(1)
+        once = self.render(1)[0] if self.arguments.processor else 0.0
         seconds, passes = self.render(spp)
         self.processor.append((seconds - once) / (spp - 1))
         self.device.append(sum(entry["milliseconds"] for entry in passes))
@@ -87,7 +90,7 @@ def print_passes(before, now):
     for name in now.passes[0]:
         if all(name in times for times in before.passes + now.passes):
             old, new = ([times[name] for times in case.passes] for case in (before, now))
-            print(f"|  | {name} |  | {statistics.median(old):.3g} ms | {ratio(new, old)} |  |")
+            print(f"|  | {name} |  | {statistics.median(old):.3g} ms | {ratio(new, old)} |")
 
 
 def main():
@@ -103,6 +106,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=9, help="default 9")
     parser.add_argument("--merge", default="family", help="merge policy; default family")
     parser.add_argument("--sky", help="as of glint render")
+    parser.add_argument("--processor", action="store_true", help="measure processor time, too")
     parser.add_argument("--passes", action="store_true", help="print each pass, too")
     arguments = parser.parse_args()
     ways = [way.split(":") for way in arguments.ways.split(",")]
@@ -111,17 +115,20 @@ def main():
         pairs = [tuple(Case(arguments, glint, scene, way, folder / f"{number}-{'-'.join(way)}-{build}")
                        for build, glint in (("before", arguments.before), ("now", arguments.now)))
                  for number, scene in enumerate(arguments.scenes) for way in ways]
+        with concurrent.futures.ThreadPoolExecutor(max(os.cpu_count() // 4, 1)) as pool:
+            list(pool.map(Case.compile, [case for pair in pairs for case in pair]))
         for number in range(arguments.rounds):
             for pair in pairs:
                 for case in pair if number % 2 == 0 else reversed(pair):
                     case.measure()
         print(f"{arguments.size}, {arguments.spp} samples, {arguments.rounds} rounds\n")
-        print("| scene | strategy, tracer | SPIR-V, bytes | device time of a sample, before | now / before | processor "
-              "time, now / before |\n|---|---|---|---|---|---|")
+        more = arguments.processor
+        print("| scene | strategy, tracer | SPIR-V, bytes | device time of a sample, before | now / before |" +
+              (" processor time, now / before |" if more else "") + "\n|---|---|---|---|---|" + ("---|" if more else ""))
         for before, now in pairs:
             print(f"| {pathlib.Path(now.scene).stem} | {now.strategy}, {now.tracer} | {now.bytes / before.bytes:.3f} of "
-                  f"{before.bytes:,} | {statistics.median(before.device):.3g} ms | {ratio(now.device, before.device)} | "
-                  f"{ratio(now.processor, before.processor)} |", flush=True)
+                  f"{before.bytes:,} | {statistics.median(before.device):.3g} ms | {ratio(now.device, before.device)} |" +
+                  (f" {ratio(now.processor, before.processor)} |" if more else ""), flush=True)
             if arguments.passes:
                 print_passes(before, now)
 
