@@ -2,7 +2,7 @@
 """Compares the pictures' cost of two builds of glint, interleaved.
 
     benchmarks/compare_builds.py BEFORE NOW SCENE... [--ways STRATEGY:TRACER,...] [--size WxH] [--spp N] [--rounds N]
-                                 [--merge POLICY] [--sky S] [--processor] [--passes]
+                                 [--compile OPTIONS] [--sky S] [--processor] [--passes]
 
 BEFORE and NOW are two programs `glint`. Each compiles a package of every scene for every way. In a round both render
 every scene in every way, one build after the other, first the one and in the next round the other. Prints Markdown:
@@ -17,6 +17,7 @@ import json
 import math
 import os
 import pathlib
+import shlex
 import statistics
 import subprocess
 import sys
@@ -65,7 +66,7 @@ class Case:
 
     def compile(self):
         run(self.glint, "compile", self.scene, "-o", self.package, "--strategy", self.strategy, "--tracer", self.tracer,
-            "--merge", self.arguments.merge)
+            *shlex.split(self.arguments.compile))
         self.bytes = sum(path.stat().st_size for path in self.package.rglob("*.spv"))
 
     def render(self, spp):
@@ -104,7 +105,7 @@ def main():
     parser.add_argument("--size", default="96x54", help="default 96x54")
     parser.add_argument("--spp", type=int, default=17, help="samples, at least 2; default 17")
     parser.add_argument("--rounds", type=int, default=9, help="default 9")
-    parser.add_argument("--merge", default="family", help="merge policy; default family")
+    parser.add_argument("--compile", default="", help="more options of glint compile, for both")
     parser.add_argument("--sky", help="as of glint render")
     parser.add_argument("--processor", action="store_true", help="measure processor time, too")
     parser.add_argument("--passes", action="store_true", help="print each pass, too")
