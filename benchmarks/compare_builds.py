@@ -5,14 +5,13 @@
                                  [--compile OPTIONS] [--sky S] [--processor] [--passes]
 
 BEFORE and NOW are two programs `glint`. Each compiles a package of every scene for every way. In a round both render
-every scene in every way, one build after the other, first the one and in the next round the other. Prints Markdown:
-the bytes of the package's SPIR-V, and the median of ratios of the same round, NOW over BEFORE, with its 95 % interval
-(order statistics), of the device time of a sample's passes. --processor adds the processor time of all threads for a
-sample, which other programs on a CPU driver's machine disturb less: that of N samples less that of one. --passes adds
-the device time of each pass.
+it, first the one and in the next round the other. Prints Markdown, a row as soon as it is measured: the bytes of the
+package's SPIR-V, and the median of ratios of the same round, NOW over BEFORE, with its 95 % interval (order
+statistics), of the device time of a sample's passes. --processor adds the processor time of all threads for a sample,
+which other programs on a CPU driver's machine disturb less: that of N samples less that of one. --passes adds the
+device time of each pass.
 """
 import argparse
-import concurrent.futures
 import json
 import math
 import os
@@ -63,16 +62,15 @@ class Case:
         self.package = folder / "package"
         folder.mkdir(parents=True)
         self.device, self.processor, self.passes = [], [], []
-
-    def compile(self):
-        run(self.glint, "compile", self.scene, "-o", self.package, "--strategy", self.strategy, "--tracer", self.tracer,
-            *shlex.split(self.arguments.compile))
+        run(glint, "compile", scene, "-o", self.package, "--strategy", self.strategy, "--tracer", self.tracer,
+            *shlex.split(arguments.compile))
         self.bytes = sum(path.stat().st_size for path in self.package.rglob("*.spv"))
 
     def render(self, spp):
-        seconds, report = run(self.glint, "render", self.scene, "-o", self.folder / "picture.exr", "--package", self.package,
-                              "--strategy", self.strategy, "--tracer", self.tracer, "--size", self.arguments.size, "--spp",
-                              spp, "--json", *(["--sky", self.arguments.sky] if self.arguments.sky else []))
+        sky = ["--sky", self.arguments.sky] if self.arguments.sky else []
+        seconds, report = run(self.glint, "render", self.scene, "-o", self.folder / "picture.exr", "--package",
+                              self.package, "--strategy", self.strategy, "--tracer", self.tracer, "--size",
+                              self.arguments.size, "--spp", spp, "--json", *sky)
         return seconds, json.loads(report)["passes"]
 
     def measure(self):
@@ -111,27 +109,26 @@ def main():
     parser.add_argument("--passes", action="store_true", help="print each pass, too")
     arguments = parser.parse_args()
     ways = [way.split(":") for way in arguments.ways.split(",")]
+    more = arguments.processor
+    print(f"{arguments.size}, {arguments.spp} samples, {arguments.rounds} rounds\n\n"
+          "| scene | strategy, tracer | SPIR-V, bytes | device time of a sample, before | now / before |" +
+          (" processor time, now / before |" if more else "") + "\n|---|---|---|---|---|" + ("---|" if more else ""),
+          flush=True)
     with tempfile.TemporaryDirectory(prefix="glint-builds-") as name:
-        folder = pathlib.Path(name)
-        pairs = [tuple(Case(arguments, glint, scene, way, folder / f"{number}-{'-'.join(way)}-{build}")
-                       for build, glint in (("before", arguments.before), ("now", arguments.now)))
-                 for number, scene in enumerate(arguments.scenes) for way in ways]
-        with concurrent.futures.ThreadPoolExecutor(max(os.cpu_count() // 4, 1)) as pool:
-            list(pool.map(Case.compile, [case for pair in pairs for case in pair]))
-        for number in range(arguments.rounds):
-            for pair in pairs:
-                for case in pair if number % 2 == 0 else reversed(pair):
-                    case.measure()
-        print(f"{arguments.size}, {arguments.spp} samples, {arguments.rounds} rounds\n")
-        more = arguments.processor
-        print("| scene | strategy, tracer | SPIR-V, bytes | device time of a sample, before | now / before |" +
-              (" processor time, now / before |" if more else "") + "\n|---|---|---|---|---|" + ("---|" if more else ""))
-        for before, now in pairs:
-            print(f"| {pathlib.Path(now.scene).stem} | {now.strategy}, {now.tracer} | {now.bytes / before.bytes:.3f} of "
-                  f"{before.bytes:,} | {statistics.median(before.device):.3g} ms | {ratio(now.device, before.device)} |" +
-                  (f" {ratio(now.processor, before.processor)} |" if more else ""), flush=True)
-            if arguments.passes:
-                print_passes(before, now)
+        for scene in arguments.scenes:
+            for number, way in enumerate(ways):
+                folder = pathlib.Path(name) / pathlib.Path(scene).stem / str(number)
+                before = Case(arguments, arguments.before, scene, way, folder / "before")
+                now = Case(arguments, arguments.now, scene, way, folder / "now")
+                for turn in range(arguments.rounds):
+                    for case in (before, now) if turn % 2 == 0 else (now, before):
+                        case.measure()
+                print(f"| {pathlib.Path(scene).stem} | {now.strategy}, {now.tracer} | "
+                      f"{now.bytes / before.bytes:.3f} of {before.bytes:,} | {statistics.median(before.device):.3g} ms | "
+                      f"{ratio(now.device, before.device)} |" +
+                      (f" {ratio(now.processor, before.processor)} |" if more else ""), flush=True)
+                if arguments.passes:
+                    print_passes(before, now)
 
 
 if __name__ == "__main__":
