@@ -55,7 +55,7 @@ done
 
 # Every approximation is off, as in the reference of glint bench. All light of a surface goes through rays: nothing of
 # the sky counts without them. llvmpipe filters textures in floats.
-paths=(--effects "auto,indirect-diffuse" --max-roughness 1 --mirror-roughness 0 --max-interfaces 64 --lights all
+paths=(--effects "auto,indirect-diffuse" --max-roughness 1 --mirror-roughness 0 --max-interfaces 64
     --bounces "$bounces")
 export GALLIVM_PERF=no_aos_sampling
 "$bin/glint_oracle" --write-texels "$work"

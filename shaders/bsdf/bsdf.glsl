@@ -323,11 +323,10 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
 
 // Returns what the base reflects or transmits, times |n·l|, without the layers above it.
 vec3 evaluateBase(Bsdf b, Features features, vec3 l) {
-    bool transmits = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
     if (l.z > 0.0) {
         return baseReflection(b, features, l);
     }
-    return transmits && l.z < 0.0 ? baseTransmission(b, features, l) : vec3(0.0);
+    return transmits(features) && l.z < 0.0 ? baseTransmission(b, features, l) : vec3(0.0);
 }
 
 // Returns the BSDF times |n·l| for the prepared view. l is a unit vector in the frame of the surface; if l.z < 0 it is

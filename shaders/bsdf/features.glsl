@@ -54,6 +54,11 @@ bool inputOfKey(Features features, uint bit) {
     ((GLINT_MODULE_ALWAYS_INPUTS & GLINT_DECIDED_ALWAYS_INPUTS & (bit)) != 0u ||                                \
      (((GLINT_MODULE_ANY_INPUTS | GLINT_DECIDED_ANY_INPUTS) & (bit)) != 0u && inputOfKey(features, bit)))
 
+// Whether the base sends light to the far side.
+bool transmits(Features features) {
+    return hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
+}
+
 // The features of any key of the scene, with all lobes: for primary surfaces.
 #define GLINT_PRIMARY_FEATURES(geometry)                                                                        \
     Features(GLINT_ALWAYS_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES, GLINT_SOMETIMES_INPUTS,            \

@@ -5,8 +5,7 @@
 
 // The normal of LightReceiver in 32 bits. Surfaces that let light through take lights of both sides.
 uint receiverNormal(Hit hit, Features features) {
-    bool through = hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
-    return through ? kBothSides : packReceiver(hit.geometricNormal);
+    return transmits(features) ? kBothSides : packReceiver(hit.geometricNormal);
 }
 
 LightReceiver receiverOf(Hit hit, Features features) {

@@ -387,6 +387,28 @@ TEST(Paths, AClosedBoxLosesNoRay) {
     EXPECT_EQ(lost, 0U);
 }
 
+// What a coat with a turned normal sends to the other side of its triangle is reflected there, so that no ray
+// leaves a closed box.
+TEST(Paths, CoatsWithTurnedNormalsSendNoRayThroughTheirSurface) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material coated = diffuse(0.5F, 0.0F);
+    coated["clearcoatFactor"] = 1.0F;
+    coated["clearcoatRoughnessFactor"] = 0.2F;
+    // 60° towards u.
+    coated.texture("clearcoatNormalTexture").texture = addTexture(scene, 1, 1, {238, 128, 191, 255});
+    addBox(scene, addMaterial(scene, coated), {-1, -1, -2}, {1, 1, 1}, scaling(1, 1, 1));
+    const LoadedScene loaded(scene, pathSettings(4), noLights);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = pathSetup(scene, 32, 32, 1);
+    setup.frame.sky = uniformSky(1.0F);
+    FrameCounters counters;
+    ASSERT_FALSE(loaded.render(pathOptions(4), setup, &counters).pixels.empty());
+    ASSERT_EQ(counters.raysOfBounces.size(), 4U);
+    EXPECT_GT(counters.raysOfBounces[3], 100U);
+    EXPECT_EQ(counters.bucketCounts[0], 0U);
+}
+
 // White surfaces under a uniform sky are as bright as the sky, whatever their lobes are.
 TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
     gltf::Scene scene = emptyScene();

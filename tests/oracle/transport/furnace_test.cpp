@@ -1,6 +1,8 @@
 // Under a white sky of 1, a convex body that absorbs nothing shows 1 everywhere, whatever its lobes are.
 #include "oracle/transport/path_scene.h"
 
+#include <cmath>
+#include <iterator>
 #include <string>
 
 namespace {
@@ -90,6 +92,33 @@ TEST(PathFurnace, LightBelowASurfaceIsLostOrReflected) {
     expectLight(scene, uniformSky(1.0), settings, ray, Vec3(0.75), 0.02);
     settings.reflectsBelow = true;
     expectLight(scene, uniformSky(1.0), settings, ray, Vec3(1.0), 0.02);
+}
+
+// A coat without roughness whose normal texture turns it by 60°, over black: seen from above, it reflects the
+// light that comes from 30° below the triangle.
+TEST(PathFurnace, LightThatACoatSendsBelowIsLostOrReflected) {
+    SceneFile file;
+    Json black = with(diffuseMaterial(Vec3(0.0)), "KHR_materials_clearcoat", {{"clearcoatFactor", 1.0}});
+    file.addQuad(file.addMaterial(black), {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+    gltf::Scene scene = file.import();
+    constexpr std::uint8_t kTurned[] = {238, 128, 191, 255};
+    gltf::Image image;
+    image.width = 1;
+    image.height = 1;
+    image.pixels.assign(std::begin(kTurned), std::end(kTurned));
+    scene.images.push_back(std::move(image));
+    scene.samplers.emplace_back();
+    scene.textures.push_back({.image = 0, .sampler = 0});
+    scene.materials.at(0).texture("clearcoatNormalTexture").texture = 0;
+    gltf::Primitive& quad = scene.meshes.at(0).primitives.at(0);
+    quad.texCoords0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+    const Vec3 normal = glm::normalize(Vec3(kTurned[0], kTurned[1], kTurned[2]) * (2.0 / 255.0) - Vec3(1.0));
+    const double reflected = 0.04 + 0.96 * std::pow(1.0 - normal.z, 5.0);
+    const Ray ray = rayTo({0.1, 0.1, 2.0}, {0.1, 0.1, 0.0});
+    PathSettings settings;
+    expectLight(scene, uniformSky(1.0), settings, ray, Vec3(0.0), 1e-6);
+    settings.reflectsBelow = true;
+    expectLight(scene, uniformSky(1.0), settings, ray, Vec3(reflected), 1e-3, 20000, 2e-3);
 }
 
 }  // namespace

@@ -97,7 +97,7 @@ TEST(BenchSettings, KeepADefaultOfTheirOwnInItsPlace) {
     EXPECT_EQ(named(words, "bounces").values,
               (std::vector<std::string>{"1", "2", "3", "4", "8", "unlimited"}));
     EXPECT_EQ(named(words, "lights").values,
-              (std::vector<std::string>{"all", "1", "2", "3", "4", "8", "16", "32", "64"}));
+              (std::vector<std::string>{"auto", "all", "1", "2", "3", "4", "8", "16", "32", "64"}));
 }
 
 TEST(BenchSettings, LeaveOutWhatASceneOrDeviceLacksAndSayWhy) {
@@ -178,7 +178,7 @@ TEST(BenchSettings, OfTheReferenceApproximateNothing) {
     EXPECT_EQ(exact.at("max-roughness"), "1");
     EXPECT_EQ(exact.at("ssr"), "off");
     EXPECT_EQ(exact.at("bounces"), "unlimited");
-    EXPECT_EQ(exact.at("lights"), "all");
+    EXPECT_EQ(exact.at("lights"), "auto");
     EXPECT_EQ(exact.at("effects"), "auto,indirect-diffuse");
     EXPECT_FALSE(exact.contains("strategy"));
     EXPECT_FALSE(exact.contains("spp"));
