@@ -57,8 +57,8 @@ for part in "${parts[@]}"; do
     case $part in
         sweep)
             build test_combinations test_strategies_agree test_half test_library test_live_edit \
-                test_ordering
-            for program in test_combinations test_strategies_agree test_half test_library test_live_edit; do
+                test_opacity test_ordering
+            for program in test_combinations test_strategies_agree test_half test_library test_live_edit test_opacity; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"
             done
             for bits in 128 512; do
