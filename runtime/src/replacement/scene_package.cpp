@@ -1,10 +1,10 @@
 #include "replacement/scene_package.h"
 
 #include "context/upload.h"
+#include "opacity/opacity_split.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/material_table.h"
-#include "scene/opacity_split.h"
 #include "scene/scene_checks.h"
 #include "scene/textures.h"
 

@@ -1,6 +1,6 @@
 #include "scene/blas_build.h"
 
-#include "scene/micromap_build.h"
+#include "opacity/micromap_build.h"
 
 namespace glint {
 namespace {

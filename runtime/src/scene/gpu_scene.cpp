@@ -1,10 +1,10 @@
 // GpuScene: the steps of an upload.
 #include "edit/editor_state.h"
+#include "opacity/opacity_split.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/instance_math.h"
 #include "scene/material_table.h"
-#include "scene/opacity_split.h"
 #include "scene/scene_checks.h"
 #include "scene/texture_stream.h"
 #include "scene/textures.h"

@@ -3,13 +3,13 @@
 
 #include "context/resources.h"
 #include "motion/scene_motion.h"
+#include "opacity/micromap_build.h"
 #include "renderer/draw_batches.h"
 #include "replacement/scene_package.h"
 #include "scene/acceleration.h"
 #include "scene/emitters.h"
 #include "scene/geometry.h"
 #include "scene/light_tree.h"
-#include "scene/micromap_build.h"
 #include "scene/scene_materials.h"
 #include "scene/traversal_order.h"
 

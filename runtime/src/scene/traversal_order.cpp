@@ -1,7 +1,7 @@
 #include "scene/traversal_order.h"
 
+#include "context/parallel.h"
 #include "scene/leaf_order.h"
-#include "scene/parallel.h"
 
 #include <algorithm>
 #include <array>

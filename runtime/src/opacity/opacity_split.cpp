@@ -1,7 +1,7 @@
-#include "scene/opacity_split.h"
+#include "opacity/opacity_split.h"
 
+#include "context/parallel.h"
 #include "scene/material_table.h"
-#include "scene/parallel.h"
 #include "scene/vertex_format.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "scene/micromap_build.h"
+#include "opacity/micromap_build.h"
 
 #include "context/commands.h"
 #include "context/upload.h"
