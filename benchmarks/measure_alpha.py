@@ -4,9 +4,10 @@
     benchmarks/measure_alpha.py [--glint FILE] [--layers 0,1,2,4,8,16] [--size WxH] [--rounds N] [--tracer NAME]
 
 A mirror shows a wall behind a stack of layers, each with a texture whose alpha is 0, so that every ray passes all of
-them. They have the alpha mode MASK or BLEND; beside them stands the same scene without the layers. All are rendered in
-turn, in an order that changes from round to round. Prints Markdown: the device time of the pass that traces, as the
-ratio to the scene without layers in the same round, and as nanoseconds for each ray and layer.
+them. They have the alpha mode MASK or BLEND, and every ray tests MASK (--opacity tested); beside them stands the same
+scene without the layers. All are rendered in turn, in an order that changes from round to round. Prints Markdown: the
+device time of the pass that traces, as the ratio to the scene without layers in the same round, and as nanoseconds
+for each ray and layer.
 """
 import argparse
 import json
@@ -55,8 +56,8 @@ def trace_time(glint, scene, folder, arguments):
     """Renders once; returns the milliseconds and the rays of the pass that traces."""
     stats = folder / "stats.json"
     subprocess.run([glint, "render", scene, "-o", folder / "picture.png", "--size", arguments.size, "--strategy",
-                    "visibility", "--tracer", arguments.tracer, "--effects", "reflection", "--sun", "off", "--stats",
-                    stats], check=True, capture_output=True)
+                    "visibility", "--tracer", arguments.tracer, "--effects", "reflection", "--sun", "off",
+                    "--opacity", "tested", "--stats", stats], check=True, capture_output=True)
     report = json.loads(stats.read_text())
     passes = [entry["milliseconds"] for entry in report["passes"] if entry["name"] == "trace"]
     return sum(passes), report["counters"]["rays"]

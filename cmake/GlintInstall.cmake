@@ -2,7 +2,7 @@
 # Glint::scene_view, Glint::measure, Glint::glint and glint_add_materials(), from a prefix or from a build folder.
 include(CMakePackageConfigHelpers)
 
-set(glint_targets glint_package glint_runtime)
+set(glint_targets glint_opacity glint_package glint_runtime)
 if(GLINT_BUILD_COMPILER)
   # glint_base, glint_image and glint_synthetic, as glint_package, are what the others link; they are no interface of their own.
   list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_synthetic glint_scene_view

@@ -59,7 +59,7 @@ for part in "${parts[@]}"; do
     case $part in
         sweep)
             whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
-                test_ordering test_furnace test_sampling test_cli_robustness)
+                test_opacity test_ordering test_furnace test_sampling test_cli_robustness)
             build "${whole[@]}" glint
             for program in "${whole[@]}"; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"

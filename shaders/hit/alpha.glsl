@@ -40,6 +40,11 @@ bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primi
         return true;  // Glass without alpha is a candidate for the sake of shadow rays.
     }
 #endif
+#ifdef GLINT_FRAME
+    if (GLINT_FRAME.countsLight != 0u) {
+        atomicAdd(GLINT_FRAME.counters.data[kCounterAlphaTests], 1u);
+    }
+#endif
     vec2 alpha = alphaAndCutoff(geometry, primitive, barycentrics);
 #if GLINT_BLENDED
     if ((geometry.flags & kGeometryBlended) != 0u) {

@@ -202,9 +202,10 @@ GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
 GLINT_CONSTANT(kCounterOrderErrors, 3u);    // lost, doubled or misplaced hits, found by the check of the order
 GLINT_CONSTANT(kCounterNonFinite, 4u);      // pixels whose sample was not a number and was taken as black
 GLINT_CONSTANT(kCounterDeepest, 5u);        // the deepest bounce that many rays reach, in packages with paths
+GLINT_CONSTANT(kCounterAlphaTests, 6u);     // candidates whose alpha was tested, if countsLight
 // The counters from here on exist kCounterCopies times and are to be added up: kCountsOfEffect for each effect, in the
 // order of their bits up to the package's last one.
-GLINT_CONSTANT(kCounterEffects, 6u);
+GLINT_CONSTANT(kCounterEffects, 7u);
 GLINT_CONSTANT(kCounterCopies, 64u);
 // In packages with --texture-levels one more counter for each texture follows these: kFinestTextureLevel minus the
 // finest level that was read; 0 if the texture was not read.

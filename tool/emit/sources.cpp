@@ -16,6 +16,16 @@
 
 namespace glint::compiler {
 
+materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model) {
+    materials::FeatureMask mask = 0;
+    for (const materials::FeatureCode& code : model.code) {
+        mask |= code.coordinates.empty() && code.opacity.empty()
+                    ? 0
+                    : model.features[static_cast<std::size_t>(code.feature)].mask();
+    }
+    return mask;
+}
+
 namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
@@ -31,17 +41,6 @@ void defineFeatures(std::string& text, std::string_view prefix, materials::Featu
     };
     define("ALWAYS", always);
     define("SOMETIMES", sometimes);
-}
-
-// The features with code that runs where alpha is tested.
-materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model) {
-    materials::FeatureMask mask = 0;
-    for (const materials::FeatureCode& code : model.code) {
-        mask |= code.coordinates.empty() && code.opacity.empty()
-                    ? 0
-                    : model.features[static_cast<std::size_t>(code.feature)].mask();
-    }
-    return mask;
 }
 
 // The features that decide about the alpha of a hit.

@@ -30,6 +30,9 @@ private:
 Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
                                 const CompileSettings& settings);
 
+// Returns the features with code that runs where alpha is tested.
+materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model);
+
 // Returns the C++ declarations of every structure that host and device share, flattened from shaders/interop.
 Result<std::string> interopDeclarations();
 

@@ -115,6 +115,7 @@ scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gl
     }
     sizeLights(settings, data);
     data.traversalOrder = settings.traversalOrder;
+    data.opacity = settings.opacity;
     data.vertices = settings.vertices;
     return data;
 }

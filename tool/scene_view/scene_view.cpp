@@ -144,7 +144,8 @@ void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData
 }
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images, lights, packageScene, moves, materials, traversalOrder, vertices};
+    return {primitives, instances, images,         lights,   packageScene,
+            moves,      materials, traversalOrder, vertices, opacity};
 }
 
 MotionView SceneViewData::motion() const {

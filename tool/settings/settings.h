@@ -48,6 +48,7 @@ struct Settings {
     double sunAngle = 0.0;             // angular diameter of directional lights, degrees
     double environmentRotation = 0.0;  // degrees
     TraversalOrder traversalOrder = TraversalOrder::Auto;
+    OpacityUse opacity = OpacityUse::Proved;
     VertexForm vertices = VertexForm::Compact;
     bool compressTextures = false;
 

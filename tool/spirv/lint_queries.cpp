@@ -16,6 +16,8 @@ namespace {
 
 // This is gl_RayFlagsSkipAABBEXT of GLSL_EXT_ray_flags_primitive_culling.
 constexpr std::uint32_t kSkipAabbs = spv::RayFlagsSkipAABBsKHRMask;
+// This is gl_RayFlagsForceOpacityMicromap2StateEXT of GLSL_EXT_opacity_micromap. Headers of 2022 lack it.
+constexpr std::uint32_t kTwoStates = 0x400;
 constexpr std::uint32_t kOpaque = spv::RayFlagsOpaqueKHRMask;
 constexpr std::uint32_t kFirstHit = spv::RayFlagsTerminateOnFirstHitKHRMask;
 
@@ -109,6 +111,14 @@ private:
                    fmt::format("ray flags {:#x} lack SkipAABBs (0x200)", *flags),
                    "add gl_RayFlagsSkipAABBEXT (GL_EXT_ray_flags_primitive_culling; device feature "
                    "rayTraversalPrimitiveCulling)");
+        }
+        if ((*flags & kTwoStates) != 0) {
+            report(
+                Severity::Warning, "query-micromap-states", initialize,
+                fmt::format("ray flags {:#x} have ForceOpacityMicromap2State (0x400): micro-triangles whose "
+                            "state is unknown are decided without their alpha test",
+                            *flags),
+                "leave the flag away unless the error in the picture is meant");
         }
         if ((*flags & kFirstHit) == 0 && readsTypeAlone(function, after)) {
             report(Severity::Note, "query-flags", initialize,

@@ -35,6 +35,9 @@ struct DeviceHandles {
     // Whether VK_KHR_pipeline_executable_properties and its feature are enabled on the device. Renderers can
     // then report the driver's statistics of their pipelines.
     bool pipelineStatistics = false;
+    // Whether VK_EXT_opacity_micromap and its feature `micromap` are enabled on the device. Scenes then get
+    // micromaps for the triangles that need an alpha test (docs/alpha.md).
+    bool opacityMicromaps = false;
     // The package::Tracer bits whose extensions and features are enabled on the device. They are the bits
     // that its DeviceRequirements were made with.
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -58,6 +61,9 @@ struct HeadlessOptions {
     // Enables VK_KHR_pipeline_executable_properties if the device supports it;
     // DeviceHandles::pipelineStatistics then says whether it does.
     bool pipelineStatistics = false;
+    // Enables VK_EXT_opacity_micromap if the device supports it; DeviceHandles::opacityMicromaps then says
+    // whether it does.
+    bool opacityMicromaps = true;
 };
 
 // Returns the package::Tracer bits that a device can be created with. 0 means that Glint does not run on it.
@@ -79,7 +85,8 @@ struct DeviceRequirements {
     // one of these tracers. Some packages need `positionFetch` or `shaderFloat16`.
     // Renderer::pipelineStatistics() needs `pipelineStatistics`.
     explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false,
-                                bool shaderFloat16 = false, bool pipelineStatistics = false);
+                                bool shaderFloat16 = false, bool pipelineStatistics = false,
+                                bool opacityMicromaps = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
@@ -94,6 +101,7 @@ struct DeviceRequirements {
     VkPhysicalDeviceRayTracingPipelineFeaturesKHR rayPipeline;  // in the chain if `tracers` has it
     PositionFetchFeatures positionFetch;                        // in the chain if it is asked for
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR pipelineExecutables;  // in the chain if asked for
+    VkPhysicalDeviceOpacityMicromapFeaturesEXT opacityMicromap;                   // in the chain if asked for
 };
 
 // Returns the name of every extension and feature that `device` lacks. The list is empty if Glint runs on the

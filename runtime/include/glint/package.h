@@ -94,6 +94,9 @@ public:
     std::uint32_t lightSamples() const;
     // Returns where records of materials say what they emit, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
+    // Returns what says where alpha is in records, or null for packages that do not test it, or by code that
+    // is not Glint's own.
+    const package::OpacityEntry* opacity() const;
     // Returns the names of features of materials, in the order of bits, for messages about keys. Bits without
     // a name are left out.
     std::vector<std::string> featureNames(std::uint64_t features) const;

@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 13;
+inline constexpr std::uint32_t kVersion = 14;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -155,6 +155,7 @@ enum class SectionKind : std::uint32_t {
     Effects = 10,    // EffectEntry, by ascending bits
     Emission = 11,   // one EmissionEntry, in packages with emissive lights
     Features = 12,   // FeatureEntry: every feature of materials that the compiler knew, by ascending bits
+    Opacity = 13,    // one OpacityEntry, in packages that test alpha by Glint's own code
 };
 
 struct PackageSection {
@@ -280,6 +281,24 @@ struct EmissionEntry {
     std::uint32_t texCoord1Input;
 };
 
+// What the runtime has to know of a material's record to prove where its alpha test lets rays through.
+struct OpacityEntry {
+    static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+    std::uint32_t factor;   // offset of the float that scales alpha
+    std::uint32_t cutoff;   // offset of a float
+    std::uint32_t texture;  // slot of the texture whose alpha counts; kNone if no record has one
+    // Bits of PrimitiveEntry::featureInputs: the key reads the texture; it reads UV set 0 or 1; it transforms
+    // UVs; it reads the vertices' alpha.
+    std::uint32_t textureInput;
+    std::uint32_t texCoord0Input;
+    std::uint32_t texCoord1Input;
+    std::uint32_t transformInput;
+    std::uint32_t vertexColorInput;
+    // Features whose code changes UVs or opacity. Nothing is known of the alpha of keys that have one.
+    std::uint64_t code;
+};
+
 // The name of a feature of materials, for messages about keys.
 struct FeatureEntry {
     std::uint64_t mask;  // one bit of keys
@@ -307,5 +326,6 @@ static_assert(sizeof(AttributeEntry) == 40);
 static_assert(sizeof(EffectEntry) == 24);
 static_assert(sizeof(EmissionEntry) == 24);
 static_assert(sizeof(FeatureEntry) == 16);
+static_assert(sizeof(OpacityEntry) == 40);
 
 }  // namespace glint::package

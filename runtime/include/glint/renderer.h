@@ -65,6 +65,14 @@ public:
         // How many 16-bit images are stored with 8 bits, because this device can't filter or blit
         // R16G16B16A16_UNORM.
         std::uint32_t narrowedTextures = 0;
+        // Triangles of meshes whose alpha rays would test, and those that no ray tests (SceneView::opacity).
+        std::uint64_t maskedTriangles = 0;
+        std::uint64_t provedOpaque = 0;
+        std::uint64_t provedTransparent = 0;
+        // Micromaps of the others, on devices that have them.
+        std::uint32_t micromaps = 0;
+        std::uint64_t micromapBytes = 0;
+        double opacityMs = 0.0;    // wall clock of proving them
         double orderMs = 0.0;      // wall clock of SceneView::traversalOrder; 0: not ordered
         double blasBuildMs = 0.0;  // device time
         double tlasBuildMs = 0.0;
@@ -183,6 +191,7 @@ struct FrameCounters {
     std::uint32_t shadowRays = 0;         // deferred shadow rays of hits
     std::uint32_t orderErrors = 0;        // with RendererOptions::checkOrder
     std::uint32_t unknownShader = 0;      // hits whose shader ID no case has, without a fallback
+    std::uint32_t alphaTests = 0;         // candidates whose alpha was tested, with FrameOptions::countsLight
     std::uint32_t nonFinite = 0;          // samples since sample 0 that were not finite; they count as black
     // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
     std::vector<std::uint32_t> raysOfBounces;

@@ -141,6 +141,19 @@ constexpr std::span<const Named<VertexForm>> namesOf(VertexForm /*type*/) {
     return kVertexFormNames;
 }
 
+// When the alpha tests of alphaMode MASK are decided.
+enum class OpacityUse : std::uint32_t {
+    Proved,
+    Tested,
+};
+inline constexpr Named<OpacityUse> kOpacityUseNames[] = {
+    {OpacityUse::Proved, "proved", "at upload for triangles that are proved to have one answer"},
+    {OpacityUse::Tested, "tested", "by each ray"},
+};
+constexpr std::span<const Named<OpacityUse>> namesOf(OpacityUse /*type*/) {
+    return kOpacityUseNames;
+}
+
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
     std::span<const InstanceView> instances;
@@ -156,6 +169,9 @@ struct SceneView {
     // The attributes of a vertex besides its position take at most 20 bytes in the compact form and up to 60
     // in the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
+    // Proved triangles are tested by no ray: opaque ones are in opaque geometry, transparent ones in none
+    // (docs/alpha.md). Scenes that can be edited are tested, because their materials may change at any time.
+    OpacityUse opacity = OpacityUse::Proved;
     // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;
     // How many textures and samplers an editable scene may have at a time, those of the upload included. The

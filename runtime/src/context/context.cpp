@@ -71,6 +71,11 @@ void queryLimits(Context::State& state) {
         limits.rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
         limits.accelerationStructure.pNext = &limits.rayPipeline;
     }
+    if (state.handles.opacityMicromaps) {
+        limits.opacityMicromap.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_OPACITY_MICROMAP_PROPERTIES_EXT;
+        limits.opacityMicromap.pNext =
+            std::exchange(limits.accelerationStructure.pNext, &limits.opacityMicromap);
+    }
     VkPhysicalDeviceVulkan12Properties vulkan12{};
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
     vulkan12.pNext = &vulkan13;
@@ -82,6 +87,7 @@ void queryLimits(Context::State& state) {
     properties.pNext = &vulkan11;
     state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
     limits.accelerationStructure.pNext = nullptr;
+    limits.opacityMicromap.pNext = nullptr;
     limits.core = properties.properties.limits;
     limits.maxAllocationBytes = vulkan11.maxMemoryAllocationSize;
     limits.maxBufferBytes = vulkan13.maxBufferSize;
@@ -190,6 +196,11 @@ Status finishContext(Context::State& state) {
             return status;
         }
     }
+    if (state.handles.opacityMicromaps) {
+        if (Status status = loadMicromapFunctions(state.instance, state.handles.device, state.vk); !status) {
+            return status;
+        }
+    }
     queryLimits(state);
     if (Status status = queryMultiprocessors(state); !status) {
         return status;
@@ -247,6 +258,12 @@ Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
         return makeError("device-features", "",
                          "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
                          "create the device with some of deviceTracers()");
+    }
+    if (complete.opacityMicromaps && !hasExtension(report, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME)) {
+        return makeError("device-features", "",
+                         "DeviceHandles::opacityMicromaps is set, and the device lacks "
+                         "VK_EXT_opacity_micromap",
+                         "leave it false");
     }
     constexpr const char* kStatistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
     if (complete.pipelineStatistics && !hasExtension(report, kStatistics)) {

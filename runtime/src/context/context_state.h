@@ -34,7 +34,8 @@ struct DeviceLimits {
     VkDeviceSize maxAllocationBytes = 0;
     VkDeviceSize maxBufferBytes = 0;
     VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
-    VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayPipeline{};  // zeros where it is not enabled
+    VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayPipeline{};   // zeros where it is not enabled
+    VkPhysicalDeviceOpacityMicromapPropertiesEXT opacityMicromap{};  // zeros where it is not enabled
     std::uint32_t maxTextures = 0;  // how many sampled images one stage can see, updated after bind
     std::uint32_t maxSamplers = 0;
     float samplerAnisotropy = 1.0F;        // anisotropy of texture samplers; 1: none

@@ -60,5 +60,6 @@ using UniqueFence = DeviceHandle<VkFence, &DeviceTable::DestroyFence>;
 using UniqueQueryPool = DeviceHandle<VkQueryPool, &DeviceTable::DestroyQueryPool>;
 using UniqueAccelerationStructure =
     DeviceHandle<VkAccelerationStructureKHR, &DeviceTable::DestroyAccelerationStructureKHR>;
+using UniqueMicromap = DeviceHandle<VkMicromapEXT, &DeviceTable::DestroyMicromapEXT>;
 
 }  // namespace glint

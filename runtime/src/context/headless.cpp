@@ -219,7 +219,8 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 
 Status createDevice(Context::State& state) {
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
-                                    state.handles.shaderFloat16, state.handles.pipelineStatistics);
+                                    state.handles.shaderFloat16, state.handles.pipelineStatistics,
+                                    state.handles.opacityMicromaps);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -277,15 +278,18 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
         return device.error();
     }
     state->handles.physicalDevice = *device;
-    if (options.pipelineStatistics) {
+    if (options.pipelineStatistics || options.opacityMicromaps) {
         DeviceReport report;
         if (Status status = queryDevice(state->instance, *device, report); !status) {
             return status.error();
         }
-        // A device that supports the extension supports its feature too (Vulkan 1.3 specification, "Feature
-        // Requirements").
+        // A device that supports one of these extensions supports its feature too (Vulkan 1.3 specification,
+        // "Feature Requirements").
         state->handles.pipelineStatistics =
+            options.pipelineStatistics &&
             hasExtension(report, VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        state->handles.opacityMicromaps =
+            options.opacityMicromaps && hasExtension(report, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
     }
     if (Status status = createDevice(*state); !status) {
         return status.error();

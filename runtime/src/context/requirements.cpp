@@ -92,7 +92,7 @@ constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000)
 }  // namespace
 
 DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions, bool computesHalf,
-                                       bool tellsOfPipelines)
+                                       bool tellsOfPipelines, bool usesMicromaps)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
       vulkan11{},
@@ -102,7 +102,8 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
       rayQuery{},
       rayPipeline{},
       positionFetch{},
-      pipelineExecutables{} {
+      pipelineExecutables{},
+      opacityMicromap{} {
     vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
     vulkan11.pNext = &vulkan12;
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -129,6 +130,12 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         pipelineExecutables.pNext = std::exchange(accelerationStructure.pNext, &pipelineExecutables);
         pipelineExecutables.pipelineExecutableInfo = VK_TRUE;
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+    }
+    opacityMicromap.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_OPACITY_MICROMAP_FEATURES_EXT;
+    if (usesMicromaps) {
+        opacityMicromap.pNext = std::exchange(accelerationStructure.pNext, &opacityMicromap);
+        opacityMicromap.micromap = VK_TRUE;
+        extensions.push_back(VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
     // This is an umbrella bit. The specification requires it if its parts are used with SPIR-V 1.5 modules.

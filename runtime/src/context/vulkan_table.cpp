@@ -98,6 +98,17 @@ Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, 
     return okStatus();
 }
 
+Status loadMicromapFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table) {
+#define GLINT_LOAD(name)                                                                            \
+    table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \
+    if (table.name == nullptr) {                                                                    \
+        return missingFunction("vk" #name, "create the device with what DeviceRequirements lists"); \
+    }
+    GLINT_MICROMAP_FUNCTIONS(GLINT_LOAD)
+#undef GLINT_LOAD
+    return okStatus();
+}
+
 Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table) {
 #define GLINT_LOAD(name)                                                                            \
     table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \

@@ -116,6 +116,13 @@
     X(CmdTraceRaysKHR)                    \
     X(CmdTraceRaysIndirectKHR)
 
+// Functions of VK_EXT_opacity_micromap.
+#define GLINT_MICROMAP_FUNCTIONS(X) \
+    X(CreateMicromapEXT)            \
+    X(DestroyMicromapEXT)           \
+    X(GetMicromapBuildSizesEXT)     \
+    X(CmdBuildMicromapsEXT)
+
 // Functions of VK_KHR_pipeline_executable_properties.
 #define GLINT_PIPELINE_STATISTICS_FUNCTIONS(X) \
     X(GetPipelineExecutablePropertiesKHR)      \
@@ -141,6 +148,8 @@ struct DeviceTable {
     GLINT_DEVICE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null until loadRayPipelineFunctions() was called.
     GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
+    // Null until loadMicromapFunctions() was called.
+    GLINT_MICROMAP_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null until loadPipelineStatisticsFunctions() was called.
     GLINT_PIPELINE_STATISTICS_FUNCTIONS(GLINT_DECLARE_FUNCTION)
     // Null unless VK_EXT_debug_utils is enabled.
@@ -180,5 +189,6 @@ Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice devi
 Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 // Requires a device with VK_KHR_pipeline_executable_properties enabled.
 Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
+Status loadMicromapFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 
 }  // namespace glint

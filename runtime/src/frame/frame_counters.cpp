@@ -119,6 +119,7 @@ Result<FrameCounters> Renderer::counters() {
                                                         : gpu::kFinestTextureLevel - values[i]);
     }
     counters.nonFinite = values[gpu::kCounterNonFinite];
+    counters.alphaTests = values[gpu::kCounterAlphaTests];
     for (std::uint32_t round = 0; round < state_->rounds.size(); ++round) {
         addRound(bytes + readbackRound(state_->size, round), state_->size, state_->rounds[round], counters);
     }

@@ -110,6 +110,10 @@ const package::EmissionEntry* Package::emission() const {
     return state_->emission.empty() ? nullptr : state_->emission.data();
 }
 
+const package::OpacityEntry* Package::opacity() const {
+    return state_->opacity.empty() ? nullptr : state_->opacity.data();
+}
+
 std::vector<std::string> Package::featureNames(std::uint64_t features) const {
     std::vector<std::string> names;
     for (const package::FeatureEntry& entry : state_->features) {

@@ -157,6 +157,22 @@ Status checkEmission(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+Status checkOpacity(const Package::State& state, const std::string& where) {
+    if (state.opacity.empty()) {
+        return okStatus();
+    }
+    const package::OpacityEntry& entry = state.opacity.front();
+    const auto fits = [&](std::uint32_t offset) {
+        return offset % 4 == 0 && std::uint64_t{offset} + sizeof(float) <= state.materials.textureOffset;
+    };
+    const bool known =
+        entry.texture == package::OpacityEntry::kNone || entry.texture < state.materials.textureCount;
+    if (state.opacity.size() != 1 || !fits(entry.factor) || !fits(entry.cutoff) || !known) {
+        return altered(where, "the alpha of materials is outside of their records");
+    }
+    return okStatus();
+}
+
 Status checkCases(const Package::State& state, const std::string& where) {
     if (state.cases.size() != state.header.caseCount) {
         return altered(where, "the header names " + std::to_string(state.header.caseCount) +
@@ -378,8 +394,8 @@ Status checkTables(Package::State& state, const std::string& where) {
     for (const package::EffectEntry& entry : state.effectEntries) {
         state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
     }
-    for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkSamplers,
-                             checkAttributes, checkFeatures}) {
+    for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkOpacity,
+                             checkSamplers, checkAttributes, checkFeatures}) {
         if (Status status = check(state, where); !status) {
             return status;
         }

@@ -36,6 +36,7 @@ struct Package::State {
     std::span<const package::EffectEntry> effectEntries;
     std::vector<package::EffectInfo> effects;          // the same, with their names
     std::span<const package::EmissionEntry> emission;  // empty without emissive lights
+    std::span<const package::OpacityEntry> opacity;    // empty where alpha is not tested by Glint's own code
     std::span<const package::FeatureEntry> features;
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;

@@ -127,6 +127,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.effectEntries);
         case package::SectionKind::Emission:
             return readSection(state, section, where, state.emission);
+        case package::SectionKind::Opacity:
+            return readSection(state, section, where, state.opacity);
         case package::SectionKind::Features:
             return readSection(state, section, where, state.features);
     }
@@ -164,6 +166,7 @@ Status readTables(Package::State& state, const std::string& where) {
     // Every package has those up to the effects. Names of features are for messages only.
     constexpr std::size_t kSectionKinds = 10;
     seen.erase(package::SectionKind::Emission);
+    seen.erase(package::SectionKind::Opacity);
     seen.erase(package::SectionKind::Features);
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,

@@ -161,7 +161,11 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
     VkRayTracingPipelineCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
     info.pNext = &feedback;
-    info.flags = creation.flags;
+    // Without it rays must not meet structures with micromaps. Ray queries need no flag.
+    info.flags =
+        creation.flags | (context.handles.opacityMicromaps
+                              ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
+                              : 0U);
     info.stageCount = static_cast<std::uint32_t>(parts->stages.size());
     info.pStages = parts->stages.data();
     info.groupCount = static_cast<std::uint32_t>(parts->groups.size());

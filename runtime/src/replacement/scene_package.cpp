@@ -1,6 +1,7 @@
 #include "replacement/scene_package.h"
 
 #include "context/upload.h"
+#include "opacity/opacity_split.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/material_table.h"
@@ -147,6 +148,29 @@ std::span<const ChangingMaterial> hostMaterialsOf(const GpuScene::State& scene) 
     return scene.motion != nullptr ? scene.changing : scene.package.hostMaterials;
 }
 
+// Triangles that no ray tests stay so, whichever package draws them.
+Status checkDecided(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
+    const ScenePackage& now = scene.package;
+    std::vector<std::uint8_t> records(known.materials.bytes.begin(), known.materials.bytes.end());
+    std::vector<MaterialView> views;
+    for (const ChangingMaterial& material : hostMaterialsOf(scene)) {
+        views.push_back({material.material, material.record});
+    }
+    if (now.decided.empty() || !replaceMaterials(views, known.materials, records)) {
+        return okStatus();  // other checks report such materials
+    }
+    for (const ScenePackage::Decided& decided : now.decided) {
+        const package::PrimitiveEntry& entry = known.primitives[decided.entry];
+        if (package.opacity() == nullptr ||
+            alphaInputs(*package.opacity(), tableWith(known.materials, records), entry) != decided.inputs) {
+            return otherScene(placeOf(entry),
+                              "the alpha of the primitive's material is another, and the upload has proved "
+                              "which of its triangles need no test");
+        }
+    }
+    return okStatus();
+}
+
 Result<Changes> changesOf(const GpuScene::State& scene, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     Changes changes;
@@ -188,8 +212,8 @@ ScenePackage describePackage(const Package& package, const SceneView& scene, con
         const package::PrimitiveEntry* const entry = known.findPrimitive(view.mesh, view.primitive);
         described.entryOfUploaded.push_back(static_cast<std::uint32_t>(entry - known.primitives.data()));
     }
-    for (const Draw& draw : layout.draws) {
-        described.entryOf.push_back(described.entryOfUploaded[draw.primitive]);
+    for (const std::uint32_t primitive : layout.primitives) {
+        described.entryOf.push_back(described.entryOfUploaded[primitive]);
     }
     described.textures.assign(known.textures.begin(), known.textures.end());
     for (const package::TextureEntry& texture : known.textures) {
@@ -244,6 +268,9 @@ Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& pac
         return status.error();
     }
     if (Status status = checkEmission(now, package, known); !status) {
+        return status.error();
+    }
+    if (Status status = checkDecided(scene, package, known); !status) {
         return status.error();
     }
     for (const ChangingMaterial& material : hostMaterialsOf(scene)) {

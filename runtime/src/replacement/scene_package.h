@@ -38,6 +38,12 @@ struct ScenePackage {
         friend bool operator==(const Emission&, const Emission&) = default;
     };
 
+    // A primitive of whose triangles some need no alpha test, and what that follows from (alphaInputs()).
+    struct Decided {
+        std::uint32_t entry = 0;
+        std::vector<std::uint8_t> inputs;
+    };
+
     std::uint64_t number = 0;  // of replacements so far
     std::string scene;         // name in the package
     std::vector<package::PrimitiveEntry> entries;
@@ -52,6 +58,7 @@ struct ScenePackage {
     bool lightTree = false;
     std::optional<package::EmissionEntry> emission{};
     std::vector<Emission> emissions;  // by material
+    std::vector<Decided> decided;
     // The memory of GpuScene::State::materials, once it was replaced by a buffer of another size.
     std::shared_ptr<MemoryPool> pool;
 };

@@ -18,6 +18,8 @@ struct AccelerationStructure {
     VkDeviceAddress address = 0;
 };
 
+struct DeviceMicromap;
+
 // One geometry of a BLAS: a triangle list in device buffers.
 struct BlasGeometry {
     VkDeviceAddress positions = 0;  // three floats each
@@ -25,7 +27,8 @@ struct BlasGeometry {
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;  // must not be 0
     bool opaque = true;
-    bool once = false;  // a ray meets each triangle at most once, although it goes on
+    bool once = false;                         // a ray meets each triangle at most once, although it goes on
+    const DeviceMicromap* micromap = nullptr;  // must outlive the structure; null: none
 };
 
 // The most that one BLAS may hold.

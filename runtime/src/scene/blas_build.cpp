@@ -1,5 +1,7 @@
 #include "scene/blas_build.h"
 
+#include "opacity/micromap_build.h"
+
 namespace glint {
 namespace {
 
@@ -39,8 +41,13 @@ VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry
 BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
     BlasBuild build;
     std::vector<std::uint32_t> counts;
+    build.micromaps.reserve(input.geometries.size());
     for (const BlasGeometry& geometry : input.geometries) {
         build.geometries.push_back(describeGeometry(geometry));
+        if (geometry.micromap != nullptr) {
+            build.micromaps.push_back(describeMicromap(*geometry.micromap));
+            build.geometries.back().geometry.triangles.pNext = &build.micromaps.back();
+        }
         VkAccelerationStructureBuildRangeInfoKHR range{};
         range.primitiveCount = geometry.triangleCount;
         build.ranges.push_back(range);

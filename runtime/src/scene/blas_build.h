@@ -7,10 +7,11 @@
 
 namespace glint {
 
-// An input in Vulkan's terms. `info` points into `geometries`, which stay in place when a BlasBuild moves,
-// since they are vectors.
+// An input in Vulkan's terms. `info` points into `geometries`, and these into `micromaps`. Both stay in place
+// when a BlasBuild moves, since they are vectors.
 struct BlasBuild {
     std::vector<VkAccelerationStructureGeometryKHR> geometries;
+    std::vector<VkAccelerationStructureTrianglesOpacityMicromapEXT> micromaps;  // of some geometries
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     VkDeviceSize structureBytes = 0;

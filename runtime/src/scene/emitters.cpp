@@ -169,8 +169,9 @@ Emitters::Emitters(const Package& package, const PackageScene& known, const Scen
             }
             addPart(entry, placed.instance, own, shapes);
             parts_.back().count = range.count;
-            const std::span<const std::uint32_t> indices =
-                ordered.empty() ? view.indices : std::span(ordered[range.primitive]);
+            const std::span<const std::uint32_t> indices = ordered.empty() || ordered[range.primitive].empty()
+                                                               ? view.indices
+                                                               : std::span(ordered[range.primitive]);
             for (std::uint32_t i = 0; i < range.count; ++i) {
                 Triangle triangle;
                 std::array<std::uint32_t, 3> corners{};

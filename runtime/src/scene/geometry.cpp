@@ -141,8 +141,13 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
 
 namespace {
 
-// The parts of each mesh that has triangles, as indices into SceneLayout::parts.
-using PartsOfMesh = std::map<std::uint32_t, std::vector<std::uint32_t>>;
+// The parts of a mesh, as indices into SceneLayout::parts.
+struct PartIndices {
+    std::vector<std::uint32_t> main;
+    std::vector<std::uint32_t> decided;  // of opaque triangles whose primitives have others in `main`
+};
+// Those of each mesh that has triangles.
+using PartsOfMesh = std::map<std::uint32_t, PartIndices>;
 
 // Appends the triangles of a primitive to `ranges`. It begins a new part when one is full.
 void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const BlasCapacity& capacity,
@@ -163,40 +168,77 @@ void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const Bl
             ranges.emplace_back();
         }
         const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(triangleCount - first, room()));
-        ranges.back().push_back({primitive, first, count});
+        ranges.back().push_back({primitive, first, count, count});
         first += count;
     }
 }
 
+// Parts by whether they are seen from both sides.
+using PartRanges = std::map<bool, std::vector<std::vector<TriangleRange>>>;
+
+// Appends the range of a primitive, which fits into one part. It begins a new part when one is full.
+void appendRange(const TriangleRange& range, const BlasCapacity& capacity,
+                 std::vector<std::vector<TriangleRange>>& ranges) {
+    appendRanges(range.primitive, range.count, capacity, ranges);
+    ranges.back().back() = range;
+}
+
+// What a scene's partition depends on.
+struct PartitionInput {
+    const PackageScene& known;
+    const SceneView& scene;
+    std::span<const GpuPrimitive> primitives;
+    const BlasCapacity& capacity;
+    const std::map<std::uint32_t, OpacitySplit>& splits;
+};
+
 // Appends the parts of a mesh and returns their indices. If `instance` is given, it alone uses these parts.
-std::vector<std::uint32_t> partition(const PackageScene& known, const SceneView& scene,
-                                     std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                                     std::uint32_t mesh, std::optional<std::uint32_t> instance,
-                                     std::vector<MeshPart>& parts) {
-    std::map<bool, std::vector<std::vector<TriangleRange>>> members;
-    const PrimitiveRange own = primitivesOf(scene.primitives, mesh);
+PartIndices partition(const PartitionInput& input, std::uint32_t mesh, std::optional<std::uint32_t> instance,
+                      std::vector<MeshPart>& parts) {
+    PartRanges members;
+    PartRanges decided;
+    const PrimitiveRange own = primitivesOf(input.scene.primitives, mesh);
     for (std::uint32_t i = own.first; i < own.end; ++i) {
-        const PrimitiveView& view = scene.primitives[i];
-        if (primitives[i].triangleCount > 0) {
-            const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
-            appendRanges(i, primitives[i].triangleCount, capacity,
-                         members[(flags & gpu::kGeometryDoubleSided) != 0]);
+        const PrimitiveView& view = input.scene.primitives[i];
+        const std::uint32_t count = input.primitives[i].triangleCount;
+        if (count == 0) {
+            continue;
+        }
+        const std::uint32_t flags = input.known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+        const bool doubleSided = (flags & gpu::kGeometryDoubleSided) != 0;
+        const auto split = input.splits.find(i);
+        if (split == input.splits.end()) {
+            appendRanges(i, count, input.capacity, members[doubleSided]);
+            continue;
+        }
+        const auto [tested, opaque] = split->second;
+        if (tested == 0) {
+            appendRange({i, 0, opaque, count, true}, input.capacity, members[doubleSided]);
+            continue;
+        }
+        appendRange({i, 0, tested, count, false}, input.capacity, members[doubleSided]);
+        if (opaque > 0) {
+            appendRange({i, tested, opaque, 0, true}, input.capacity, decided[doubleSided]);
         }
     }
-    std::vector<std::uint32_t> indices;
-    for (auto& [doubleSided, blases] : members) {
-        for (std::vector<TriangleRange>& ranges : blases) {
-            indices.push_back(static_cast<std::uint32_t>(parts.size()));
-            parts.push_back({mesh, doubleSided, std::move(ranges), instance});
+    PartIndices indices;
+    const auto append = [&](PartRanges& from, std::vector<std::uint32_t>& target) {
+        for (auto& [doubleSided, blases] : from) {
+            for (std::vector<TriangleRange>& ranges : blases) {
+                target.push_back(static_cast<std::uint32_t>(parts.size()));
+                parts.push_back({mesh, doubleSided, std::move(ranges), instance});
+            }
         }
-    }
+    };
+    append(members, indices.main);
+    append(decided, indices.decided);
     return indices;
 }
 
 // Makes the parts that instances share. A mesh gets such parts unless all its instances deform it.
-PartsOfMesh sharedParts(const PackageScene& known, const SceneView& scene,
-                        std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                        const std::vector<bool>& deforms, std::vector<MeshPart>& parts) {
+PartsOfMesh sharedParts(const PartitionInput& input, const std::vector<bool>& deforms,
+                        std::vector<MeshPart>& parts) {
+    const SceneView& scene = input.scene;
     std::set<std::uint32_t> meshes;
     for (const PrimitiveView& view : scene.primitives) {
         meshes.insert(view.mesh);
@@ -213,9 +255,8 @@ PartsOfMesh sharedParts(const PackageScene& known, const SceneView& scene,
     }
     PartsOfMesh partsOfMesh;
     for (const std::uint32_t mesh : meshes) {
-        std::vector<std::uint32_t> indices =
-            partition(known, scene, primitives, capacity, mesh, std::nullopt, parts);
-        if (!indices.empty()) {
+        PartIndices indices = partition(input, mesh, std::nullopt, parts);
+        if (!indices.main.empty()) {
             partsOfMesh[mesh] = std::move(indices);
         }
     }
@@ -230,6 +271,33 @@ void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, st
         record.tangents = found->second.tangents;
         record.flags &= ~(gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
     }
+}
+
+// Appends the records and draws of a part of an instance.
+void placePart(const PartitionInput& input, const DeformedAddresses& deformed, std::uint32_t part,
+               std::uint32_t instance, bool hidden, SceneLayout& layout) {
+    const bool mirrored = (layout.instances[instance].flags & gpu::kInstanceMirrored) != 0;
+    const MeshPart& placed = layout.parts[part];
+    layout.partInstances.push_back({part, instance, static_cast<std::uint32_t>(layout.geometries.size())});
+    for (const TriangleRange& range : placed.ranges) {
+        const PrimitiveView& view = input.scene.primitives[range.primitive];
+        const package::PrimitiveEntry& entry = *input.known.findPrimitive(view.mesh, view.primitive);
+        if (range.drawn > 0) {
+            layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.drawn,
+                                    placed.doubleSided, mirrored, instance, hidden, range.primitive});
+            layout.triangles += range.drawn;
+        }
+        layout.geometries.push_back(
+            makeGeometryRecord(entry, input.primitives[range.primitive], range.first, instance));
+        layout.primitives.push_back(range.primitive);
+        placeDeformed(deformed, instance, range.primitive, layout.geometries.back());
+    }
+}
+
+Diagnostic tooManyGeometries(std::string where) {
+    return makeError("scene-geometries", std::move(where),
+                     "the scene's instances have more than 2^24 primitives altogether",
+                     "join primitives of a material, or use fewer instances");
 }
 
 }  // namespace
@@ -276,7 +344,8 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
     uploaded.reserve(primitives.size());
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const PrimitiveView& view = primitives[i];
-        const std::span<const std::uint32_t> indices = ordered.empty() ? view.indices : std::span(ordered[i]);
+        const std::span<const std::uint32_t> indices =
+            ordered.empty() || ordered[i].empty() ? view.indices : std::span(ordered[i]);
         const std::vector<float> attributes =
             joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
         Result<GpuPrimitive> primitive =
@@ -298,20 +367,24 @@ PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint
 
 Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
                                 std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                                const DeformedAddresses& deformed) {
+                                const DeformedAddresses& deformed,
+                                const std::map<std::uint32_t, OpacitySplit>& splits) {
     SceneLayout layout;
+    const PartitionInput input{known, scene, primitives, capacity, splits};
     std::vector<bool> deforms(scene.instances.size());
     for (const auto& [place, vertices] : deformed) {
         deforms[place.first] = true;
     }
-    const PartsOfMesh partsOfMesh = sharedParts(known, scene, primitives, capacity, deforms, layout.parts);
+    const PartsOfMesh partsOfMesh = sharedParts(input, deforms, layout.parts);
+    // The parts of decided triangles, each with its instance. They are placed after all others.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> decided;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
         const InstanceView& instance = scene.instances[i];
         const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
         layout.instances.push_back(record);
-        std::vector<std::uint32_t> parts;
+        PartIndices parts;
         if (deforms[i]) {
-            parts = partition(known, scene, primitives, capacity, instance.mesh, i, layout.parts);
+            parts = partition(input, instance.mesh, i, layout.parts);
         } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
             parts = shared->second;
         }
@@ -323,26 +396,21 @@ Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scen
         if (hidden && !scene.moves) {
             continue;
         }
-        for (const std::uint32_t part : parts) {
-            layout.partInstances.push_back({part, i, static_cast<std::uint32_t>(layout.geometries.size())});
-            for (const TriangleRange& range : layout.parts[part].ranges) {
-                const PrimitiveView& view = scene.primitives[range.primitive];
-                const GpuPrimitive& primitive = primitives[range.primitive];
-                const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
-                layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.count,
-                                        layout.parts[part].doubleSided,
-                                        (record.flags & gpu::kInstanceMirrored) != 0, i, hidden,
-                                        range.primitive});
-                layout.geometries.push_back(makeGeometryRecord(entry, primitive, range.first, i));
-                placeDeformed(deformed, i, range.primitive, layout.geometries.back());
-                layout.triangles += range.count;
-            }
+        for (const std::uint32_t part : parts.main) {
+            placePart(input, deformed, part, i, hidden, layout);
+        }
+        for (const std::uint32_t part : parts.decided) {
+            decided.emplace_back(part, i);
         }
         if (layout.geometries.size() > kMaxGeometries) {
-            return makeError("scene-geometries", "instance " + std::to_string(i),
-                             "the scene's instances have more than 2^24 primitives altogether",
-                             "join primitives of a material, or use fewer instances");
+            return tooManyGeometries("instance " + std::to_string(i));
         }
+    }
+    for (const auto& [part, instance] : decided) {
+        placePart(input, deformed, part, instance, false, layout);
+    }
+    if (layout.geometries.size() > kMaxGeometries) {
+        return tooManyGeometries("");
     }
     return layout;
 }

@@ -51,7 +51,7 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
                                      std::span<const float> declared, VertexForm form);
 
 // Queues the copies in `uploader`. Primitives without triangles get no buffer. `ordered` holds the indices of
-// each primitive in another order of its triangles; if it is empty, the primitives' own indices are used.
+// each primitive in another order of its triangles; where it is empty, the primitives' own indices are used.
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader, const Package& package,
                                                    const PackageScene& known,
@@ -76,7 +76,9 @@ using DeformedAddresses = std::map<std::pair<std::uint32_t, std::uint32_t>, Defo
 struct TriangleRange {
     std::uint32_t primitive = 0;  // index into SceneView::primitives
     std::uint32_t first = 0;
-    std::uint32_t count = 0;
+    std::uint32_t count = 0;  // in the BLAS
+    std::uint32_t drawn = 0;  // that the raster pass draws, from `first` on; 0: another geometry draws them
+    bool opaque = false;      // every ray stops there, although the material is tested for alpha
 };
 
 // The triangles of a mesh that are seen from one side, or those seen from both sides. A part is one BLAS,
@@ -87,6 +89,13 @@ struct MeshPart {
     bool doubleSided = false;
     std::vector<TriangleRange> ranges;
     std::optional<std::uint32_t> instance{};  // the only instance that uses the part, as it deforms the mesh
+};
+
+// The triangles of a primitive whose alpha test was decided. They come in this order; those through which
+// every ray passes come last and are in no BLAS, but are drawn.
+struct OpacitySplit {
+    std::uint32_t tested = 0;
+    std::uint32_t opaque = 0;
 };
 
 // A part placed in the world, which is an instance of the TLAS.
@@ -117,16 +126,20 @@ PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint
 struct SceneLayout {
     std::vector<MeshPart> parts;  // in the order of meshes; single-sided parts first
     std::vector<PartInstance> partInstances;
-    std::vector<Draw> draws;  // one for each geometry record
+    std::vector<Draw> draws;  // at most one for each geometry record, in their order
     std::vector<gpu::GeometryRecord> geometries;
+    std::vector<std::uint32_t> primitives;       // of each geometry record: index into SceneView::primitives
     std::vector<gpu::InstanceRecord> instances;  // one for each instance of the scene
     std::uint64_t triangles = 0;                 // of all instances
 };
 
-// Pure. `primitives` are those of uploadPrimitives(). The capacity must be at least one triangle. Error
+// Pure. `primitives` are those of uploadPrimitives(). The capacity must be at least one triangle. `splits`
+// has one for each primitive whose alpha test was decided, by index; the records of its opaque triangles
+// follow those of all others, so that a split changes the number of no other record. Error
 // "scene-geometries": there are more records than the 24 bits of a custom index can number.
 Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
                                 std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                                const DeformedAddresses& deformed = {});
+                                const DeformedAddresses& deformed = {},
+                                const std::map<std::uint32_t, OpacitySplit>& splits = {});
 
 }  // namespace glint

@@ -1,8 +1,10 @@
 // GpuScene: the steps of an upload.
 #include "edit/editor_state.h"
+#include "opacity/opacity_split.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/instance_math.h"
+#include "scene/material_table.h"
 #include "scene/scene_checks.h"
 #include "scene/texture_stream.h"
 #include "scene/textures.h"
@@ -88,6 +90,27 @@ Status uploadTextures(GpuScene::State& state, Uploader& uploader,
     return okStatus();
 }
 
+Status uploadMicromaps(GpuScene::State& state, const DecidedTriangles& decided) {
+    if (decided.micromaps.empty()) {
+        return okStatus();
+    }
+    std::vector<opacity::MicromapArray> arrays;
+    for (const auto& [primitive, array] : decided.micromaps) {
+        arrays.push_back(array);
+    }
+    Result<std::vector<DeviceMicromap>> made = buildMicromaps(state.context, state.pool, arrays);
+    if (!made) {
+        return made.error();
+    }
+    std::size_t next = 0;
+    for (const auto& [primitive, array] : decided.micromaps) {
+        state.statistics.micromapBytes += (*made)[next].bytes;
+        state.micromaps.emplace(primitive, std::move((*made)[next++]));
+    }
+    state.statistics.micromaps = static_cast<std::uint32_t>(state.micromaps.size());
+    return okStatus();
+}
+
 // Makes `deformer` if an instance changes its shape.
 Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene, SceneLayout& layout,
                   std::unique_ptr<Deformer>& deformer) {
@@ -96,13 +119,31 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (!uploader) {
         return uploader.error();
     }
+    std::vector<std::uint8_t> materials = materialsWithSizes(state.context, known, scene.images);
+    Result<std::vector<ChangingMaterial>> changing =
+        replaceMaterials(scene.materials, known.materials, materials);
+    state.materialLayout = known.materials.part(0, 0);
+    if (!changing) {
+        return changing.error();
+    }
     BlasCapacity capacity = blasCapacity(state.context);
-    std::vector<std::vector<std::uint32_t>> ordered;
     const LeafOrder leafOrder = leafOrderFor(state.context, scene.traversalOrder);
+    const Clock::time_point beginProof = Clock::now();
+    // The indices of micromaps are in the order of the triangles, which an order of leaves would change.
+    const std::uint32_t level = leafOrder == nullptr ? micromapLevel(state.context) : 0;
+    DecidedTriangles decided = decideTriangles(package, known, scene, materials, capacity, level);
+    state.statistics.opacityMs = millisecondsSince(beginProof);
+    state.statistics.maskedTriangles = decided.tested;
+    state.statistics.provedOpaque = decided.opaque;
+    state.statistics.provedTransparent = decided.transparent;
+    if (Status s = uploadMicromaps(state, decided); !s) {
+        return s;
+    }
+    std::vector<std::vector<std::uint32_t>> ordered = std::move(decided.sorted);
     if (leafOrder != nullptr) {
         const Clock::time_point begin = Clock::now();
         capacity = orderedCapacity(capacity);
-        ordered = orderedTriangles(scene.primitives, capacity, leafOrder);
+        ordered = orderedTriangles(scene.primitives, capacity, leafOrder, ordered, decided.splits);
         state.statistics.orderMs = millisecondsSince(begin);
     }
     Result<std::vector<GpuPrimitive>> primitives = uploadPrimitives(
@@ -120,7 +161,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         deformer = std::move(*created);
     }
     Result<SceneLayout> laidOut =
-        layOutScene(known, scene, state.primitives, capacity, state.deformed.addresses);
+        layOutScene(known, scene, state.primitives, capacity, state.deformed.addresses, decided.splits);
     if (!laidOut) {
         return laidOut.error();
     }
@@ -151,14 +192,13 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
         return s;
     }
-    std::vector<std::uint8_t> materials = materialsWithSizes(state.context, known, scene.images);
-    Result<std::vector<ChangingMaterial>> changing =
-        replaceMaterials(scene.materials, known.materials, materials);
-    state.materialLayout = known.materials.part(0, 0);
-    if (!changing) {
-        return changing.error();
-    }
     state.package = describePackage(package, scene, layout, *changing);
+    for (const auto& [primitive, split] : decided.splits) {
+        const std::uint32_t entry = state.package.entryOfUploaded[primitive];
+        state.package.decided.push_back(
+            {entry, alphaInputs(*package.opacity(), tableWith(known.materials, materials),
+                                known.primitives[entry])});
+    }
     if (scene.moves) {
         state.changing = std::move(*changing);
     }
@@ -205,9 +245,13 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
             const auto own = state.deformed.addresses.find({*part.instance, range.primitive});
             positions = own == state.deformed.addresses.end() ? positions : own->second.positions;
         }
-        input.geometries.push_back({positions, indices, primitive.vertexCount, range.count,
-                                    (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0,
-                                    (flags & gpu::kGeometryPassesLight) != 0});
+        const auto micromap = state.micromaps.find(range.primitive);
+        const bool opaque =
+            range.opaque || (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
+        input.geometries.push_back(
+            {positions, indices, primitive.vertexCount, range.count, opaque,
+             (flags & gpu::kGeometryPassesLight) != 0,
+             opaque || micromap == state.micromaps.end() ? nullptr : &micromap->second});
     }
     return input;
 }

@@ -3,6 +3,7 @@
 
 #include "context/resources.h"
 #include "motion/scene_motion.h"
+#include "opacity/micromap_build.h"
 #include "renderer/draw_batches.h"
 #include "replacement/scene_package.h"
 #include "scene/acceleration.h"
@@ -17,6 +18,7 @@
 #include <glint/texture_stream.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -35,8 +37,9 @@ struct GpuScene::State {
     ScenePackage package;  // that the scene is drawn with
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
-    std::vector<AccelerationStructure> blases;  // the BLASes that are built once
-    std::vector<VkDeviceAddress> partBlases;    // indexed as SceneLayout::parts
+    std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
+    std::vector<AccelerationStructure> blases;          // the BLASes that are built once
+    std::vector<VkDeviceAddress> partBlases;            // indexed as SceneLayout::parts
     // Null if the top level has its instances in the scene's own order.
     std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;

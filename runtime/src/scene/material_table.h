@@ -21,4 +21,9 @@ inline gpu::TextureRecord textureAt(const MaterialTable& table, std::size_t mate
     return record;
 }
 
+// Returns a table of other records in the same layout.
+inline MaterialTable tableWith(const MaterialTable& layout, std::span<const std::uint8_t> records) {
+    return {records, layout.recordBytes, layout.textureOffset, layout.textureCount};
+}
+
 }  // namespace glint

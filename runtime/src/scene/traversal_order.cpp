@@ -1,29 +1,32 @@
 #include "scene/traversal_order.h"
 
+#include "context/parallel.h"
 #include "scene/leaf_order.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <system_error>
-#include <thread>
 
 namespace glint {
 namespace {
 
-std::uint32_t threadsOfMachine() {
-    return std::max(std::thread::hardware_concurrency(), 1U);
-}
-
 using Corners = std::array<std::uint32_t, 3>;
 
-std::vector<Corners> cornersOf(const PrimitiveView& view) {
+std::vector<Corners> cornersOf(std::span<const std::uint32_t> indices) {
     std::vector<Corners> triangles;
-    triangles.reserve(view.indices.size() / 3);
-    for (std::size_t i = 0; i + 2 < view.indices.size(); i += 3) {
-        triangles.push_back({view.indices[i], view.indices[i + 1], view.indices[i + 2]});
+    triangles.reserve(indices.size() / 3);
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        triangles.push_back({indices[i], indices[i + 1], indices[i + 2]});
     }
     return triangles;
+}
+
+std::vector<std::uint32_t> indicesOf(std::span<const Corners> triangles) {
+    std::vector<std::uint32_t> indices;
+    indices.reserve(3 * triangles.size());
+    for (const Corners& corners : triangles) {
+        indices.insert(indices.end(), corners.begin(), corners.end());
+    }
+    return indices;
 }
 
 void orderPiece(const PrimitiveView& view, std::span<Corners> triangles, LeafOrder leafOrder,
@@ -40,7 +43,7 @@ void orderPiece(const PrimitiveView& view, std::span<Corners> triangles, LeafOrd
 
 std::vector<std::uint32_t> orderPrimitive(const PrimitiveView& view, std::uint64_t capacity,
                                           LeafOrder leafOrder, std::uint32_t threads) {
-    std::vector<Corners> triangles = cornersOf(view);
+    std::vector<Corners> triangles = cornersOf(view.indices);
     orderPiece(view, triangles, leafOrder, threads);
     // Pieces of a primitive have trees of their own, which are halved at other places than the tree of the
     // whole would be.
@@ -48,35 +51,16 @@ std::vector<std::uint32_t> orderPrimitive(const PrimitiveView& view, std::uint64
         const std::size_t count = std::min<std::size_t>(triangles.size() - first, capacity);
         orderPiece(view, std::span(triangles).subspan(first, count), leafOrder, threads);
     }
-    std::vector<std::uint32_t> indices;
-    indices.reserve(view.indices.size());
-    for (const Corners& corners : triangles) {
-        indices.insert(indices.end(), corners.begin(), corners.end());
-    }
-    return indices;
+    return indicesOf(triangles);
 }
 
-// Calls `work` for 0 to count - 1, on as many threads as the machine runs at once.
-template <typename Work>
-void forEach(std::size_t count, const Work& work) {
-    std::atomic<std::size_t> next{0};
-    const auto take = [&] {
-        for (std::size_t i = next++; i < count; i = next++) {
-            work(i);
-        }
-    };
-    std::vector<std::thread> helpers;
-    for (std::uint32_t i = 1; i < std::min<std::size_t>(threadsOfMachine(), count); ++i) {
-        try {
-            helpers.emplace_back(take);
-        } catch (const std::system_error&) {
-            break;  // no more threads: the existing ones do all the work
-        }
-    }
-    take();
-    for (std::thread& helper : helpers) {
-        helper.join();
-    }
+// Orders the tested triangles and the opaque ones. The others are in no structure.
+std::vector<std::uint32_t> orderSplit(const PrimitiveView& view, std::span<const std::uint32_t> sorted,
+                                      const OpacitySplit& split, LeafOrder leafOrder, std::uint32_t threads) {
+    std::vector<Corners> triangles = cornersOf(sorted);
+    orderPiece(view, std::span(triangles).first(split.tested), leafOrder, threads);
+    orderPiece(view, std::span(triangles).subspan(split.tested, split.opaque), leafOrder, threads);
+    return indicesOf(triangles);
 }
 
 // Returns the box around the vertices that the triangles use, because primitives may share an array of which
@@ -106,15 +90,19 @@ BlasCapacity orderedCapacity(BlasCapacity capacity) {
     return {capacity.triangles, 1};
 }
 
-std::vector<std::vector<std::uint32_t>> orderedTriangles(std::span<const PrimitiveView> primitives,
-                                                         const BlasCapacity& capacity, LeafOrder order) {
+std::vector<std::vector<std::uint32_t>> orderedTriangles(
+    std::span<const PrimitiveView> primitives, const BlasCapacity& capacity, LeafOrder order,
+    std::span<const std::vector<std::uint32_t>> sorted, const std::map<std::uint32_t, OpacitySplit>& splits) {
     std::vector<std::vector<std::uint32_t>> ordered(primitives.size());
     // If there are many primitives, one thread orders each of them. If there are few, each one gets more
     // threads.
     const std::uint32_t threads =
         primitives.size() < 4 * std::size_t{threadsOfMachine()} ? threadsOfMachine() : 1;
     forEach(primitives.size(), [&](std::size_t i) {
-        ordered[i] = orderPrimitive(primitives[i], capacity.triangles, order, threads);
+        const auto split = splits.find(static_cast<std::uint32_t>(i));
+        ordered[i] = split == splits.end()
+                         ? orderPrimitive(primitives[i], capacity.triangles, order, threads)
+                         : orderSplit(primitives[i], sorted[i], split->second, order, threads);
     });
     return ordered;
 }

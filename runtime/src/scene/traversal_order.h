@@ -8,6 +8,7 @@
 #include <glint/scene_view.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -25,9 +26,12 @@ BlasCapacity orderedCapacity(BlasCapacity capacity);
 
 // Returns the indices of each primitive in the order of its triangles; the corners of a triangle keep their
 // order. `capacity` is that of orderedCapacity(). A primitive above it is cut into pieces that are ordered
-// one by one. Takes 56 bytes a triangle while a primitive is ordered, 12 of which stay.
-std::vector<std::vector<std::uint32_t>> orderedTriangles(std::span<const PrimitiveView> primitives,
-                                                         const BlasCapacity& capacity, LeafOrder order);
+// one by one. A primitive with a split has the indices `sorted`, of which each kind is ordered by itself.
+// Takes 56 bytes a triangle while a primitive is ordered, 12 of which stay.
+std::vector<std::vector<std::uint32_t>> orderedTriangles(
+    std::span<const PrimitiveView> primitives, const BlasCapacity& capacity, LeafOrder order,
+    std::span<const std::vector<std::uint32_t>> sorted = {},
+    const std::map<std::uint32_t, OpacitySplit>& splits = {});
 
 // Knows the boxes of a top level's instances in any pose of the scene.
 class InstanceOrder {

@@ -188,6 +188,12 @@ TEST(LintQueries, FlagsMustBeConstantOpaqueAndWithoutAabbs) {
     EXPECT_EQ(withFlags("data.flags", readsHit), Rules{"warning query-flags"});
 }
 
+TEST(LintQueries, MicromapsOfTwoStatesSkipAlphaTests) {
+    EXPECT_EQ(
+        rulesOf("rayQueryEXT q; START(q, kFast | 0x400u); rayQueryProceedEXT(q); data.t = DISTANCE(q);"),
+        Rules{"warning query-micromap-states"});
+}
+
 TEST(LintQueries, LooksThroughCalls) {
     EXPECT_EQ(rules(compileQuery(functionsWith("t"), {"isVisible"})), Rules{});
     const std::vector<compiler::LintFinding> found =

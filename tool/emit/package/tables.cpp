@@ -11,6 +11,7 @@
 #include <cstring>
 #include <interop/scene.h>
 #include <map>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -159,6 +160,30 @@ EmissionEntry emissionOf(const MaterialLayout& layout) {
             inputOf("texCoord1")};
 }
 
+// Returns nothing if records lack what an alpha test reads: no material is tested.
+std::optional<OpacityEntry> opacityOf(const MaterialLayout& layout) {
+    const materials::MaterialModel& model = *layout.model;
+    const auto factor = std::ranges::find(layout.fields, "baseColorFactor", &RecordField::name);
+    const auto cutoff = std::ranges::find(layout.fields, "alphaCutoff", &RecordField::name);
+    if (factor == layout.fields.end() || cutoff == layout.fields.end()) {
+        return std::nullopt;
+    }
+    const int slot = layout.slotOf(model.findTexture("baseColorTexture"));
+    const auto inputOf = [&](std::string_view name) {
+        return static_cast<std::uint32_t>(model.mask(name) >> 32U);
+    };
+    constexpr std::uint32_t kAlpha = 3 * sizeof(float);  // after red, green and blue
+    return OpacityEntry{factor->offset + kAlpha,
+                        cutoff->offset,
+                        slot < 0 ? OpacityEntry::kNone : static_cast<std::uint32_t>(slot),
+                        inputOf("baseColorTexture"),
+                        inputOf("texCoord0"),
+                        inputOf("texCoord1"),
+                        inputOf("textureTransform"),
+                        inputOf("vertexColor"),
+                        maskCodeFeatures(model)};
+}
+
 std::vector<EffectEntry> makeEffects(const Plan& plan, StringTable& strings) {
     std::vector<EffectEntry> entries;
     package::forEachEffect(plan.effects.effects.all, [&](std::uint32_t number) {
@@ -295,6 +320,10 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Features, features);
     if (settings.emissiveLights == EmissiveLights::On) {
         writer.add(SectionKind::Emission, std::vector{emissionOf(layout)});
+    }
+    const std::optional<OpacityEntry> opacity = opacityOf(layout);
+    if (opacity && settings.plan.keys.alpha != AlphaPolicy::Opaque && settings.host.empty()) {
+        writer.add(SectionKind::Opacity, std::vector{*opacity});
     }
 
     PackageHeader header{};

@@ -26,8 +26,8 @@ constexpr auto kSupported = std::to_array<std::string_view>(
 // Ratified or registered extensions whose data a renderer may ignore even if a file requires them.
 constexpr auto kNoPicture = std::to_array<std::string_view>(
     {"AGI_stk_metadata", "EXT_instance_features", "EXT_mesh_features", "EXT_mesh_manifold",
-     "EXT_structural_metadata", "FB_geometry_metadata", "GODOT_single_root", "KHR_node_hoverability",
-     "KHR_node_selectability", "KHR_xmp", "KHR_xmp_json_ld"});
+     "EXT_mesh_opacity_micromap", "EXT_structural_metadata", "FB_geometry_metadata", "GODOT_single_root",
+     "KHR_node_hoverability", "KHR_node_selectability", "KHR_xmp", "KHR_xmp_json_ld"});
 
 // Returns the extensions in either list of a document that change no picture, in alphabetical order.
 std::set<std::string> unreadOf(const Document& document) {

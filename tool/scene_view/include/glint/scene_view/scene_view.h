@@ -32,6 +32,7 @@ struct SceneViewData {
     std::uint32_t packageScene = 0;  // as in SceneView
     bool moves = false;              // as in SceneView
     TraversalOrder traversalOrder = TraversalOrder::Auto;
+    OpacityUse opacity = OpacityUse::Proved;
     VertexForm vertices = VertexForm::Compact;
     std::vector<MaterialView> materials;  // those that animations change
     // By instance: what places it.

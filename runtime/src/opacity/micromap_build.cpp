@@ -1,0 +1,216 @@
+#include "opacity/micromap_build.h"
+
+#include "context/commands.h"
+#include "context/upload.h"
+#include "context/vulkan_error.h"
+#include "scene/acceleration.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace glint {
+namespace {
+
+// VkMicromapBuildInfoEXT asks for it (VUID-vkCmdBuildMicromapsEXT-pInfos-07515).
+constexpr VkDeviceSize kInputAlignment = 256;
+
+constexpr MemoryDependency kMicromapToStructures{
+    VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT, VK_ACCESS_2_MICROMAP_WRITE_BIT_EXT,
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR | VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT,
+    VK_ACCESS_2_MICROMAP_READ_BIT_EXT};
+
+std::vector<VkMicromapUsageEXT> vulkanUsages(std::span<const opacity::MicromapUsage> usages) {
+    std::vector<VkMicromapUsageEXT> made;
+    for (const opacity::MicromapUsage& usage : usages) {
+        made.push_back({usage.count, usage.subdivisionLevel, usage.format});
+    }
+    return made;
+}
+
+// A buffer whose content is at an address with the alignment of build inputs.
+struct InputBuffer {
+    Buffer buffer;
+    VkDeviceAddress address = 0;
+};
+
+Result<InputBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                std::span<const std::uint8_t> bytes) {
+    Result<Buffer> buffer = createBuffer(
+        context, pool, bytes.size() + kInputAlignment,
+        VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    const VkDeviceAddress aligned =
+        (buffer->address + kInputAlignment - 1) / kInputAlignment * kInputAlignment;
+    if (Status status = uploader.copyToBuffer(bytes, *buffer, aligned - buffer->address); !status) {
+        return status.error();
+    }
+    return InputBuffer{std::move(*buffer), aligned};
+}
+
+// What the build of one micromap needs until it is done.
+struct PendingMicromap {
+    InputBuffer data;
+    InputBuffer records;
+    Scratch scratch;
+    std::vector<VkMicromapUsageEXT> usages;
+    VkMicromapBuildInfoEXT info{};
+};
+
+class MicromapBuilder {
+public:
+    MicromapBuilder(Context::State& context, MemoryPool& pool)
+        : context_(context), pool_(pool), transient_(context) {}
+
+    Status add(const opacity::MicromapArray& array, Uploader& uploader, DeviceMicromap& made) {
+        if (Status status = addIndices(array, uploader, made); !status || array.records.empty()) {
+            return status;
+        }
+        PendingMicromap pending;
+        Result<InputBuffer> data = uploadInput(context_, transient_, uploader, array.data);
+        if (!data) {
+            return data.error();
+        }
+        pending.data = std::move(*data);
+        Result<InputBuffer> records =
+            uploadInput(context_, transient_, uploader, bytesOf(std::span(array.records)));
+        if (!records) {
+            return records.error();
+        }
+        pending.records = std::move(*records);
+        pending.usages = vulkanUsages(array.usages);
+        if (Status status = create(pending, made); !status) {
+            return status;
+        }
+        pending_.push_back(std::move(pending));
+        return okStatus();
+    }
+
+    // Requires that the uploads are done.
+    Status build() {
+        std::vector<VkMicromapBuildInfoEXT> infos;
+        for (PendingMicromap& pending : pending_) {
+            pending.info.pUsageCounts = pending.usages.data();
+            infos.push_back(pending.info);
+        }
+        if (infos.empty()) {
+            return okStatus();
+        }
+        return runOnce(context_, [&](VkCommandBuffer commands) {
+            context_.vk.CmdBuildMicromapsEXT(commands, static_cast<std::uint32_t>(infos.size()),
+                                             infos.data());
+            recordDependency(context_, commands, kMicromapToStructures);
+            return okStatus();
+        });
+    }
+
+private:
+    Status addIndices(const opacity::MicromapArray& array, Uploader& uploader, DeviceMicromap& made) {
+        const std::span<const std::uint8_t> bytes = bytesOf(std::span(array.indices));
+        Result<Buffer> indices = createBuffer(
+            context_, pool_, bytes.size(),
+            VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+        if (!indices) {
+            return indices.error();
+        }
+        made.indices = std::move(*indices);
+        made.usages = vulkanUsages(opacity::usagesOf(array));
+        made.bytes = bytes.size();
+        return uploader.copyToBuffer(bytes, made.indices);
+    }
+
+    Status create(PendingMicromap& pending, DeviceMicromap& made) {
+        VkMicromapBuildInfoEXT& info = pending.info;
+        info.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_INFO_EXT;
+        info.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
+        info.flags = VK_BUILD_MICROMAP_PREFER_FAST_TRACE_BIT_EXT;
+        info.mode = VK_BUILD_MICROMAP_MODE_BUILD_EXT;
+        info.usageCountsCount = static_cast<std::uint32_t>(pending.usages.size());
+        info.pUsageCounts = pending.usages.data();
+        info.data.deviceAddress = pending.data.address;
+        info.triangleArray.deviceAddress = pending.records.address;
+        info.triangleArrayStride = sizeof(opacity::MicromapRecord);
+        VkMicromapBuildSizesInfoEXT sizes{};
+        sizes.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT;
+        context_.vk.GetMicromapBuildSizesEXT(context_.handles.device,
+                                             VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &sizes);
+        Result<Buffer> buffer =
+            createBuffer(context_, pool_, sizes.micromapSize, VK_BUFFER_USAGE_MICROMAP_STORAGE_BIT_EXT);
+        if (!buffer) {
+            return buffer.error();
+        }
+        made.buffer = std::move(*buffer);
+        made.bytes += sizes.micromapSize;
+        VkMicromapCreateInfoEXT creation{};
+        creation.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT;
+        creation.buffer = made.buffer.handle.get();
+        creation.size = sizes.micromapSize;
+        creation.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
+        VkMicromapEXT handle = VK_NULL_HANDLE;
+        const VkResult result =
+            context_.vk.CreateMicromapEXT(context_.handles.device, &creation, nullptr, &handle);
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkCreateMicromapEXT", result);
+        }
+        made.handle = UniqueMicromap(context_, handle);
+        info.dstMicromap = handle;
+        Result<Scratch> scratch = createScratch(context_, transient_, sizes.buildScratchSize);
+        if (!scratch) {
+            return scratch.error();
+        }
+        pending.scratch = std::move(*scratch);
+        info.scratchData.deviceAddress = pending.scratch.address;
+        return okStatus();
+    }
+
+    Context::State& context_;
+    MemoryPool& pool_;
+    MemoryPool transient_;
+    std::vector<PendingMicromap> pending_;
+};
+
+}  // namespace
+
+std::uint32_t micromapLevel(const Context::State& context) {
+    const VkPhysicalDeviceOpacityMicromapPropertiesEXT& limits = context.limits.opacityMicromap;
+    return std::min({limits.maxOpacity2StateSubdivisionLevel, limits.maxOpacity4StateSubdivisionLevel,
+                     opacity::kMaxLevel});
+}
+
+Result<std::vector<DeviceMicromap>> buildMicromaps(Context::State& context, MemoryPool& pool,
+                                                   std::span<const opacity::MicromapArray> arrays) {
+    std::vector<DeviceMicromap> made(arrays.size());
+    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(context);
+    if (!uploader) {
+        return uploader.error();
+    }
+    MicromapBuilder builder(context, pool);
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        if (Status status = builder.add(arrays[i], **uploader, made[i]); !status) {
+            return status.error();
+        }
+    }
+    if (Status status = (*uploader)->finish(); !status) {
+        return status.error();
+    }
+    if (Status status = builder.build(); !status) {
+        return status.error();
+    }
+    return made;
+}
+
+VkAccelerationStructureTrianglesOpacityMicromapEXT describeMicromap(const DeviceMicromap& micromap) {
+    VkAccelerationStructureTrianglesOpacityMicromapEXT described{};
+    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_TRIANGLES_OPACITY_MICROMAP_EXT;
+    described.indexType = VK_INDEX_TYPE_UINT32;
+    described.indexBuffer.deviceAddress = micromap.indices.address;
+    described.indexStride = sizeof(std::int32_t);
+    described.usageCountsCount = static_cast<std::uint32_t>(micromap.usages.size());
+    described.pUsageCounts = micromap.usages.data();
+    described.micromap = micromap.handle.get();
+    return described;
+}
+
+}  // namespace glint
