@@ -152,6 +152,13 @@ constexpr std::size_t bytesPerPixel(PixelFormat format) {
 // How an image file declares its colours to be stored.
 enum class Transfer : std::uint8_t { Unknown, Linear, Srgb };
 
+// What an image file holds.
+enum class Storage : std::uint8_t {
+    Texels,
+    Blocks,      // in a block format, which devices that have it read as it is
+    Transcoded,  // data of Basis Universal, of which each device gets blocks of its own format
+};
+
 // The pixels are empty unless ImportOptions::decodeImages is set.
 struct Image {
     std::string name;     // glTF name, else the file's name, else "image N"
@@ -162,6 +169,7 @@ struct Image {
     // This is above 1 if the file has mips. Each level has half the size of the one before, rounded down.
     int levels = 1;
     Transfer transfer = Transfer::Unknown;  // only KTX2 files give it; the texture's use decides
+    Storage storage = Storage::Texels;
     // There are byteCount() bytes. Levels start with the largest, and rows with the top one. Values stay as
     // they are stored and are not linearised.
     std::vector<std::uint8_t> pixels;
