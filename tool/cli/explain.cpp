@@ -2,6 +2,7 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/compile/cache.h"
 #include "cli/explain/motion_text.h"
 #include "cli/explain/plan_text.h"
 #include "cli/options/effect_options.h"
@@ -241,7 +242,9 @@ Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const 
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, ImageReading::None);
+    CompileCache known(CacheArguments{}, "");
+    const Result<gltf::ImportOptions> import =
+        importOptions(arguments.settings, ImageReading::None, known.store());
     if (!import) {
         console.report(import.error());
         return kExitFailed;

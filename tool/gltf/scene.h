@@ -44,7 +44,10 @@ struct Primitive {
     std::vector<VertexValues>
         attributes;  // those of MaterialModel::attributes that the file gives, each name once
     std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
-    std::vector<MorphTarget> targets;    // normals and tangents only if the primitive has them
+    // What the triangles can see of the material's textures, with ImportOptions::trustTextures.
+    std::vector<materials::SeenTexture> seen;
+    bool derivesTangents = false;      // derivesTangents(), with ImportOptions::trustTextures
+    std::vector<MorphTarget> targets;  // normals and tangents only if the primitive has them
     SkinInfluences influences;
 };
 
@@ -175,10 +178,8 @@ struct Image {
     std::vector<std::uint8_t> pixels;
     // The bytes of the image's file, with ImportOptions::keepImageFiles. Its header was checked.
     std::vector<std::uint8_t> file;
-    // What the texels hold, by channel, as they are stored: all of [0, 1] without
-    // ImportOptions::trustTextures.
-    std::array<materials::ValueInterval, 4> content{materials::kUnitInterval, materials::kUnitInterval,
-                                                    materials::kUnitInterval, materials::kUnitInterval};
+    // The image that stands for all with the same texels, or -1 if this one does. Textures show that one.
+    int sameAs = -1;
 };
 
 constexpr std::uint64_t pixelCount(const Image& image, int level) {

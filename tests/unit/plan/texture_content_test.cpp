@@ -24,7 +24,7 @@ constexpr Content kZeros{};
 
 materials::Material fullOf(const char* texture, const Content& content) {
     materials::Material material = fullMaterial();
-    material.texture(texture).content = content;
+    material.texture(texture).content.of = content;
     return material;
 }
 
@@ -107,13 +107,13 @@ TEST(TextureContent, OfRoughnessDecidesAboutReflections) {
     const materials::EffectDeclaration& reflection = materials::builtinMaterialModel().effects[2];
     ASSERT_EQ(reflection.name, "reflection");
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
-    material.texture("metallicRoughnessTexture").content[1] = {0.31, 1.0};
+    material.texture("metallicRoughnessTexture").content.of[1] = {0.31, 1.0};
     EXPECT_FALSE(compiler::sendsRays(reflection, material, primitive, 0.3F));
-    material.texture("metallicRoughnessTexture").content[1] = {0.29, 1.0};
+    material.texture("metallicRoughnessTexture").content.of[1] = {0.29, 1.0};
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
     // Another channel says nothing about roughness.
-    material.texture("metallicRoughnessTexture").content = {};
-    material.texture("metallicRoughnessTexture").content[1] = materials::kUnitInterval;
+    material.texture("metallicRoughnessTexture").content.of = {};
+    material.texture("metallicRoughnessTexture").content.of[1] = materials::kUnitInterval;
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
 }
 

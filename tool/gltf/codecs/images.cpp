@@ -4,7 +4,6 @@
 #include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
 #include "gltf/document/uri.h"
-#include "gltf/image_content.h"
 
 #include <fmt/format.h>
 
@@ -142,7 +141,7 @@ Status read(Document& document, ByteView bytes, Image& image) {
     }
     const ImportOptions& options = document.options();
     std::string problem;
-    if ((options.decodeImages || options.trustTextures) && !codec->decode(bytes, image, problem)) {
+    if (options.decodeImages && !codec->decode(bytes, image, problem)) {
         return fail(cantDecode(*codec, problem));
     }
     warnOfDeviations(document, bytes, *codec, image);
@@ -191,15 +190,10 @@ Result<Image> importImage(Document& document, int index) {
     if (Status status = read(document, *bytes, image); !status) {
         return status.error();
     }
-    if (options.trustTextures) {
-        image.content = storedContent(image);
-    }
-    if (!options.decodeImages) {
-        image.pixels = {};
-    }
-    if (options.keepImageFiles && storage.empty()) {
+    const bool isKept = options.keepImageFiles || (options.trustTextures && !options.decodeImages);
+    if (isKept && storage.empty()) {
         image.file.assign(bytes->begin(), bytes->end());
-    } else if (options.keepImageFiles) {
+    } else if (isKept) {
         image.file = std::move(storage);
     }
     return image;

@@ -369,19 +369,8 @@ public:
     }
 
     std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const override {
-        constexpr Code kMost = std::numeric_limits<Code>::max();
-        constexpr double kLargest = kMost;
-        const auto narrowed = [](double number) { return std::round(number * 255.0) / 255.0; };
-        std::array<materials::ValueInterval, 4> values{};
-        for (std::size_t i = 0; i < 4; ++i) {
-            const bool isBlack = range.greatest[i] == 0;
-            const bool isWhite = range.least[i] == kLargest;
-            const double low = std::max(range.least[i] - (isWhite ? 0 : rules_.tolerance), 0) / kLargest;
-            const double high =
-                std::min(range.greatest[i] + (isBlack ? 0 : rules_.tolerance), int{kMost}) / kLargest;
-            values[i] = {std::min(low, narrowed(low)), std::max(high, narrowed(high))};
-        }
-        return values;
+        return gltf::valuesOf(range, sizeof(Code) == 1 ? PixelFormat::Rgba8 : PixelFormat::Rgba16,
+                              rules_.tolerance);
     }
 
 private:
@@ -436,6 +425,20 @@ private:
     std::vector<LevelBounds<Code>> levels_;
     TexelRange whole_;
 };
+
+std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelFormat format, int tolerance) {
+    const int most = format == PixelFormat::Rgba16 ? 65535 : 255;
+    const auto narrowed = [](double number) { return std::round(number * 255.0) / 255.0; };
+    std::array<materials::ValueInterval, 4> values{};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const bool isBlack = range.greatest[i] == 0;
+        const bool isWhite = range.least[i] == most;
+        const double low = std::max(range.least[i] - (isWhite ? 0 : tolerance), 0) / double(most);
+        const double high = std::min(range.greatest[i] + (isBlack ? 0 : tolerance), most) / double(most);
+        values[i] = {std::min(low, narrowed(low)), std::max(high, narrowed(high))};
+    }
+    return values;
+}
 
 bool hasKnownTexels(const Image& image) {
     return image.storage == Storage::Texels ||

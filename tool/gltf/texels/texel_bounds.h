@@ -53,11 +53,12 @@ struct TexelRange {
     bool operator==(const TexelRange&) const = default;
 };
 
-struct TexelPlace {
-    int level = -1;  // -1: there is none
-    int x = 0;
-    int y = 0;
-};
+using TexelPlace = materials::TexelPlace;
+
+// Returns the numbers in [0, 1] that the codes stand for, as they are stored (contentAsRead() makes of them
+// what shading reads). 16 bits include their rounding to 8, for devices that do not filter them. `tolerance`
+// is that of LevelRules.
+std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelFormat format, int tolerance);
 
 // What a lookup does besides where it looks.
 struct LookupKind {
@@ -109,8 +110,7 @@ public:
     // one.
     TexelPlace find(const TexCoordBox& box, const LookupKind& kind, const TexelRange& range,
                     std::size_t channel, bool greatest) const;
-    // Returns the numbers in [0, 1] that the codes stand for, as they are stored (gltf/image_content.h makes
-    // of them what shading reads). 16 bits include their rounding to 8, for devices that do not filter them.
+    // Returns valuesOf() with the image's format and tolerance.
     std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const;
 
 private:
