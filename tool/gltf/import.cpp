@@ -79,7 +79,7 @@ Status fillScene(Document& document, Scene& scene) {
         foldConstantTextures(scene);
     }
     scene.files = document.files();
-    scene.warnings = std::move(document.warnings());
+    scene.warnings.insert(scene.warnings.begin(), document.warnings().begin(), document.warnings().end());
     return okStatus();
 }
 

@@ -151,7 +151,8 @@ public:
         const std::vector<ImageUse> uses = imageUses(scene_);
         for (std::size_t i = 0; i < works_.size(); ++i) {
             works_[i].rules = levelRulesOf(scene_.images[i], uses[i]);
-            works_[i].isKnown = hasKnownTexels(scene_.images[i]);
+            works_[i].isKnown = hasKnownTexels(scene_.images[i]) &&
+                                !(scene_.images[i].file.empty() && scene_.images[i].pixels.empty());
         }
         if (!packsChangeCoordinates(model_)) {
             forEachSeen(
@@ -164,9 +165,13 @@ public:
             readImage(scene_.images[i], works_[i]);
             return true;
         });
-        for (const ImageWork& work : works_) {
-            if (work.error) {
+        for (ImageWork& work : works_) {
+            if (work.error && (options_.decodeImages || options_.keepImageFiles)) {
                 return *work.error;
+            }
+            if (work.error) {
+                work.isKnown = false;
+                scene_.warnings.push_back(unknownTexels(*work.error));
             }
         }
         tellMaterials();
@@ -219,7 +224,7 @@ private:
         std::optional<Texels> texels;
         if (!work.isKnown) {
             // Nothing is known of the texels, but equal files are equal.
-            work.whole.texelHash = hashOf(bytes, 0);
+            work.whole.texelHash = bytes.empty() ? 0 : hashOf(bytes, 0);
         } else if (!recall(kWholeKind, key, std::span(&work.whole, 1))) {
             if (!decode(image, work, texels)) {
                 return;
@@ -428,6 +433,9 @@ private:
             Image& image = scene_.images[i];
             for (std::size_t j = 0; j < i && image.sameAs < 0; ++j) {
                 const Image& other = scene_.images[j];
+                if (works_[i].error || works_[i].whole.texelHash == 0) {
+                    break;
+                }
                 // Levels are made by an image's use.
                 if (other.sameAs < 0 && works_[i].whole.texelHash == works_[j].whole.texelHash &&
                     image.width == other.width && image.height == other.height &&

@@ -184,10 +184,13 @@ Result<Image> importImage(Document& document, int index) {
     }
     base::Bytes storage;
     const Result<ByteView> bytes = encodedBytes(document, index, storage);
-    if (!bytes) {
-        return bytes.error();
+    const Status status = bytes ? read(document, *bytes, image) : Status(bytes.error());
+    // Nothing but --trust-textures asks for the image, and planning does without.
+    if (!status && !options.decodeImages && !options.keepImageFiles) {
+        document.warnings().push_back(unknownTexels(status.error()));
+        return image;
     }
-    if (Status status = read(document, *bytes, image); !status) {
+    if (!status) {
         return status.error();
     }
     const bool isKept = options.keepImageFiles || (options.trustTextures && !options.decodeImages);
@@ -197,6 +200,12 @@ Result<Image> importImage(Document& document, int index) {
         image.file = std::move(storage);
     }
     return image;
+}
+
+Diagnostic unknownTexels(Diagnostic error) {
+    error.severity = Severity::Note;
+    error.message += "; what it holds is not known";
+    return error;
 }
 
 Status decodeFile(const Scene& scene, Image& image) {
