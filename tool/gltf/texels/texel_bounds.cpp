@@ -304,8 +304,10 @@ public:
     virtual std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const = 0;
 };
 
+namespace {
+
 template <typename Code>
-class TexelBounds::LevelsOf final : public TexelBounds::Levels {
+class LevelsOf final : public TexelBounds::Levels {
 public:
     using Texel = CodeTexel<Code>;
 
@@ -425,6 +427,8 @@ private:
     std::vector<LevelBounds<Code>> levels_;
     TexelRange whole_;
 };
+
+}  // namespace
 
 std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelFormat format, int tolerance) {
     const int most = format == PixelFormat::Rgba16 ? 65535 : 255;

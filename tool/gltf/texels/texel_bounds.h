@@ -113,10 +113,9 @@ public:
     // Returns valuesOf() with the image's format and tolerance.
     std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const;
 
+    class Levels;  // texel_bounds.cpp
+
 private:
-    class Levels;
-    template <typename Code>
-    class LevelsOf;
     std::unique_ptr<const Levels> bounds_;
 };
 
