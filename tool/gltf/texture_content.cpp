@@ -379,10 +379,10 @@ private:
         const Image& source = scene_.images[static_cast<std::size_t>(image)];
         const ImageWork& work = works_[static_cast<std::size_t>(image)];
         materials::TextureContent content;
-        content.image = source.pointer;
         if (!work.isKnown) {
             return content;
         }
+        content.image = source.pointer;
         const auto stored = valuesOf(found.range, source.format, work.rules.tolerance);
         content.of = contentAsRead(stored, isColor);
         content.leastAt = found.leastAt;

@@ -202,10 +202,9 @@ Result<Image> importImage(Document& document, int index) {
     return image;
 }
 
-Diagnostic unknownTexels(Diagnostic error) {
-    error.severity = Severity::Note;
-    error.message += "; what it holds is not known";
-    return error;
+Diagnostic unknownTexels(const Diagnostic& error) {
+    return {Severity::Note, "texture-unknown", error.where,
+            fmt::format("{} ({}), so what it holds is not known", error.message, error.id), error.hint};
 }
 
 Status decodeFile(const Scene& scene, Image& image) {
