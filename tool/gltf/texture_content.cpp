@@ -7,12 +7,15 @@
 #include "gltf/texels/texel_bounds.h"
 #include "gltf/texels/texture_use.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <new>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -162,7 +165,14 @@ public:
                 });
         }
         base::runParallel(works_.size(), 0, [&](std::size_t i) {
-            readImage(scene_.images[i], works_[i]);
+            // No exception may leave a thread.
+            try {
+                readImage(scene_.images[i], works_[i]);
+            } catch (const std::bad_alloc&) {
+                works_[i].error = makeError(
+                    "image-decode", fmt::format("{}#{}", scene_.path, scene_.images[i].pointer),
+                    "does not fit into memory", "scale the image down, or use a machine with more memory");
+            }
             return true;
         });
         for (ImageWork& work : works_) {
