@@ -200,11 +200,14 @@ private:
                 const materials::Material& material = plannedMaterial(scene_, primitive.material);
                 for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
                     const materials::TextureInfo& info = material.textures[slot];
+                    const std::uint32_t channels =
+                        info.texture < 0 ? 0
+                                         : matter_[slot] & material.readsOf(static_cast<int>(slot)).channels;
                     const bool hasOwnCoordinates =
                         model_.features[static_cast<std::size_t>(model_.textures[slot].feature)]
                             .hasOwnCoordinates;
                     if (info.texture < 0 || info.moves || hasOwnCoordinates || info.texCoord > 1 ||
-                        matter_[slot] == 0 || texCoordsOf(primitive, info.texCoord).empty()) {
+                        channels == 0 || texCoordsOf(primitive, info.texCoord).empty()) {
                         continue;
                     }
                     std::optional<std::uint64_t>& hash = hashes[static_cast<std::size_t>(info.texCoord)];
@@ -214,7 +217,7 @@ private:
                     const Texture& texture = scene_.textures[static_cast<std::size_t>(info.texture)];
                     Lookup lookup{&primitive,     info.texCoord,
                                   info.transform, scene_.samplers[static_cast<std::size_t>(texture.sampler)],
-                                  matter_[slot],  {}};
+                                  channels,       {}};
                     std::string key = keyOf(lookup, *hash);
                     visit(primitive, static_cast<int>(slot), texture.image, std::move(lookup),
                           std::move(key));

@@ -69,6 +69,7 @@ public:
           primitive_(*surface.primitive),
           key_(makeKey(material_, *surface.primitive, {.alpha = package::AlphaPolicy::Tested})),
           facts_(material_, *surface.primitive, options_, key_),
+          blind_(material_, *surface.primitive, options_, key_, materials::MaterialFacts::Textures::Unknown),
           factors_(material_, *surface.primitive, options_, key_,
                    materials::MaterialFacts::Textures::Ignored) {}
 
@@ -94,10 +95,10 @@ public:
     }
 
     // Returns which textures keep the reflection rougher than `limit`, in words, or an empty text if it is
-    // rougher without them.
+    // rougher whatever they hold.
     std::string roughenedBy(double limit) const {
         for (const materials::BehaviourRule& rule : material_.model().behaviours) {
-            if (rule.roughness && holds(rule) && rule.roughness->number(factors_).of[0].low <= limit &&
+            if (rule.roughness && holds(rule) && rule.roughness->number(blind_).of[0].low <= limit &&
                 rule.roughness->number(facts_).of[0].low > limit) {
                 return whatTexturesHold(material_, primitive_, *rule.roughness, HeldBy::All);
             }
@@ -132,6 +133,7 @@ private:
     materials::KeyOptions options_{};
     materials::FeatureMask key_;
     materials::MaterialFacts facts_;
+    materials::MaterialFacts blind_;  // to what textures hold
     materials::MaterialFacts factors_;
 };
 

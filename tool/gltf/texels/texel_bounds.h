@@ -11,7 +11,8 @@
 //                 coordinates, and any distance away on the coarsest level (Vulkan 1.3, "Texel Anisotropic
 //                 Filtering": samples lie in a footprint of N * 2^lambda texels, and lambda < level + 1).
 //   made levels   Levels that Glint makes are known. Those that a device may make by blits instead are known
-//                 up to one code for each level, and never leave the hull of the texels below them.
+//                 up to one code for each level (two for colours in sRGB), and never leave the hull of the
+//                 texels below them.
 #pragma once
 
 #include "gltf/scene.h"
