@@ -53,14 +53,14 @@ struct TextureContent {
 
 struct TextureInfo {
     int texture = -1;  // index into Scene::textures; -1 where the slot is empty
-    // The texture was constant where the material shows it, and its product is in the parameters that it
-    // scales. So the slot is empty.
-    bool isFolded = false;
     int texCoord = 0;  // the UV set; the extension's override is already applied
     TextureTransform transform;
     bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
     bool moves = false;         // An animation changes the transform.
-    TextureContent content;     // of all texels
+    TextureContent content{};   // of all texels
+    // The texture was constant where the material shows it, and its product is in the parameters that it
+    // scales. So the slot is empty.
+    bool isFolded = false;
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
