@@ -112,18 +112,18 @@ def make_material(wish, name, roughness=0.4):
 
 
 def png_bytes(pixel):
-    """One RGB pixel as a file."""
+    """An image of two RGB pixels as a file: this one and another. Constant textures would leave the materials."""
 
     def chunk(kind, data):
         body = kind + data
         return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
 
-    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 2, 0, 0, 0))
-    return data + chunk(b"IDAT", zlib.compress(bytes([0, *pixel]))) + chunk(b"IEND", b"")
+    data = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 2, 1, 8, 2, 0, 0, 0))
+    return data + chunk(b"IDAT", zlib.compress(bytes([0, *pixel, *(channel ^ 64 for channel in pixel)]))) + chunk(b"IEND", b"")
 
 
 def png(pixel):
-    """One RGB pixel as a data URI."""
+    """The same image as a data URI."""
     return "data:image/png;base64," + base64.b64encode(png_bytes(pixel)).decode()
 
 

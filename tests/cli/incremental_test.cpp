@@ -96,8 +96,16 @@ TEST_F(Incremental, ATexturesPixelsAreInNoPackage) {
     compile();
     age();
     writeBaseTexture(path("scene"), 10);
-    EXPECT_TRUE(isUpToDate(compile()));
+    // It has to look at them.
+    const Outcome changed = compile();
+    EXPECT_FALSE(isUpToDate(changed));
+    EXPECT_EQ(compiled(changed), 0);
     EXPECT_EQ(writtenFiles(), std::set<std::string>{});
+    EXPECT_TRUE(isUpToDate(compile()));
+    // It does not, if it may not conclude anything from them.
+    compile({"--trust-textures", "off"});
+    writeBaseTexture(path("scene"), 11);
+    EXPECT_TRUE(isUpToDate(compile({"--trust-textures", "off"})));
 }
 
 TEST_F(Incremental, AnotherTextureIsInTheTablesAlone) {

@@ -92,7 +92,7 @@ fs::path writeManyKeys(const fs::path& folder, const Lobes& lobes, double red) {
 }
 
 void writeBaseTexture(const fs::path& folder, std::uint8_t red) {
-    const image::DisplayImage image{1, 1, {{red, 100, 50}}};
+    const image::DisplayImage image{2, 1, {{red, 100, 50}, {0, 30, 200}}};
     const Status written = writeImage(folder / "base.png", image);
     ASSERT_TRUE(written) << toString(written.error());
 }

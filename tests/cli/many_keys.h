@@ -21,7 +21,7 @@ inline const Lobes kFourLobes{{}, {"clearcoat"}, {"sheen"}, {"textured"}};
 std::filesystem::path writeManyKeys(const std::filesystem::path& folder, const Lobes& lobes = kFourLobes,
                                     double red = 0.5);
 
-// Writes base.png with one colour.
+// Writes base.png with two colours, one of which has this red.
 void writeBaseTexture(const std::filesystem::path& folder, std::uint8_t red);
 
 // Returns names and bytes of all files below `folder`.

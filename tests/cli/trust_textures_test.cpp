@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <set>
 #include <string>
 #include <utility>
@@ -107,8 +108,33 @@ TEST_F(TrustTextures, LeavesOutWhatTexturesMakeNeedless) {
     EXPECT_FALSE(refracts("seen"));
     EXPECT_TRUE(has(readText(path("seen.d")), "uncoated.png"));
     EXPECT_FALSE(has(readText(path("blind.d")), "uncoated.png"));
-    const std::string explained = run({"explain", "scene.gltf", "--trust-textures", "on", "--json"}).out;
-    EXPECT_TRUE(has(explained, "(by what textures hold: clearcoatTexture.r is 0)")) << explained;
+    const std::string explained = run({"explain", "scene.gltf", "--json"}).out;
+    EXPECT_TRUE(has(explained, "(by what textures hold: clearcoatTexture.r is 0 in /images/1)")) << explained;
+    EXPECT_TRUE(has(explained,
+                    "metallicRoughnessTexture.g is 0.502 to 1, at texels (0, 0) and (1, 0) of "
+                    "/images/0)"))
+        << explained;
+}
+
+TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "plain", "--cache", "cache"}).exit, 0);
+    EXPECT_FALSE(featuresOf("plain").contains("clearcoat"));
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "live", "--cache", "cache", "--fallback"}).exit, 0);
+    EXPECT_TRUE(featuresOf("live").contains("clearcoat"));
+    EXPECT_TRUE(featuresOf("live").contains("transmissionTexture"));
+    const Outcome both = run({"compile", "scene.gltf", "-o", "none", "--fallback", "--trust-textures", "on"});
+    EXPECT_EQ(both.exit, 2);
+    EXPECT_TRUE(has(both.err, "--fallback")) << both.err;
+}
+
+TEST_F(TrustTextures, DoesWithoutAnImageThatCantBeRead) {
+    writeText(path("uncoated.png"), "no image");
+    std::filesystem::remove(path("closed.png"));
+    const Outcome outcome = compile("package", "on");
+    EXPECT_EQ(outcome.exit, 0);
+    EXPECT_TRUE(has(outcome.err, "texture-unknown")) << outcome.err;
+    EXPECT_TRUE(featuresOf("package").contains("clearcoat"));
+    EXPECT_TRUE(featuresOf("package").contains("transmission"));
 }
 
 TEST_F(TrustTextures, FollowsTheImage) {

@@ -2,6 +2,8 @@
 // use.
 #pragma once
 
+#include "base/memo.h"
+
 #include <glint/result.h>
 
 #include <atomic>
@@ -25,15 +27,15 @@ struct StoreOptions {
 // Each entry is one file, which holds the whole key. An entry is valid only if its key has the same bytes and
 // its checksum is right. Files appear by a rename, so readers and writers of other processes need no lock;
 // files that vanish or are torn count as no entry. Thread-safe. No failure reaches the caller: see trouble().
-class CacheStore {
+class CacheStore final : public base::Memo {
 public:
     explicit CacheStore(StoreOptions options);
 
     // Returns the value of `key` among the entries of `kind`, which is part of the file's name, and marks it
     // as used.
-    std::optional<std::string> find(std::string_view kind, std::string_view key);
+    std::optional<std::string> find(std::string_view kind, std::string_view key) override;
     // Replaces an existing value. The value can be lost at any time.
-    void put(std::string_view kind, std::string_view key, std::string_view value);
+    void put(std::string_view kind, std::string_view key, std::string_view value) override;
     // If anything was put, removes the entries that were unused for longest until at most maxBytes are left.
     // It also removes what killed writers left behind.
     void trim();

@@ -51,7 +51,9 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(writable.error());
     }
     console.progress("reading " + arguments.render.scene);
-    const Result<gltf::ImportOptions> import = importOptions(arguments.render, ImageReading::Files);
+    CompileCache known(arguments.cache, "");
+    const Result<gltf::ImportOptions> import =
+        importOptions(arguments.render, ImageReading::Files, known.store());
     if (!import) {
         return fail(import.error());
     }

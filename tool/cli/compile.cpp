@@ -320,7 +320,8 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         console.report(diagnostics);
     };
     console.progress("reading " + base::join(arguments.scenes));
-    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, ImageReading::None);
+    const Result<gltf::ImportOptions> import =
+        importOptions(arguments.settings, ImageReading::None, cache.store());
     if (!import) {
         return fail(console, import.error());
     }

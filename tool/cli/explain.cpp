@@ -2,6 +2,7 @@
 #include "base/suggest.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/compile/cache.h"
 #include "cli/explain/motion_text.h"
 #include "cli/explain/plan_text.h"
 #include "cli/options/effect_options.h"
@@ -203,6 +204,30 @@ std::string variantsText(const gltf::Scene& scene) {
                          {"materials of", scene.variant.empty() ? "no variant (--variant)" : scene.variant}});
 }
 
+base::Json sameImagesToJson(const gltf::Scene& scene) {
+    base::Json list = base::Json::array();
+    for (const gltf::Image& image : scene.images) {
+        if (image.sameAs >= 0) {
+            const gltf::Image& other = scene.images[static_cast<std::size_t>(image.sameAs)];
+            list.push_back(base::Json{{"image", image.pointer}, {"as", other.pointer}});
+        }
+    }
+    return list;
+}
+
+// Returns an empty text if no image has the texels of another one.
+std::string sameImagesText(const gltf::Scene& scene) {
+    std::vector<std::vector<std::string>> rows;
+    for (const gltf::Image& image : scene.images) {
+        if (image.sameAs >= 0) {
+            rows.push_back(
+                {"same texels", fmt::format("{} as {}, which takes its place", image.pointer,
+                                            scene.images[static_cast<std::size_t>(image.sameAs)].pointer)});
+        }
+    }
+    return rows.empty() ? std::string() : formatFields(rows);
+}
+
 // Returns every material with that number, else those with that name; all if none is asked for.
 Result<std::vector<int>> chooseMaterials(const gltf::SceneList& scenes, const std::string& wanted) {
     const int count = static_cast<int>(scenes.materials().size());
@@ -241,7 +266,9 @@ Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const 
 }
 
 int explain(const Console& console, const ExplainArguments& arguments) {
-    const Result<gltf::ImportOptions> import = importOptions(arguments.settings, ImageReading::None);
+    CompileCache known(CacheArguments{}, "");
+    const Result<gltf::ImportOptions> import =
+        importOptions(arguments.settings, ImageReading::None, known.store());
     if (!import) {
         console.report(import.error());
         return kExitFailed;
@@ -307,6 +334,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         if (arguments.wholePlan) {
             result["plan"] = planToJson(whole);
         } else {
+            result["sameImages"] = sameImagesToJson(*scene);
             result["effects"] = effectsToJson(effects);
             result["strategies"] = strategyChoiceToJson(*advice);
             result["motion"] = motionToJson(*scene);
@@ -323,6 +351,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.print(effectsText(effects));
         console.print(strategiesText(*advice));
         console.print(motionText(*scene));
+        console.print(sameImagesText(*scene));
     }
     for (const int material : *materials) {
         console.print(toText(planned, material, detail));

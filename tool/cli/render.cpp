@@ -354,7 +354,8 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.progress("reading " + arguments.scene);
-    const Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files);
+    CompileCache known(CacheArguments{}, "");
+    const Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files, known.store());
     if (!import) {
         console.report(import.error());
         return kExitFailed;

@@ -1,4 +1,4 @@
-// What images hold: the least and greatest number of each channel.
+// What shading reads of the numbers that an image stores.
 #pragma once
 
 #include "gltf/scene.h"
@@ -8,14 +8,13 @@
 
 namespace glint::gltf {
 
-// Returns the interval of each channel over all texels of all levels, in [0, 1], as the image stores them.
-// Requires pixels. A filter's results, and those of levels that are made from these, are within it.
-std::array<materials::ValueInterval, 4> storedContent(const Image& image);
-
 // Returns what a shader reads of such an image. `isColor` says that red, green and blue are in sRGB. The
 // bounds are wider by what drivers round, but 0 and 1 stay exact: a channel that is 0 everywhere is read as
 // 0.
 std::array<materials::ValueInterval, 4> contentAsRead(const std::array<materials::ValueInterval, 4>& stored,
                                                       bool isColor);
+
+// Returns the number that a code stands for, where it is colour in sRGB or not.
+double numberAsRead(double stored, bool isColor);
 
 }  // namespace glint::gltf

@@ -1,5 +1,6 @@
 #include "gltf/import.h"
 
+#include "gltf/derived_tangents.h"
 #include "gltf/document/document.h"
 #include "gltf/expected_hits.h"
 #include "gltf/materials.h"
@@ -9,6 +10,8 @@
 #include "gltf/motion/morphs.h"
 #include "gltf/motion/nodes.h"
 #include "gltf/motion/skinning.h"
+#include "gltf/texture_content.h"
+#include "gltf/trusted_textures.h"
 #include "gltf/variants.h"
 
 #include <algorithm>
@@ -63,8 +66,20 @@ Status fillScene(Document& document, Scene& scene) {
         scene.defaultMaterial = static_cast<int>(scene.materials.size());
         scene.materials.emplace_back(*document.options().materialModel).name = "default";
     }
+    if (document.options().trustTextures) {
+        if (Status status = readTextureContent(document.options(), scene); !status) {
+            return status;
+        }
+        mergeSameTextures(scene);
+        for (Mesh& mesh : scene.meshes) {
+            for (Primitive& primitive : mesh.primitives) {
+                primitive.derivesTangents = derivesTangents(primitive);
+            }
+        }
+        foldConstantTextures(scene);
+    }
     scene.files = document.files();
-    scene.warnings = std::move(document.warnings());
+    scene.warnings.insert(scene.warnings.begin(), document.warnings().begin(), document.warnings().end());
     return okStatus();
 }
 
@@ -127,6 +142,8 @@ std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene) {
             input.hasTexCoords1 = !primitive.texCoords1.empty();
             input.colors = primitive.colorContent;
             input.attributes = attributesOf(scene, primitive);
+            input.seen = primitive.seen;
+            input.derivesTangents = primitive.derivesTangents;
             inputs.push_back(input);
         }
     }

@@ -1,6 +1,7 @@
 // Imports glTF 2.0 files as a Scene.
 #pragma once
 
+#include "base/memo.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>
@@ -18,9 +19,15 @@ struct ImportOptions {
     // Whether to keep the files of images (Image::file). scene_view::loadTextures() then reads them in the
     // formats of a device, on all cores.
     bool keepImageFiles = false;
-    // Whether to look at every texel, so that planning knows what textures hold (Image::content). Textures
+    // Whether to look at every texel, so that planning knows what textures hold (TextureInfo::content,
+    // Primitive::seen), and to change the scene by it: a texture that is constant wherever its material is
+    // used is multiplied into the parameters that it scales, and textures with equal texels are one. Textures
     // must then not be replaced at run time by others that hold more.
     bool trustTextures = false;
+    // Keeps what was found in textures; null: they are read each time. `memoScope` is part of the keys: it
+    // must differ between programs that may find other things.
+    base::Memo* memo = nullptr;
+    std::string memoScope{};
     // These limits keep hostile files from using up the machine's memory.
     std::uint64_t maxVertices = 1ULL << 28;  // over all accessors
     std::uint64_t maxFileBytes = 1ULL << 32;

@@ -2,7 +2,6 @@
 
 #include "gltf/document/extensions.h"
 #include "gltf/document/object_reader.h"
-#include "gltf/image_content.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>
@@ -65,18 +64,6 @@ void checkTransfer(Document& document, const Scene& scene, const materials::Mate
                                       image.pointer, color ? "linear data" : "colour in sRGB",
                                       color ? "colour in sRGB" : "linear data"),
                           "make the KTX2 file with the transfer function of its use");
-        }
-    }
-}
-
-// Tells the material what its textures hold.
-void readContent(const Scene& scene, materials::Material& material) {
-    for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
-        materials::TextureInfo& info = material.textures[slot];
-        if (info.texture >= 0) {
-            const Texture& texture = scene.textures[static_cast<std::size_t>(info.texture)];
-            info.content = contentAsRead(scene.images[static_cast<std::size_t>(texture.image)].content,
-                                         material.isColor(static_cast<int>(slot)));
         }
     }
 }
@@ -186,7 +173,6 @@ Status importMaterials(Document& document, Scene& scene) {
             return status;
         }
         checkTransfer(document, scene, material, pointer);
-        readContent(scene, material);
         scene.materials.push_back(std::move(material));
     }
     return okStatus();

@@ -44,7 +44,10 @@ struct Primitive {
     std::vector<VertexValues>
         attributes;  // those of MaterialModel::attributes that the file gives, each name once
     std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
-    std::vector<MorphTarget> targets;    // normals and tangents only if the primitive has them
+    // What the triangles can see of the material's textures, with ImportOptions::trustTextures.
+    std::vector<materials::SeenTexture> seen;
+    bool derivesTangents = false;      // derivesTangents(), with ImportOptions::trustTextures
+    std::vector<MorphTarget> targets;  // normals and tangents only if the primitive has them
     SkinInfluences influences;
 };
 
@@ -152,6 +155,13 @@ constexpr std::size_t bytesPerPixel(PixelFormat format) {
 // How an image file declares its colours to be stored.
 enum class Transfer : std::uint8_t { Unknown, Linear, Srgb };
 
+// What an image file holds.
+enum class Storage : std::uint8_t {
+    Texels,
+    Blocks,      // in a block format, which devices that have it read as it is
+    Transcoded,  // data of Basis Universal, of which each device gets blocks of its own format
+};
+
 // The pixels are empty unless ImportOptions::decodeImages is set.
 struct Image {
     std::string name;     // glTF name, else the file's name, else "image N"
@@ -162,15 +172,14 @@ struct Image {
     // This is above 1 if the file has mips. Each level has half the size of the one before, rounded down.
     int levels = 1;
     Transfer transfer = Transfer::Unknown;  // only KTX2 files give it; the texture's use decides
+    Storage storage = Storage::Texels;
     // There are byteCount() bytes. Levels start with the largest, and rows with the top one. Values stay as
     // they are stored and are not linearised.
     std::vector<std::uint8_t> pixels;
     // The bytes of the image's file, with ImportOptions::keepImageFiles. Its header was checked.
     std::vector<std::uint8_t> file;
-    // What the texels hold, by channel, as they are stored: all of [0, 1] without
-    // ImportOptions::trustTextures.
-    std::array<materials::ValueInterval, 4> content{materials::kUnitInterval, materials::kUnitInterval,
-                                                    materials::kUnitInterval, materials::kUnitInterval};
+    // The image that stands for all with the same texels, or -1 if this one does. Textures show that one.
+    int sameAs = -1;
 };
 
 constexpr std::uint64_t pixelCount(const Image& image, int level) {

@@ -426,6 +426,29 @@ int Expression::channels() const {
     return nodes_.back().channels;
 }
 
+std::uint32_t Expression::channelsOf(int symbol) const {
+    std::uint32_t channels = 0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        if (nodes_[i].operation != Operation::Name || nodes_[i].symbol != symbol) {
+            continue;
+        }
+        bool isOperand = false;
+        for (const Node& node : nodes_) {
+            if (std::ranges::find(node.operands, static_cast<int>(i)) == std::end(node.operands)) {
+                continue;
+            }
+            isOperand = true;
+            for (int channel = 0; channel < node.channels && node.operation == Operation::Swizzle;
+                 ++channel) {
+                channels |= 1U << static_cast<unsigned>(node.swizzle[channel]);
+            }
+            channels |= node.operation == Operation::Swizzle ? 0U : 15U;
+        }
+        channels |= isOperand ? 0U : 15U;
+    }
+    return channels;
+}
+
 Certainty Expression::holds(const Facts& facts) const {
     assert(isCondition());
     return truthOf(static_cast<int>(nodes_.size()) - 1, facts);

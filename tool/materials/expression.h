@@ -13,6 +13,7 @@
 #include "materials/interval.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -62,6 +63,8 @@ public:
     Channels number(const Facts& facts) const;
     // The number of channels that number() returns.
     int channels() const;
+    // Returns the channels of the symbol that the expression reads: bit 0 for red, to bit 3 for alpha.
+    std::uint32_t channelsOf(int symbol) const;
     // The symbols that occur, in the order of the text.
     const std::vector<int>& symbols() const {
         return symbols_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <limits>
 
@@ -18,7 +19,7 @@ struct ValueInterval {
     bool isExact() const {
         return low == high;
     }
-    bool operator==(const ValueInterval&) const = default;
+    auto operator<=>(const ValueInterval&) const = default;
 };
 
 inline constexpr ValueInterval kAnything{-kUnlimited, kUnlimited};

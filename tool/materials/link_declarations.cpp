@@ -41,6 +41,7 @@ constexpr struct {
     {"", "movesTextures", Fact::MovesTextures, false},
     {"", "givesTransforms", Fact::GivesTransforms, false},
     {"needed", "tangents", Fact::NeedsTangents, false},
+    {"derived", "tangents", Fact::DerivesTangents, false},
     {"", "changesOpacity", Fact::ChangesOpacity, false},
 };
 

@@ -119,6 +119,12 @@ bool isReadable(const Material& material, const PrimitiveInputs& primitive, int 
                                  primitive.hasTexCoords(info.texCoord));
 }
 
+const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture) {
+    const auto seen = std::ranges::find(primitive.seen, texture, &SeenTexture::slot);
+    return seen != primitive.seen.end() ? seen->content
+                                        : material.textures[static_cast<std::size_t>(texture)].content;
+}
+
 MaterialFacts::MaterialFacts(const Material& material, const PrimitiveInputs& primitive,
                              const KeyOptions& options, const FeatureMask& key, Textures textures)
     : material_(material), primitive_(primitive), options_(options), key_(key), textures_(textures) {}
@@ -135,7 +141,8 @@ Channels MaterialFacts::number(int symbol) const {
         number.count = 4;
         number.of.fill({1.0, 1.0});
         if (isReadable(material_, primitive_, texture)) {
-            number.of = material_.textures[static_cast<std::size_t>(texture)].content;
+            number.of = textures_ == Textures::Unknown ? TextureContent{}.of
+                                                       : contentOf(material_, primitive_, texture).of;
         }
         return number;
     }
@@ -150,8 +157,8 @@ Channels MaterialFacts::number(int symbol) const {
                                           : material_.ranges[place];
         const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
         if (scaled && textures_ == Textures::Scale && channel >= 0) {
-            const TextureInfo& info = material_.textures[static_cast<std::size_t>(parameter.scaledBy)];
-            target = multiply(target, info.content[static_cast<std::size_t>(channel)]);
+            const TextureContent& content = contentOf(material_, primitive_, parameter.scaledBy);
+            target = multiply(target, content.of[static_cast<std::size_t>(channel)]);
         } else if (scaled) {
             target = multiply(target, kUnitInterval);
         }
@@ -181,7 +188,7 @@ Certainty MaterialFacts::condition(int symbol) const {
 }
 
 bool MaterialFacts::hasTangents() const {
-    return primitive_.hasTangents && primitive_.hasNormals;
+    return primitive_.hasTangents && primitive_.hasNormals && !primitive_.derivesTangents;
 }
 
 bool MaterialFacts::readsTexCoord(int set) const {
@@ -256,6 +263,8 @@ Certainty MaterialFacts::fact(Fact fact) const {
             return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
                 return feature.needsTangents && (key_ & feature.mask()) != 0;
             }));
+        case Fact::DerivesTangents:
+            return certain(primitive_.derivesTangents);
         case Fact::ChangesOpacity:
             return certain((key_ & model.opacityFeatures()) != 0);
         case Fact::Color:

@@ -12,6 +12,7 @@
 #include <cassert>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,14 +29,38 @@ struct TextureTransform {
     bool operator==(const TextureTransform&) const = default;
 };
 
+inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+// Where a number was found in an image. Level -1: nowhere.
+struct TexelPlace {
+    int level = -1;
+    int x = 0;
+    int y = 0;
+};
+
+// What lookups of a texture can give, by channel, as shading reads them.
+struct TextureContent {
+    // All numbers in [0, 1] where nobody has looked.
+    std::array<ValueInterval, 4> of{kUnitInterval, kUnitInterval, kUnitInterval, kUnitInterval};
+    // The one number that all lookups give, where the texels are all the same; NaN where they are not. `of`
+    // has it, and is wider by what drivers round.
+    std::array<double, 4> constant{kNoNumber, kNoNumber, kNoNumber, kNoNumber};
+    // Texels that have the least and the greatest number.
+    std::array<TexelPlace, 4> leastAt{};
+    std::array<TexelPlace, 4> greatestAt{};
+    std::string image{};  // JSON pointer
+};
+
 struct TextureInfo {
     int texture = -1;  // index into Scene::textures; -1 where the slot is empty
     int texCoord = 0;  // the UV set; the extension's override is already applied
     TextureTransform transform;
     bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
     bool moves = false;         // An animation changes the transform.
-    // What its texels hold, by channel, as shading reads them: all numbers in [0, 1] where nobody has looked.
-    std::array<ValueInterval, 4> content{kUnitInterval, kUnitInterval, kUnitInterval, kUnitInterval};
+    TextureContent content{};   // of all texels
+    // The texture was constant where the material shows it, and its product is in the parameters that it
+    // scales. So the slot is empty.
+    bool isFolded = false;
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -138,6 +163,12 @@ enum class ColorContent : std::uint8_t {
     Varying
 };
 
+// What a primitive can see of one of its material's textures.
+struct SeenTexture {
+    int slot = 0;  // index into MaterialModel::textures
+    TextureContent content;
+};
+
 // The facts about a primitive that planning needs: its material and which attributes it has.
 struct PrimitiveInputs {
     int mesh = 0;       // index into Scene::meshes
@@ -150,6 +181,10 @@ struct PrimitiveInputs {
     ColorContent colors = ColorContent::None;
     std::uint64_t attributes = 0;  // one bit for each of MaterialModel::attributes that it has
     double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
+    // The file gives tangents, and they are those that shading would derive.
+    bool derivesTangents = false;
+    // By ascending slot. What is not listed is known of the whole texture only (TextureInfo::content).
+    std::vector<SeenTexture> seen{};
 
     bool hasTexCoords(int set) const {
         return set == 0 ? hasTexCoords0 : set == 1 && hasTexCoords1;
@@ -166,12 +201,16 @@ struct KeyOptions {
 // Returns whether the slot has a texture whose UV set the primitive has and Glint reads.
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture);
 
+// Returns what the primitive can see of the texture, whether or not it is readable.
+const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture);
+
 // What is known of a material on a primitive. A parameter that a readable texture scales has the interval of
 // all products with numbers that the texture may hold. The objects that it refers to must outlive it.
 class MaterialFacts final : public Facts {
 public:
-    // Scale: by what the texture holds. Unknown: by any number in [0, 1]. Ignored: not at all.
-    enum class Textures : std::uint8_t { Scale, Unknown, Ignored };
+    // Scale: by what the texture holds. Unknown: by any number in [0, 1], and texel() is any such number.
+    // Texels: the same, but texel() is known. Ignored: not at all.
+    enum class Textures : std::uint8_t { Scale, Unknown, Texels, Ignored };
 
     // `key` holds the features that are known to be in the key.
     MaterialFacts(const Material& material, const PrimitiveInputs& primitive, const KeyOptions& options,

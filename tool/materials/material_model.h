@@ -237,6 +237,7 @@ enum class Fact : std::uint8_t {
     MovesTextures,    // a texture that the key reads has a transform
     GivesTransforms,  // some texture has one
     NeedsTangents,    // a feature of the key reads tangents
+    DerivesTangents,  // the primitive's tangents are those that shading derives
     ChangesOpacity,   // a feature of the key has GLSL at the stage opacity
     Count
 };

@@ -1,12 +1,16 @@
 #include "plan/effects.h"
 
+#include "plan/held_text.h"
 #include "plan/plan.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace glint::compiler {
 
@@ -23,13 +27,20 @@ struct Surface {
     const materials::PrimitiveInputs* primitive = nullptr;
 };
 
-// Returns each material of the primitives once for each set of UV sets that it is used with, in the order of
-// materials.
+// Returns each material of the primitives once for each set of UV sets, and what its textures hold there,
+// that it is used with, in the order of materials.
 std::vector<Surface> surfacesOf(std::span<const materials::Material> materials,
                                 std::span<const materials::PrimitiveInputs> primitives) {
-    std::map<std::tuple<int, bool, bool>, const materials::PrimitiveInputs*> found;
+    using Seen = std::vector<std::pair<int, std::array<materials::ValueInterval, 4>>>;
+    std::map<std::tuple<int, bool, bool, Seen>, const materials::PrimitiveInputs*> found;
     for (const materials::PrimitiveInputs& primitive : primitives) {
-        found.try_emplace({primitive.material, primitive.hasTexCoords0, primitive.hasTexCoords1}, &primitive);
+        Seen seen;
+        for (const materials::SeenTexture& texture : primitive.seen) {
+            seen.emplace_back(texture.slot, texture.content.of);
+        }
+        found.try_emplace(
+            {primitive.material, primitive.hasTexCoords0, primitive.hasTexCoords1, std::move(seen)},
+            &primitive);
     }
     std::vector<Surface> surfaces;
     for (const auto& [key, primitive] : found) {
@@ -55,8 +66,10 @@ class SurfaceBehaviour {
 public:
     explicit SurfaceBehaviour(const Surface& surface)
         : material_(*surface.material),
+          primitive_(*surface.primitive),
           key_(makeKey(material_, *surface.primitive, {.alpha = package::AlphaPolicy::Tested})),
           facts_(material_, *surface.primitive, options_, key_),
+          blind_(material_, *surface.primitive, options_, key_, materials::MaterialFacts::Textures::Unknown),
           factors_(material_, *surface.primitive, options_, key_,
                    materials::MaterialFacts::Textures::Ignored) {}
 
@@ -76,6 +89,18 @@ public:
                 const bool byTexture = factor > limit && !rule.textureText.empty();
                 return filledIn(filledIn(byTexture ? rule.textureText : rule.text, "{}", factor), "{limit}",
                                 limit);
+            }
+        }
+        return {};
+    }
+
+    // Returns which textures keep the reflection rougher than `limit`, in words, or an empty text if it is
+    // rougher whatever they hold.
+    std::string roughenedBy(double limit) const {
+        for (const materials::BehaviourRule& rule : material_.model().behaviours) {
+            if (rule.roughness && holds(rule) && rule.roughness->number(blind_).of[0].low <= limit &&
+                rule.roughness->number(facts_).of[0].low > limit) {
+                return whatTexturesHold(material_, primitive_, *rule.roughness, HeldBy::All);
             }
         }
         return {};
@@ -104,9 +129,11 @@ private:
     }
 
     const materials::Material& material_;
+    const materials::PrimitiveInputs& primitive_;
     materials::KeyOptions options_{};
     materials::FeatureMask key_;
     materials::MaterialFacts facts_;
+    materials::MaterialFacts blind_;  // to what textures hold
     materials::MaterialFacts factors_;
 };
 
@@ -126,6 +153,19 @@ Finding findSurface(std::span<const Surface> surfaces, const std::string& none, 
     return {false, surfaces.empty() ? "nothing has a surface" : anyLit ? none : "every material is unlit"};
 }
 
+// Returns the first surface that is rough by its textures alone, as an addition to a reason.
+std::string roughTextures(std::span<const Surface> surfaces, double limit) {
+    for (const Surface& surface : surfaces) {
+        if (surface.material->isUnlit()) {
+            continue;
+        }
+        if (const std::string held = SurfaceBehaviour(surface).roughenedBy(limit); !held.empty()) {
+            return fmt::format(" (by what textures hold: {}: {})", nameOf(*surface.material), held);
+        }
+    }
+    return {};
+}
+
 Finding find(const materials::EffectDeclaration& effect, std::span<const Surface> surfaces,
              const SceneLights& lights, const EffectRequest& request) {
     const double limit = request.maxReflectionRoughness;
@@ -133,9 +173,14 @@ Finding find(const materials::EffectDeclaration& effect, std::span<const Surface
     if (call.lights && !lights.lit) {
         return {false, "no light shines"};
     }
-    return findSurface(surfaces, filledIn(call.otherwise, "{limit}", limit), [&](const Surface& surface) {
-        return call.byAll ? call.because : SurfaceBehaviour(surface).why(call.behaviour, limit);
-    });
+    Finding finding =
+        findSurface(surfaces, filledIn(call.otherwise, "{limit}", limit), [&](const Surface& surface) {
+            return call.byAll ? call.because : SurfaceBehaviour(surface).why(call.behaviour, limit);
+        });
+    if (!finding.usable && !call.byAll && call.behaviour == materials::Behaviour::Reflects) {
+        finding.reason += roughTextures(surfaces, limit);
+    }
+    return finding;
 }
 
 const materials::MaterialModel& modelOf(std::span<const materials::Material> materials) {

@@ -1,3 +1,4 @@
+#include "plan/held_text.h"
 #include "plan/plan.h"
 
 #include <fmt/format.h>
@@ -31,6 +32,7 @@ public:
           primitive_(primitive),
           kept_(~model_.lobes | options.keptLobes | model_.baseModels()),
           facts_(material, primitive, options, key_),
+          texels_(material, primitive, options, key_, materials::MaterialFacts::Textures::Texels),
           blind_(material, primitive, options, key_, materials::MaterialFacts::Textures::Unknown) {}
 
     materials::FeatureMask make(Drops* dropped) {
@@ -57,7 +59,7 @@ private:
         const materials::TextureInfo* const info =
             feature.texture < 0 ? nullptr : &material_.textures[static_cast<std::size_t>(feature.texture)];
         if (info != nullptr && info->texture < 0) {
-            return {};
+            return {false, info->isFolded ? foldedReason(feature.texture) : ""};
         }
         const std::optional<std::string> neutral = findNeutral(feature, info);
         const std::optional<std::string> excluded = findExclusion(feature);
@@ -103,11 +105,12 @@ private:
                 continue;
             }
             if (reason.when.holds(blind_) == materials::Certainty::True) {
-                return reason.because;
+                return because(reason, HeldBy::Folded);
             }
             // A texture whose product is known has to be read all the same: it makes the product.
-            if (feature.texture < 0 && reason.when.holds(facts_) == materials::Certainty::True) {
-                return fmt::format("{} {}", reason.because, whatTexturesHold(reason.when));
+            const materials::MaterialFacts& seen = feature.texture < 0 ? facts_ : texels_;
+            if (reason.when.holds(seen) == materials::Certainty::True) {
+                return because(reason, HeldBy::All);
             }
         }
         const auto index = static_cast<int>(&feature - model_.features.data());
@@ -132,33 +135,16 @@ private:
         return std::nullopt;
     }
 
-    // Returns what the textures hold that scale the parameters of a condition: "(by clearcoatTexture, whose r
-    // is 0)".
-    std::string whatTexturesHold(const materials::Expression& when) const {
-        std::string text;
-        for (const int symbol : when.symbols()) {
-            if (symbol < 0 || symbol >= static_cast<int>(model_.parameters.size())) {
-                continue;
-            }
-            const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(symbol)];
-            if (parameter.scaledBy < 0 || !isReadable(material_, primitive_, parameter.scaledBy)) {
-                continue;
-            }
-            const auto texture = static_cast<std::size_t>(parameter.scaledBy);
-            for (int i = 0; i < parameter.channels; ++i) {
-                const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
-                if (channel >= 0) {
-                    const materials::ValueInterval held =
-                        material_.textures[texture].content[static_cast<std::size_t>(channel)];
-                    text +=
-                        fmt::format("{}{}.{} is {}", text.empty() ? "" : ", ", model_.textures[texture].name,
-                                    "rgba"[channel],
-                                    held.isExact() ? fmt::format("{:.3g}", held.low)
-                                                   : fmt::format("{:.3g} to {:.3g}", held.low, held.high));
-                }
-            }
-        }
-        return fmt::format("(by what textures hold: {})", text);
+    std::string because(const materials::NeutralReason& reason, HeldBy which) const {
+        const std::string held = whatTexturesHold(material_, primitive_, reason.when, which);
+        return held.empty() ? reason.because
+                            : fmt::format("{} (by what textures hold: {})", reason.because, held);
+    }
+
+    std::string foldedReason(int texture) const {
+        const auto channels = material_.readsOf(texture).channels;
+        return fmt::format("it is constant, so the parameters that it scales hold the product ({})",
+                           heldText(material_, primitive_, texture, channels));
     }
 
     const materials::MaterialModel& model_;
@@ -167,7 +153,8 @@ private:
     materials::FeatureMask kept_;
     materials::FeatureMask key_ = 0;
     materials::MaterialFacts facts_;
-    materials::MaterialFacts blind_;  // to what textures hold
+    materials::MaterialFacts texels_;  // knows them, but not their products with parameters
+    materials::MaterialFacts blind_;   // to what textures hold
 };
 
 }  // namespace

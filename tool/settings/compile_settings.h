@@ -64,8 +64,9 @@ struct CompileSettings {
     EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
-    // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures).
-    bool trustTextures = false;
+    // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures). Packages with a
+    // fallback or a host do not, because their textures may change at run time.
+    bool trustTextures = true;
     bool textureLevels = false;  // shaders note the finest level that they read of each texture
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
     int jobs = 0;               // threads; 0 means one for each core

@@ -488,8 +488,8 @@ inline constexpr SettingValues kBounces{
 
 inline constexpr Named<bool> kEnergyNames[] = {{true, "on"}, {false, "off"}};
 inline constexpr Named<bool> kTrustNames[] = {
-    {false, "off", "textures may have any values"},
     {true, "on", "textures have the values of their images"},
+    {false, "off", "textures may have any values; so with --fallback and --host"},
 };
 inline constexpr Named<bool> kFalloffNames[] = {
     {false, "none", "all count alike"},

@@ -1,12 +1,14 @@
 // Tests image formats: PNG of every kind, WebP, and which source of a texture is used. ktx2_test.cpp tests
 // KTX2.
 #include "gltf/image_content.h"
+#include "gltf/texels/texel_bounds.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -140,34 +142,44 @@ TEST(GltfImages, NamesForeignFormats) {
 
 const gltf::ImportOptions kTrust{.trustTextures = true};
 
-// Returns what the only image of a scene holds.
-std::array<materials::ValueInterval, 4> contentOf(const PngSpec& spec) {
+// Returns what the only texture of a scene holds, which is one of colours.
+materials::TextureContent contentOf(const PngSpec& spec) {
     const Result<gltf::Scene> scene = import(sceneWithImage(makePng(spec)), kTrust);
     if (!scene || scene->images.empty()) {
         ADD_FAILURE() << (scene ? "no image" : toString(scene.error()));
         return {};
     }
     EXPECT_TRUE(scene->images[0].pixels.empty());
-    return scene->images[0].content;
+    EXPECT_TRUE(scene->images[0].file.empty());
+    return scene->materials[0].texture("baseColorTexture").content;
 }
 
 TEST(ImageContent, IsTheLeastAndGreatestOfEachChannel) {
-    const auto content =
+    const materials::TextureContent content =
         contentOf({3, 1, 8, PngColor::Rgba, {}, {0, 51, 255, 102, 255, 51, 255, 204, 51, 51, 255, 153}});
-    EXPECT_EQ(content[0], (materials::ValueInterval{0.0, 1.0}));
-    EXPECT_EQ(content[1], (materials::ValueInterval{0.2, 0.2}));
-    EXPECT_EQ(content[2], (materials::ValueInterval{1.0, 1.0}));
-    EXPECT_EQ(content[3], (materials::ValueInterval{0.4, 0.8}));
+    EXPECT_EQ(content.of[0], (materials::ValueInterval{0.0, 1.0}));
+    EXPECT_EQ(content.of[2], (materials::ValueInterval{1.0, 1.0}));
+    EXPECT_NEAR(content.of[3].low, 0.4, 1e-4);
+    EXPECT_NEAR(content.of[3].high, 0.8, 1e-4);
+    EXPECT_TRUE(std::isnan(content.constant[0]));
+    EXPECT_NEAR(content.constant[1], 0.0331, 1e-4);  // 0.2 in sRGB
+    EXPECT_EQ(content.constant[2], 1.0);
+    EXPECT_EQ(content.image, "/images/0");
+    EXPECT_EQ(content.leastAt[3].x, 0);
+    EXPECT_EQ(content.greatestAt[3].x, 1);
     // Nobody has looked.
     const Result<gltf::Scene> unread = import(sceneWithImage(makePng({})));
     ASSERT_TRUE(unread.ok());
-    EXPECT_EQ(unread->images[0].content[0], materials::kUnitInterval);
+    EXPECT_EQ(unread->materials[0].texture("baseColorTexture").content.of[0], materials::kUnitInterval);
 }
 
 // Devices that cannot filter 16 bits keep 8, which may round to either side.
 TEST(ImageContent, OfSixteenBitsHoldsThatOfEight) {
-    const auto content = contentOf({1, 1, 16, PngColor::Gray, {}, {0x4D, 0x00}});
-    EXPECT_EQ(content[0], (materials::ValueInterval{77.0 * 256.0 / 65535.0, 77.0 / 255.0}));
+    gltf::TexelRange range;
+    range.least.fill(0x4D00);
+    range.greatest.fill(0x4D00);
+    EXPECT_EQ(valuesOf(range, gltf::PixelFormat::Rgba16, 0)[0],
+              (materials::ValueInterval{77.0 * 256.0 / 65535.0, 77.0 / 255.0}));
 }
 
 TEST(ImageContent, IsReadAsColourWhereItIsOne) {

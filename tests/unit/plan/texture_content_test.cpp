@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,7 @@ constexpr Content kZeros{};
 
 materials::Material fullOf(const char* texture, const Content& content) {
     materials::Material material = fullMaterial();
-    material.texture(texture).content = content;
+    material.texture(texture).content.of = content;
     return material;
 }
 
@@ -107,14 +108,57 @@ TEST(TextureContent, OfRoughnessDecidesAboutReflections) {
     const materials::EffectDeclaration& reflection = materials::builtinMaterialModel().effects[2];
     ASSERT_EQ(reflection.name, "reflection");
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
-    material.texture("metallicRoughnessTexture").content[1] = {0.31, 1.0};
+    material.texture("metallicRoughnessTexture").content.of[1] = {0.31, 1.0};
     EXPECT_FALSE(compiler::sendsRays(reflection, material, primitive, 0.3F));
-    material.texture("metallicRoughnessTexture").content[1] = {0.29, 1.0};
+    material.texture("metallicRoughnessTexture").content.of[1] = {0.29, 1.0};
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
     // Another channel says nothing about roughness.
-    material.texture("metallicRoughnessTexture").content = {};
-    material.texture("metallicRoughnessTexture").content[1] = materials::kUnitInterval;
+    material.texture("metallicRoughnessTexture").content.of = {};
+    material.texture("metallicRoughnessTexture").content.of[1] = materials::kUnitInterval;
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
+}
+
+// Half of a code is as near to no tilt as 8 bits come.
+TEST(TextureContent, OfFlatNormalsIsNotRead) {
+    Content flat{{{127.0 / 255.0, 128.0 / 255.0}, {128.0 / 255.0, 128.0 / 255.0}, {1.0, 1.0}, {1.0, 1.0}}};
+    for (const char* const texture : {"normalTexture", "clearcoatNormalTexture"}) {
+        const std::vector<std::string_view> lost = lostBy(texture, flat);
+        EXPECT_NE(std::ranges::find(lost, texture), lost.end()) << texture;
+    }
+    flat[1].high = 129.0 / 255.0;
+    EXPECT_TRUE(lostBy("normalTexture", flat).empty());
+    flat[1].high = 128.0 / 255.0;
+    flat[2].low = 0.5;
+    EXPECT_TRUE(lostBy("normalTexture", flat).empty());
+}
+
+// A primitive that sees a part of a texture decides by that part.
+TEST(TextureContent, IsWhatThePrimitiveSees) {
+    materials::Material material;
+    material.texture("metallicRoughnessTexture").texture = 0;
+    materials::PrimitiveInputs whole;
+    whole.hasTexCoords0 = true;
+    materials::PrimitiveInputs part = whole;
+    materials::TextureContent content;
+    content.of[1] = {0.4, 0.6};
+    content.image = "/images/3";
+    content.leastAt[1] = {0, 7, 9};
+    content.greatestAt[1] = {2, 1, 0};
+    part.seen = {{materials::builtinMaterialModel().findTexture("metallicRoughnessTexture"), content}};
+    const compiler::EffectRequest request{.automatic = true};
+    const auto reflection = [&](std::initializer_list<materials::PrimitiveInputs> primitives) {
+        return compiler::decideEffects({&material, 1}, {primitives.begin(), primitives.size()}, {}, request)
+            .decisions[2];
+    };
+    EXPECT_TRUE(reflection({whole}).usable);
+    EXPECT_TRUE(reflection({part, whole}).usable);
+    const compiler::EffectDecision rough = reflection({part});
+    EXPECT_FALSE(rough.usable);
+    EXPECT_NE(rough.reason.find(
+                  "metallicRoughnessTexture.g is 0.4 to 0.6, at texels (7, 9) and (1, 0) of level 2 of "
+                  "/images/3"),
+              std::string::npos)
+        << rough.reason;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "cli/options/setting_options.h"
 
 #include "base/suggest.h"
+#include "cache/program.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
 #include "materials/packs.h"
@@ -112,7 +113,30 @@ void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Se
     }
 }
 
-void settleSettings(const CLI::App& command, const compiler::Settings& settings) {
+namespace {
+
+// Packages for scenes that are edited, and for hosts that bring textures of their own, trust no textures.
+void settleTrust(const CLI::App& command, compiler::Settings& settings) {
+    const char* const changes = settings.compile.plan.fallback   ? "--fallback"
+                                : !settings.compile.host.empty() ? "--host"
+                                                                 : nullptr;
+    if (changes == nullptr || !settings.compile.trustTextures) {
+        return;
+    }
+    if (givenOption(command, "--trust-textures") != nullptr) {
+        throw CLI::ValidationError(
+            "--trust-textures",
+            fmt::format("on can't be combined with {}, with which textures may hold anything at run time: "
+                        "leave out one of them",
+                        changes));
+    }
+    settings.compile.trustTextures = false;
+}
+
+}  // namespace
+
+void settleSettings(const CLI::App& command, compiler::Settings& settings) {
+    settleTrust(command, settings);
     if (const CLI::Option* const effects = givenOption(command, "--effects")) {
         for (const std::string alone : {"none", "all"}) {
             const bool named = std::ranges::find(effects->results(), alone) != effects->results().end();
@@ -191,7 +215,8 @@ void addHostOption(CLI::App& command, compiler::Settings& settings) {
         .group("Shaders");
 }
 
-Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images) {
+Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
+                                          base::Memo* texels) {
     const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(settings.materials);
     if (!model) {
         return model.error();
@@ -211,6 +236,8 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, Im
     gltf::ImportOptions options;
     options.keepImageFiles = images == ImageReading::Files;
     options.trustTextures = settings.compile.trustTextures;
+    options.memo = texels;
+    options.memoScope = texels != nullptr ? compiler::programIdentity() : "";
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;
     options.materialModel = *model;

@@ -1,6 +1,7 @@
 // Options that the table of settings declares (settings/table.h), and options that belong to them.
 #pragma once
 
+#include "base/memo.h"
 #include "gltf/import.h"
 #include "settings/table.h"
 
@@ -15,7 +16,7 @@ namespace glint::cli {
 void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Settings& settings);
 
 // Takes what the options of settings mean together. Throws a CLI::ParseError if some contradict each other.
-void settleSettings(const CLI::App& command, const compiler::Settings& settings);
+void settleSettings(const CLI::App& command, compiler::Settings& settings);
 // Throws a CLI::ParseError if the merge policy and the profile contradict each other.
 void checkProfile(const CLI::App& command, const compiler::Settings& settings);
 
@@ -34,7 +35,9 @@ enum class ImageReading : std::uint8_t {
 
 // For commands that compile shaders.
 void addHostOption(CLI::App& command, compiler::Settings& settings);
-// Returns how a scene is read. Has the errors of loadMaterialModel().
-Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images);
+// Returns how a scene is read. `texels` keeps what was found in images; null: nothing is kept. Has the errors
+// of loadMaterialModel().
+Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
+                                          base::Memo* texels);
 
 }  // namespace glint::cli

@@ -153,7 +153,7 @@ void addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addDeviceOptions(command, arguments);
 }
 
-void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments) {
+void checkSceneOptions(const CLI::App& command, RenderArguments& arguments) {
     checkEnvironmentOptions(command);
     if (command.count("--sky") > 0 && !arguments.environment.empty()) {
         throw CLI::ValidationError("--sky",

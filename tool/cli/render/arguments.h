@@ -32,7 +32,7 @@ struct RenderArguments : compiler::Settings {
 // Declares the options that make a picture, whatever its use: the scene, size, effects, shaders, the device.
 void addSceneOptions(CLI::App& command, RenderArguments& arguments);
 // Throws a CLI::ParseError if some of them contradict each other.
-void checkSceneOptions(const CLI::App& command, const RenderArguments& arguments);
+void checkSceneOptions(const CLI::App& command, RenderArguments& arguments);
 
 // Declares every option of glint render. Calls `then` once the line is parsed and found valid.
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,

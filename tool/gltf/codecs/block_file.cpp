@@ -64,6 +64,7 @@ bool readBlockHeader(ByteView bytes, Image& image, std::string& problem) {
     image.height = file->height;
     image.levels = file->levels;
     image.transfer = file->transfer;
+    image.storage = file->format ? Storage::Blocks : Storage::Transcoded;
     image.format = PixelFormat::Rgba8;
     return true;
 }

@@ -4,7 +4,6 @@
 #include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
 #include "gltf/document/uri.h"
-#include "gltf/image_content.h"
 
 #include <fmt/format.h>
 
@@ -142,7 +141,7 @@ Status read(Document& document, ByteView bytes, Image& image) {
     }
     const ImportOptions& options = document.options();
     std::string problem;
-    if ((options.decodeImages || options.trustTextures) && !codec->decode(bytes, image, problem)) {
+    if (options.decodeImages && !codec->decode(bytes, image, problem)) {
         return fail(cantDecode(*codec, problem));
     }
     warnOfDeviations(document, bytes, *codec, image);
@@ -185,24 +184,27 @@ Result<Image> importImage(Document& document, int index) {
     }
     base::Bytes storage;
     const Result<ByteView> bytes = encodedBytes(document, index, storage);
-    if (!bytes) {
-        return bytes.error();
+    const Status status = bytes ? read(document, *bytes, image) : Status(bytes.error());
+    // Nothing but --trust-textures asks for the image, and planning does without.
+    if (!status && !options.decodeImages && !options.keepImageFiles) {
+        document.warnings().push_back(unknownTexels(status.error()));
+        return image;
     }
-    if (Status status = read(document, *bytes, image); !status) {
+    if (!status) {
         return status.error();
     }
-    if (options.trustTextures) {
-        image.content = storedContent(image);
-    }
-    if (!options.decodeImages) {
-        image.pixels = {};
-    }
-    if (options.keepImageFiles && storage.empty()) {
+    const bool isKept = options.keepImageFiles || (options.trustTextures && !options.decodeImages);
+    if (isKept && storage.empty()) {
         image.file.assign(bytes->begin(), bytes->end());
-    } else if (options.keepImageFiles) {
+    } else if (isKept) {
         image.file = std::move(storage);
     }
     return image;
+}
+
+Diagnostic unknownTexels(const Diagnostic& error) {
+    return {Severity::Note, "texture-unknown", error.where,
+            fmt::format("{} ({}), so what it holds is not known", error.message, error.id), error.hint};
 }
 
 Status decodeFile(const Scene& scene, Image& image) {

@@ -20,8 +20,13 @@ enum class Decodable : std::uint8_t {
 Decodable decodability(const Document& document, int image);
 
 // Reads the image's name, and its pixels or its file if ImportOptions ask for them. Errors: "image-data" (no
-// source or two), "image-decode", "image-size", and those of reading files.
+// source or two), "image-decode", "image-size", and those of reading files. If only
+// ImportOptions::trustTextures asks for the file, an image that can't be read is no error, but a note, and
+// has no file.
 Result<Image> importImage(Document& document, int image);
+
+// Turns the error of an image into the note that nothing is known of its texels.
+Diagnostic unknownTexels(const Diagnostic& error);
 
 // Fills the pixels of an image of the scene that has its file. Error "image-decode".
 Status decodeFile(const Scene& scene, Image& image);

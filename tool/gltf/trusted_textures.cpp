@@ -1,0 +1,159 @@
+#include "gltf/trusted_textures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace glint::gltf {
+
+namespace {
+
+using Constant = std::array<double, 4>;
+
+void renumber(materials::Material& material, const std::vector<int>& numbers) {
+    for (materials::TextureInfo& info : material.textures) {
+        info.texture = info.texture < 0 ? -1 : numbers[static_cast<std::size_t>(info.texture)];
+    }
+}
+
+const materials::TextureContent& contentSeen(const materials::Material& material, const Primitive& primitive,
+                                             int slot) {
+    const auto seen = std::ranges::find(primitive.seen, slot, &materials::SeenTexture::slot);
+    return seen != primitive.seen.end() ? seen->content
+                                        : material.textures[static_cast<std::size_t>(slot)].content;
+}
+
+// Returns the channels that the texture's product with parameters takes in, or nothing if the texture does
+// anything else.
+std::optional<std::uint32_t> scaledChannels(const materials::Material& material, int slot) {
+    std::uint32_t scaled = 0;
+    for (const materials::Parameter& parameter : material.model().parameters) {
+        if (parameter.scaledBy != slot || !material.reads(parameter.object)) {
+            continue;
+        }
+        for (int i = 0; i < parameter.channels; ++i) {
+            const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
+            if (channel < 0) {
+                return std::nullopt;
+            }
+            scaled |= 1U << static_cast<unsigned>(channel);
+        }
+    }
+    const std::uint32_t read = material.readsOf(slot).channels;
+    return scaled != 0 && (read & ~scaled) == 0 ? std::optional(scaled) : std::nullopt;
+}
+
+// Returns the constant that all primitives see, with NaN in channels that nothing reads.
+std::optional<Constant> constantOf(const materials::Material& material,
+                                   const std::vector<const Primitive*>& primitives, int slot,
+                                   std::uint32_t channels) {
+    const materials::TextureInfo& info = material.textures[static_cast<std::size_t>(slot)];
+    std::optional<Constant> constant;
+    for (const Primitive* primitive : primitives) {
+        const bool isReadable = info.texCoord < 2 &&
+                                !(info.texCoord == 0 ? primitive->texCoords0 : primitive->texCoords1).empty();
+        const materials::TextureContent& content = contentSeen(material, *primitive, slot);
+        constant = constant ? constant : content.constant;
+        for (std::size_t i = 0; i < 4; ++i) {
+            const bool isRead = (channels >> i & 1U) != 0;
+            // NaN equals nothing.
+            if (isRead && (!isReadable || content.constant[i] != (*constant)[i])) {
+                return std::nullopt;
+            }
+        }
+    }
+    return constant;
+}
+
+void fold(materials::Material& material, int slot, const Constant& constant) {
+    std::vector<bool> isScaled(material.values.size());
+    for (const materials::Parameter& parameter : material.model().parameters) {
+        for (int i = 0; i < parameter.channels; ++i) {
+            const auto place = static_cast<std::size_t>(parameter.first + i);
+            const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
+            if (parameter.scaledBy == slot && material.reads(parameter.object) && channel >= 0 &&
+                !isScaled[place]) {
+                // As a device multiplies them.
+                material.values[place] *= static_cast<float>(constant[static_cast<std::size_t>(channel)]);
+                isScaled[place] = true;
+            }
+        }
+    }
+    materials::TextureInfo& info = material.textures[static_cast<std::size_t>(slot)];
+    info.texture = -1;
+    info.isFolded = true;
+}
+
+bool isOne(const Constant& constant, std::uint32_t channels) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        if ((channels >> i & 1U) != 0 && constant[i] != 1.0) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+void mergeSameTextures(Scene& scene) {
+    std::vector<int> numbers(scene.textures.size());
+    std::map<int, std::vector<std::size_t>> ofImage;  // different textures by what they show
+    for (std::size_t i = 0; i < scene.textures.size(); ++i) {
+        Texture& texture = scene.textures[i];
+        const int same = scene.images[static_cast<std::size_t>(texture.image)].sameAs;
+        texture.image = same >= 0 ? same : texture.image;
+        std::vector<std::size_t>& known = ofImage[texture.image];
+        const auto found = std::ranges::find_if(known, [&](std::size_t other) {
+            return scene.samplers[static_cast<std::size_t>(scene.textures[other].sampler)] ==
+                   scene.samplers[static_cast<std::size_t>(texture.sampler)];
+        });
+        numbers[i] = static_cast<int>(found == known.end() ? i : *found);
+        if (found == known.end()) {
+            known.push_back(i);
+        }
+    }
+    std::ranges::for_each(scene.materials,
+                          [&](materials::Material& material) { renumber(material, numbers); });
+    for (AnimatedMaterial& animated : scene.animatedMaterials) {
+        renumber(animated.rest, numbers);
+        renumber(animated.planned, numbers);
+    }
+}
+
+void foldConstantTextures(Scene& scene) {
+    std::vector<std::vector<const Primitive*>> primitives(scene.materials.size());
+    for (const Mesh& mesh : scene.meshes) {
+        for (const Primitive& primitive : mesh.primitives) {
+            primitives[static_cast<std::size_t>(primitive.material)].push_back(&primitive);
+        }
+    }
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        materials::Material& material = scene.materials[i];
+        const bool isAnimated =
+            std::ranges::find(scene.animatedMaterials, static_cast<int>(i), &AnimatedMaterial::material) !=
+            scene.animatedMaterials.end();
+        if (isAnimated || primitives[i].empty()) {
+            continue;
+        }
+        for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
+            const auto texture = static_cast<int>(slot);
+            const materials::MaterialModel& model = material.model();
+            const auto feature = static_cast<std::size_t>(model.textures[slot].feature);
+            if (material.textures[slot].texture < 0 || model.features[feature].hasOwnCoordinates) {
+                continue;
+            }
+            const std::optional<std::uint32_t> channels = scaledChannels(material, texture);
+            const std::optional<Constant> constant =
+                channels ? constantOf(material, primitives[i], texture, *channels) : std::nullopt;
+            if (constant && !isOne(*constant, *channels)) {
+                fold(material, texture, *constant);
+            }
+        }
+    }
+}
+
+}  // namespace glint::gltf
