@@ -131,11 +131,15 @@ constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/
 enum class VertexForm : std::uint32_t {
     Compact,
     Full,
+    Quantized,
 };
 inline constexpr Named<VertexForm> kVertexFormNames[] = {
     {VertexForm::Compact, "compact",
-     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that keeps the values nearly"},
+     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that keeps the values nearly; "
+     "for "
+     "positions and indices, where that keeps them"},
     {VertexForm::Full, "full", "32 bits"},
+    {VertexForm::Quantized, "quantized", "as compact, with 16 bits for all positions"},
 };
 constexpr std::span<const Named<VertexForm>> namesOf(VertexForm /*type*/) {
     return kVertexFormNames;
@@ -153,8 +157,8 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    // What a vertex has besides its position takes 20 bytes or less in the compact form and up to 60 in the
-    // full one. docs/memory.md says what becomes of its values.
+    // A vertex takes 32 bytes or less in the compact form but for colours, 26 in the quantized one and up to
+    // 72 in the full one. docs/memory.md says what becomes of its values.
     VertexForm vertices = VertexForm::Compact;
     // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;

@@ -26,6 +26,7 @@ struct BlasGeometry {
     std::uint32_t triangleCount = 0;  // must not be 0
     bool opaque = true;
     bool once = false;  // a ray meets each triangle at most once, although it goes on
+    bool shortIndices = false;  // 16 bits each, else 32
 };
 
 // The most that one BLAS may hold.
