@@ -120,14 +120,14 @@ enum class TraversalOrder : std::uint32_t {
 };
 inline constexpr Named<TraversalOrder> kTraversalOrderNames[] = {
     {TraversalOrder::Auto, "auto", "halving on a CPU, input on a GPU"},
-    {TraversalOrder::Input, "input", "as in the scene"},
-    {TraversalOrder::Halving, "halving", "for drivers whose trees halve what they are given"},
+    {TraversalOrder::Input, "input", "that of the scene"},
+    {TraversalOrder::Halving, "halving", "for drivers that build trees by halving their input"},
 };
 constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/) {
     return kTraversalOrderNames;
 }
 
-// How the vertices of a scene lie in memory.
+// How the vertices of a scene are stored on the device.
 enum class VertexForm : std::uint32_t {
     Compact,
     Full,
@@ -135,9 +135,9 @@ enum class VertexForm : std::uint32_t {
 };
 inline constexpr Named<VertexForm> kVertexFormNames[] = {
     {VertexForm::Compact, "compact",
-     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that keeps the values nearly; "
-     "for "
-     "positions and indices, where that keeps them"},
+     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that is exact enough; for "
+     "positions "
+     "and indices, where that is exact"},
     {VertexForm::Full, "full", "32 bits"},
     {VertexForm::Quantized, "quantized", "as compact, with 16 bits for all positions"},
 };
@@ -157,8 +157,8 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    // A vertex takes 32 bytes or less in the compact form but for colours, 26 in the quantized one and up to
-    // 72 in the full one. docs/memory.md says what becomes of its values.
+    // A vertex takes at most 36 bytes in the compact form, at most 30 in the quantized one and up to 72 in
+    // the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
     // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;
