@@ -73,7 +73,7 @@ int lowestBit(float value) {
 std::optional<AxisGrid> gridOfIntegers(std::span<const PrimitiveView> mesh, std::size_t axis,
                                        const Bounds& bounds) {
     const double tolerance =
-        std::max(std::abs(bounds.least), std::abs(bounds.most)) * std::numeric_limits<float>::epsilon() / 2.0;
+        std::max(std::abs(bounds.least), std::abs(bounds.most)) * std::numeric_limits<float>::epsilon() * 2.0;
     for (const double step : {1.0, 1.0 / 65535.0, 1.0 / 32767.0, 1.0 / 255.0, 1.0 / 127.0}) {
         const AxisGrid grid{static_cast<float>(bounds.least), static_cast<float>(step)};
         const bool keeps =

@@ -28,8 +28,8 @@ struct GridPositions {
     std::vector<std::array<float, 3>> values;
 };
 
-// Returns a grid on which every position lies, but for half the distance between two floats of the size of
-// the mesh's largest coordinate: coordinates that a file has as integers of 8 or 16 bits, and others that are
+// Returns a grid on which every position lies, but for 2^-22 of the mesh's largest coordinate on an axis, as
+// rounded sums have it: coordinates that a file has as integers of 8 or 16 bits, and others that are
 // multiples of a power of two. None if there is no such grid.
 std::optional<PositionGrid> findGrid(std::span<const PrimitiveView> mesh);
 

@@ -105,7 +105,7 @@ TEST(PositionGrid, KeepsIntegersOfFiles) {
         const std::optional<PositionGrid> grid = findGrid({&view, 1});
         ASSERT_TRUE(grid) << type.most << " / " << type.divisor;
         const float tolerance =
-            value(type.most) * (type.divisor == 1.0F ? 0.0F : std::numeric_limits<float>::epsilon());
+            value(type.most) * (type.divisor == 1.0F ? 0.0F : 2.0F * std::numeric_limits<float>::epsilon());
         const GridPositions placed = placeOnGrid(positions, *grid);
         for (std::size_t i = 0; i < positions.size(); ++i) {
             for (std::size_t axis = 0; axis < 3; ++axis) {
