@@ -300,12 +300,12 @@ float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
 vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     vec3 result = vec3(0.0);
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        vec3 lobe = vec3(wholeTransmission(b, features, l, b.eta.y));
-        if (hasLobe(features, GLINT_DISPERSION)) {
-            lobe.x = wholeTransmission(b, features, l, b.eta.x);
-            lobe.z = wholeTransmission(b, features, l, b.eta.z);
+        bool spreads = hasLobe(features, GLINT_DISPERSION);
+        vec3 lobe = vec3(0.0);
+        for (int channel = spreads ? 0 : 1; channel < (spreads ? 3 : 2); ++channel) {
+            lobe = withChannel(lobe, channel, wholeTransmission(b, features, l, channelOf(b.eta, channel)));
         }
-        result += b.transmitted * lobe;
+        result += b.transmitted * (spreads ? lobe : vec3(lobe.y));
         if (scattersPassage(features)) {
             // Kulla and Conty's lobe of several bounces, on the far side.
             float lightLoss = lobeAlbedo(b, features, vec3(l.xy, -l.z)).x;

@@ -6,6 +6,16 @@
 // the microfacets are.
 const float kMinIndexStep = 1e-4;
 
+// Red, green and blue have indices of their own (KHR_materials_dispersion). What is computed for each is in a loop, so
+// that shaders that decide about dispersion at run time have its code once.
+float channelOf(vec3 v, int channel) {
+    return channel == 0 ? v.x : channel == 1 ? v.y : v.z;
+}
+
+vec3 withChannel(vec3 v, int channel, float value) {
+    return vec3(channel == 0 ? value : v.x, channel == 1 ? value : v.y, channel == 2 ? value : v.z);
+}
+
 bool refracts(float eta) {
     return abs(eta - 1.0) >= kMinIndexStep;
 }

@@ -62,10 +62,11 @@ vec3 skyBehind(Surface surface, Features features, float eta) {
 
 vec3 ambientTransmission(Surface surface, Features features) {
     Bsdf bsdf = surface.bsdf;
-    vec3 behind = skyBehind(surface, features, bsdf.eta.y);
-    if (hasLobe(features, GLINT_DISPERSION)) {
-        behind.x = skyBehind(surface, features, bsdf.eta.x).x;
-        behind.z = skyBehind(surface, features, bsdf.eta.z).z;
+    bool spreads = hasLobe(features, GLINT_DISPERSION);
+    vec3 behind = vec3(0.0);
+    for (int channel = spreads ? 0 : 1; channel < (spreads ? 3 : 2); ++channel) {
+        vec3 sky = skyBehind(surface, features, channelOf(bsdf.eta, channel));
+        behind = spreads ? withChannel(behind, channel, channelOf(sky, channel)) : sky;
     }
     // Without compensation, the loss of single scattering is subtracted too.
     GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;

@@ -8,7 +8,7 @@ SurfaceValues valuesAt(Hit hit, Features features) {
     return values;
 }
 
-// Returns what the material says about the surface. Unlit keys have a colour alone.
+// Returns what the material says about the surface.
 SurfaceValues surfaceValues(Hit hit, Features features) {
     changeCoordinates(hit, features);
     return valuesAt(hit, features);
@@ -34,10 +34,8 @@ Bsdf makeBase(SurfaceValues values, Features features) {
     return bsdf;
 }
 
-// Requires a lit key.
-Surface evaluateSurface(Hit hit, Features features) {
-    changeCoordinates(hit, features);
-    SurfaceValues values = valuesAt(hit, features);
+// Returns the surface of a lit key at coordinates that are already changed.
+Surface surfaceWith(Hit hit, Features features, SurfaceValues values) {
     values.dielectric = 1.0 - values.metallic;
     Surface surface;
     surface.normal = values.normal * facing(hit, features);
@@ -53,4 +51,23 @@ Surface evaluateSurface(Hit hit, Features features) {
     surface.emission = runEmissionStage(hit, features) *
                        emissionPassedByLayers(surface.bsdf.layers, features, surface.bsdf.view);
     return surface;
+}
+
+// Requires a lit key.
+Surface evaluateSurface(Hit hit, Features features) {
+    changeCoordinates(hit, features);
+    return surfaceWith(hit, features, valuesAt(hit, features));
+}
+
+// Returns the surface of any key. One that is unlit has a colour alone, which is the emission. Shaders of both kinds of
+// keys have the code of the stage "surface" only once in this way.
+Surface evaluateAny(Hit hit, Features features) {
+    changeCoordinates(hit, features);
+    SurfaceValues values = valuesAt(hit, features);
+    if (hasLobe(features, GLINT_UNLIT)) {
+        Surface surface;
+        surface.emission = values.color.rgb;
+        return surface;
+    }
+    return surfaceWith(hit, features, values);
 }

@@ -224,12 +224,13 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
 
 // Returns the light of the hit by itself, whatever path led to it.
 ShadeResult shadeAlone(Hit hit, Features features) {
+    Surface surface = evaluateAny(hit, features);
     if (hasLobe(features, GLINT_UNLIT)) {
         ShadeResult result = darkness();
-        result.radiance = surfaceValues(hit, features).color.rgb;
+        result.radiance = surface.emission;
         return result;
     }
-    return shadeSurface(hit, evaluateSurface(hit, features), features);
+    return shadeSurface(hit, surface, features);
 }
 
 #if GLINT_PATHS

@@ -9,14 +9,14 @@ ShadeResult shade(Hit hit, Features features) {
     answer.clearance = hit.clearance;
     answer.motion = hit.position - hit.previousPosition;
     answer.material = hit.material;
+    Surface surface = evaluateAny(hit, features);
     if (hasLobe(features, GLINT_UNLIT)) {
         answer.normal = hit.geometricNormal;
         answer.roughness = 1.0;
         answer.occlusion = 1.0;
-        answer.emission = surfaceValues(hit, features).color.rgb;
+        answer.emission = surface.emission;
         return ShadeResult(answer);
     }
-    Surface surface = evaluateSurface(hit, features);
     Bsdf b = surface.bsdf;
     answer.normal = surface.normal;
     answer.roughness = surface.roughness;

@@ -29,17 +29,38 @@ InstanceRecord hostPreviousInstance(HostGeometry geometry) {
 
 // The number of the vertex at a corner. Triangle t has the corners 3t, 3t + 1 and 3t + 2.
 uint hostVertex(HostGeometry geometry, uint corner) {
+    if ((geometry.flags & kGeometryShortIndices) != 0u) {
+        uint pair = geometry.indices.data[corner >> 1];
+        return (corner & 1u) != 0u ? pair >> 16 : pair & 0xFFFFu;
+    }
     return geometry.indices.data[corner];
+}
+
+// Attributes are read in the form that their flag says.
+
+// Three coordinates of 16 bits behind their range. Products and sums are rounded as on the host, so that the position
+// is that of the acceleration structure.
+vec3 packedPosition(UintArray words, uint vertex) {
+    vec3 least = uintBitsToFloat(uvec3(words.data[0], words.data[1], words.data[2]));
+    vec3 step = uintBitsToFloat(uvec3(words.data[3], words.data[4], words.data[5]));
+    uint place = 6u + (3u * vertex >> 1);
+    uvec2 pair = uvec2(words.data[place], words.data[place + 1u]);
+    uvec3 code = (vertex & 1u) != 0u ? uvec3(pair.x >> 16, pair.y & 0xFFFFu, pair.y >> 16)
+                                     : uvec3(pair.x & 0xFFFFu, pair.x >> 16, pair.y & 0xFFFFu);
+    precise vec3 offset = step * vec3(code);
+    precise vec3 position = least + offset;
+    return position;
 }
 
 // In the mesh's space. Counter-clockwise corners show the front.
 vec3 hostPosition(HostGeometry geometry, uint vertex) {
+    if ((geometry.flags & kGeometryPackedPositions) != 0u) {
+        return packedPosition(UintArray(geometry.positions), vertex);
+    }
     return geometry.positions.data[vertex];
 }
 
 // The following are asked for only if featureInputs says that the geometry has them.
-
-// Attributes are read in the form that their flag says.
 
 // A unit vector in the mesh's space.
 vec3 hostNormal(HostGeometry geometry, uint vertex) {

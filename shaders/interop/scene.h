@@ -31,6 +31,9 @@ GLINT_CONSTANT(kGeometryPackedTexCoords0, 256u);  // four floats with least and 
 GLINT_CONSTANT(kGeometryPackedTexCoords1, 512u);
 GLINT_CONSTANT(kGeometryColors8, 1024u);   // 4 x 8 bits, unorm
 GLINT_CONSTANT(kGeometryColors16, 2048u);  // 4 x 16 bits, unorm
+// Six floats with least and step of x, y and z, then 3 x 16 bits.
+GLINT_CONSTANT(kGeometryPackedPositions, 4096u);
+GLINT_CONSTANT(kGeometryShortIndices, 8192u);  // 16 bits each
 GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are the host's own
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing

@@ -100,11 +100,11 @@ void main() {
         vec3 origin = rayOrigin(hit, hit.geometricNormal);
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
+        Surface surface = surfaceOfPrimary(hit, features.lobes, features.inputs);
         if (hasLobe(features, GLINT_UNLIT)) {
-            radianceDepth.rgb = colorOfPrimary(hit, features.lobes, features.inputs);
+            radianceDepth.rgb = surface.emission;
             skipEffects(number, kRayUnlit);
         } else {
-            Surface surface = surfaceOfPrimary(hit, features.lobes, features.inputs);
             SkyShares sky = wholeSky();
             sampleEffects(hit, surface, features, sky);
             radianceDepth.rgb = surface.emission + directLight(hit, surface, features, sky) +

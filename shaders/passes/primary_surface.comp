@@ -12,5 +12,4 @@ layout(local_size_x = 1) in;
 void main() {
     Hit hit;
     surfaceOfPrimary(hit, 0u, 0u);
-    colorOfPrimary(hit, 0u, 0u);
 }

@@ -209,6 +209,7 @@ EditedScene::EditedScene(EditedSceneOptions options) : scene(catalogueScene()), 
     view.primitives = primitives;
     view.instances = views;
     view.editable = true;
+    view.vertices = VertexForm::Quantized;  // meshes get a buffer for their builds alone, too
     Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package(), view);
     if (!uploaded) {
         ADD_FAILURE() << toString(uploaded.error());
@@ -330,6 +331,7 @@ LinearImage EditedScene::fresh() const {
     view.images = images;
     view.lights = lightViews;
     view.materials = values;
+    view.vertices = VertexForm::Quantized;
     Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package(), view);
     if (!uploaded) {
         ADD_FAILURE() << toString(uploaded.error());

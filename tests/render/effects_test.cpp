@@ -180,7 +180,8 @@ TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
     };
     const LoadedScene full = load(VertexForm::Full);
     const LoadedScene compact = load(VertexForm::Compact);
-    ASSERT_TRUE(full.ok() && compact.ok());
+    const LoadedScene quantized = load(VertexForm::Quantized);
+    ASSERT_TRUE(full.ok() && compact.ok() && quantized.ok());
     const auto bytesOf = [](const LoadedScene& loaded) {
         std::uint64_t bytes = 0;
         for (const MemoryItem& item : loaded.gpuScene().memory()) {
@@ -189,19 +190,22 @@ TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
         return bytes;
     };
     EXPECT_LT(bytesOf(compact), bytesOf(full));
+    EXPECT_LT(bytesOf(quantized), bytesOf(compact));
     const RenderSetup setup = smallSetup(scene);
     const LinearImage a = full.render(package::kStrategyUber, setup);
-    const LinearImage b = compact.render(package::kStrategyUber, setup);
-    ASSERT_EQ(a.pixels.size(), b.pixels.size());
-    // A ray that meets another surface, or a shadow's edge, may change a few pixels.
-    std::size_t different = 0;
-    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            different += std::abs(a.pixels[i][channel] - b.pixels[i][channel]) >
-                         0.005F * std::max(1.0F, a.pixels[i][channel]);
+    for (const LoadedScene* const other : {&compact, &quantized}) {
+        const LinearImage b = other->render(package::kStrategyUber, setup);
+        ASSERT_EQ(a.pixels.size(), b.pixels.size());
+        // A ray that meets another surface, or a shadow's edge, may change a few pixels.
+        std::size_t different = 0;
+        for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                different += std::abs(a.pixels[i][channel] - b.pixels[i][channel]) >
+                             0.005F * std::max(1.0F, a.pixels[i][channel]);
+            }
         }
+        EXPECT_LT(different, a.pixels.size() / 50);
     }
-    EXPECT_LT(different, a.pixels.size() / 50);
 }
 
 TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {

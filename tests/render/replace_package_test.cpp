@@ -467,6 +467,24 @@ TEST_F(ReplacePackage, ALaterPackageTakesThePlaceOfOneThatWaits) {
     expectNoValidationMessages();
 }
 
+// finished() leaves pipelines that are still being made to a thread, and so never waits for them.
+TEST_F(ReplacePackage, APackageThatIsGivenUpIsLeftToAThread) {
+    RendererOptions options = optionsOf(package::kStrategyVisibility, package::kTracerRayPipeline);
+    if ((sharedContext().handles().tracers & package::kTracerRayPipeline) == 0) {
+        GTEST_SKIP() << "the device has no ray tracing pipelines";
+    }
+    options.backgroundPipelines = true;
+    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
+    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    ASSERT_NE(renderer, nullptr);
+    ASSERT_TRUE(renderer->replacePackage(*edited_));
+    ASSERT_TRUE(renderer->replacePackage(*original_));
+    EXPECT_EQ(renderer->state().leftovers.size(), 1U);
+    renderer->finished(renderer->recordings());
+    EXPECT_TRUE(renderer->state().leftovers.empty());
+    expectNoValidationMessages();
+}
+
 TEST_F(ReplacePackage, ErrorsKeepThePackageBefore) {
     const compiler::CompileSettings uber = settingsFor(package::kStrategyUber);
     const std::shared_ptr<const Package> original = packageOf(*before_, uber);

@@ -162,8 +162,7 @@ Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sou
         return text.error();
     }
     insertPartDefines(*text, precision);
-    const std::shared_ptr<ModuleSource> part =
-        makePart("primary_surface.part", {"surfaceOfPrimary", "colorOfPrimary"});
+    const std::shared_ptr<ModuleSource> part = makePart("primary_surface.part", {"surfaceOfPrimary"});
     drafts.add(part, std::string(kSource), std::move(*text), own);
     return std::shared_ptr<const ModuleSource>(part);
 }

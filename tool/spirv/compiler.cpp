@@ -14,7 +14,9 @@
 #include <spirv-tools/libspirv.h>
 #include <spirv-tools/libspirv.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <mutex>
 #include <string_view>
 
@@ -93,7 +95,11 @@ Diagnostic makeGlslError(const ShaderSource& source, std::string_view log) {
                      std::string(trim(line.substr(length + 1))) + " (in " + source.name + ")", kHint);
 }
 
+// Returns what glslang makes of the source, without any optimisation.
 Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
+    if (!initializeGlslang()) {
+        return makeError("glsl", source.name, "glslang can't be initialised");
+    }
     constexpr int kDefaultVersion = 460;
     constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     const EShLanguage stage = toGlslang(source.stage);
@@ -121,13 +127,17 @@ Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
     return words;
 }
 
+// Returns the functions that cross the border of the module, which must stay functions.
+std::vector<std::string> linkedFunctions(const LinkNames& names) {
+    std::vector<std::string> linked = names.exported;
+    linked.insert(linked.end(), names.imported.begin(), names.imported.end());
+    return linked;
+}
+
 }  // namespace
 
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options) {
-    if (!initializeGlslang()) {
-        return makeError("glsl", source.name, "glslang can't be initialised");
-    }
     Result<std::vector<std::uint32_t>> translated = translate(source);
     if (!translated) {
         return translated;
@@ -145,16 +155,12 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
 
 Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, const LinkNames& names,
                                                    const ShaderCompileOptions& options) {
-    if (!initializeGlslang()) {
-        return makeError("glsl", source.name, "glslang can't be initialised");
-    }
     Result<std::vector<std::uint32_t>> translated = translate(source);
     if (!translated) {
         return translated;
     }
     std::vector<std::string> apart = source.functionsApart;
-    apart.insert(apart.end(), names.exported.begin(), names.exported.end());
-    apart.insert(apart.end(), names.imported.begin(), names.imported.end());
+    std::ranges::copy(linkedFunctions(names), std::back_inserter(apart));
     const Result<std::vector<std::uint32_t>> optimized =
         optimizeSpirv(*translated, source.name, apart, true, options.halvesAll);
     if (!optimized) {
@@ -172,9 +178,6 @@ Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, c
 
 Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const LinkNames& names,
                                                const ShaderCompileOptions& options) {
-    if (!initializeGlslang()) {
-        return makeError("glsl", source.name, "glslang can't be initialised");
-    }
     Result<std::vector<std::uint32_t>> translated = translate(source);
     if (!translated) {
         return translated;
@@ -189,10 +192,8 @@ Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const
             return translated;
         }
     }
-    std::vector<std::string> linked = names.exported;
-    linked.insert(linked.end(), names.imported.begin(), names.imported.end());
     const Result<std::vector<std::uint32_t>> optimized =
-        optimizePart(*translated, source.name, linked, options.halvesAll);
+        optimizePart(*translated, source.name, linkedFunctions(names), options.halvesAll);
     if (!optimized) {
         return optimized;
     }

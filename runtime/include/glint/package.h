@@ -126,7 +126,11 @@ public:
     std::string_view string(package::StringRef ref) const;
     // Returns the SPIR-V words of a module. The span is empty if the package lacks the module.
     std::span<const std::uint32_t> spirv(const package::ModuleKey& key) const;
-    struct State;  // for the runtime's own sources
+    // For the runtime's own sources.
+    struct State;
+    const State& state() const {
+        return *state_;
+    }
 
 private:
     explicit Package(std::unique_ptr<State> state);

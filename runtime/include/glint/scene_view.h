@@ -131,11 +131,15 @@ constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/
 enum class VertexForm : std::uint32_t {
     Compact,
     Full,
+    Quantized,
 };
 inline constexpr Named<VertexForm> kVertexFormNames[] = {
     {VertexForm::Compact, "compact",
-     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that is exact enough"},
+     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that is exact enough; for "
+     "positions "
+     "and indices, where that is exact"},
     {VertexForm::Full, "full", "32 bits"},
+    {VertexForm::Quantized, "quantized", "as compact, with 16 bits for all positions"},
 };
 constexpr std::span<const Named<VertexForm>> namesOf(VertexForm /*type*/) {
     return kVertexFormNames;
@@ -166,8 +170,8 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    // The attributes of a vertex besides its position take at most 20 bytes in the compact form and up to 60
-    // in the full one. docs/memory.md states the errors.
+    // A vertex takes at most 36 bytes in the compact form, at most 30 in the quantized one and up to 72 in
+    // the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
     // Proved triangles are tested by no ray: opaque ones are in opaque geometry, transparent ones in none
     // (docs/alpha.md). Scenes that can be edited are tested, because their materials may change at any time.

@@ -12,7 +12,6 @@ namespace {
 
 // Custom indices have 24 bits.
 constexpr std::uint32_t kMostRecords = 1U << 24;
-constexpr std::size_t kTriangleBytes = 3 * sizeof(std::uint32_t);
 
 bool isFinite(const Rows& rows) {
     return std::ranges::all_of(rows, [](float value) { return std::isfinite(value); });
@@ -64,8 +63,8 @@ BlasInput inputOf(const SceneEditor::State& state, const GpuPrimitive& primitive
                   const TriangleRange& triangles) {
     BlasInput input;
     input.dataAccess = state.dataAccess;
-    input.geometries.push_back({primitive.positions, primitive.indices + triangles.first * kTriangleBytes,
-                                primitive.vertexCount, triangles.count, true, state.passesLight});
+    input.geometries.push_back(blasGeometry(primitive, triangles.first, triangles.count));
+    input.geometries.back().once = state.passesLight;
     return input;
 }
 
@@ -76,11 +75,12 @@ void discardMesh(SceneEditor::State& state, EditedMesh& mesh) {
             discard(state.scene.pool, std::move(part.blas));
         }
         discard(state.scene.pool, std::move(primitive.device.buffer));
+        discard(state.scene.pool, std::move(primitive.device.buildInput));
     }
 }
 
-Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, std::vector<BlasInput>* inputs,
-                     EditedMeshPrimitive& made) {
+Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, const GridPositions& positions,
+                     std::vector<BlasInput>* inputs, EditedMeshPrimitive& made) {
     GpuScene::State& scene = state.scene;
     std::vector<std::vector<std::uint32_t>> ordered;
     if (state.leafOrder != nullptr) {
@@ -92,8 +92,9 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, std::
     if (!package.attributes().empty()) {
         declared = joinAllAttributes(package, view);
     }
-    Result<GpuPrimitive> device =
-        uploadPrimitive(scene.context, scene.pool, *state.uploader, view, indices, declared, state.vertices);
+    Result<GpuPrimitive> device = uploadPrimitive(scene.context, scene.pool, *state.uploader, view,
+                                                  {indices, declared, positions.words},
+                                                  {state.vertices, state.capacity.triangles, &scene.pool});
     if (!device) {
         return device.error();
     }
@@ -117,9 +118,12 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, std::
                 return blas.error();
             }
             part.blas = std::move(*blas);
-            state.builds.push_back({std::move(build), part.blas.handle.get()});
+            state.builds.push_back({std::move(build), part.blas.handle.get(), {}});
         }
         first += count;
+    }
+    if (inputs == nullptr) {
+        state.builds.back().input = std::move(made.device.buildInput);
     }
     return okStatus();
 }
@@ -243,14 +247,17 @@ Result<EditedMesh> makeMesh(SceneEditor::State& state, std::span<const Primitive
     EditedMesh mesh;
     const std::size_t copies = state.uploader->waiting();
     const std::size_t builds = state.builds.size();
-    for (const PrimitiveView& view : primitives) {
+    const std::vector<GridPositions> positions = packPositions(primitives, state.vertices);
+    const std::vector<PrimitiveView> placed = withPositions(primitives, positions);
+    for (std::size_t i = 0; i < placed.size(); ++i) {
         EditedMeshPrimitive& made = mesh.primitives.emplace_back();
-        if (Status status = makePrimitive(state, view, inputs, made); !status) {
+        if (Status status = makePrimitive(state, placed[i], positions[i], inputs, made); !status) {
             if (!state.uploading) {
                 state.uploader->forgetAfter(copies);
             }
-            state.builds.erase(state.builds.begin() + static_cast<std::ptrdiff_t>(builds),
-                               state.builds.end());
+            for (; state.builds.size() > builds; state.builds.pop_back()) {
+                discard(state.scene.pool, std::move(state.builds.back().input));
+            }
             discardMesh(state, mesh);
             return status.error();
         }

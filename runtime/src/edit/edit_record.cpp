@@ -435,6 +435,9 @@ private:
             scene_.lightTree = std::move(tree_);
         }
         scene_.statistics.instances = static_cast<std::uint32_t>(state_.instanceSlots.count());
+        for (SceneEditor::State::PendingBuild& built : state_.builds) {
+            state_.retired.add(std::move(built.input));
+        }
         state_.builds.clear();
         state_.tlasDirty = false;
         state_.drawsDirty = false;

@@ -151,6 +151,7 @@ Status addMeshes(SceneEditor::State& state, const PackageScene& known, const Sce
             for (EditedPart& part : primitive.parts) {
                 part.blas = std::move(*next++);
             }
+            discard(state.scene.pool, std::move(primitive.device.buildInput));
         }
     }
     GpuScene::Statistics& scene = state.scene.statistics;

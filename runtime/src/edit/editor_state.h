@@ -114,6 +114,7 @@ struct SceneEditor::State {
     struct PendingBuild {
         BlasBuild build;
         VkAccelerationStructureKHR target = VK_NULL_HANDLE;
+        Buffer input;  // that this build and those before it of the same primitive read; may be none
     };
     std::vector<PendingBuild> builds;
     bool tlasDirty = true;

@@ -145,7 +145,9 @@ Status readModules(Package::State& state, const PackageFiles& files) {
         if (!words) {
             return words.error();
         }
-        state.spirv.emplace(name, std::move(*words));
+        const XXH128_hash_t hash = XXH3_128bits(words->data(), words->size() * sizeof(std::uint32_t));
+        const auto kept = state.spirv.emplace(name, std::move(*words)).first;
+        state.hashes[kept->second.data()] = {hash.low64, hash.high64};
     }
     return okStatus();
 }

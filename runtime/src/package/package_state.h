@@ -7,6 +7,7 @@
 #include <glint/package_modules.h>
 #include <glint/result.h>
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -40,6 +41,9 @@ struct Package::State {
     std::span<const package::FeatureEntry> features;
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
+    // A hash of each module, by the address of its words. 128 bits, so that two modules never have the same
+    // by chance. Made here, because a frame should not wait for it when a package is replaced.
+    std::map<const std::uint32_t*, std::array<std::uint64_t, 2>> hashes;
 };
 
 // Returns the shape that the header and the cases describe.

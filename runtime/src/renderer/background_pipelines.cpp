@@ -126,11 +126,6 @@ std::uint32_t BackgroundPipelines::missing() const {
     return missing_;
 }
 
-bool BackgroundPipelines::isMaking() const {
-    const std::lock_guard lock(mutex_);
-    return running_ > 0;
-}
-
 PipelineProgress BackgroundPipelines::progress() const {
     const std::lock_guard lock(mutex_);
     return {wanted_, wanted_ - static_cast<std::uint32_t>(waiting_.size()) - running_, adopted_, error_};

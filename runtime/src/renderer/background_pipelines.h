@@ -57,8 +57,6 @@ public:
     void setPaused(bool paused);
     // Returns the number of pipelines, other than spare ones, that are not made yet.
     std::uint32_t missing() const;
-    // Whether a pipeline is being made just now. The destructor would wait for it.
-    bool isMaking() const;
 
     PipelineProgress progress() const;
 

@@ -166,7 +166,7 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
                                  creation.threads = threads;
                                  return createComputePipeline(context, words, layout, creation);
                              },
-                             identify(VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
+                             identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
                             {},
                             {},
                             true});
@@ -191,7 +191,7 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
                          [&context, &package, layout](PipelineCreation& creation) {
                              return createGBuffer(context, package, layout, creation);
                          },
-                         identify(VK_PIPELINE_BIND_POINT_GRAPHICS, 0, {vertex, fragment})},
+                         identify(package, VK_PIPELINE_BIND_POINT_GRAPHICS, 0, {vertex, fragment})},
                         {{ModuleRole::GBufferVertex}}});
     }
     planComputePasses(context, package, choice, layout, plan);
@@ -201,7 +201,7 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
                          [&context, pass, layout](PipelineCreation& creation) {
                              return createRayPipeline(context, layout, pass->source, creation);
                          },
-                         identify(pass->source)},
+                         identify(package, pass->source)},
                         {},
                         pass,
                         pass->later});

@@ -41,6 +41,7 @@ struct Renderer::State : PassState {
     std::uint64_t scenePackage = 0;
     std::unique_ptr<NextPackage> next;  // null unless a package waits
     std::vector<std::unique_ptr<Leftovers>> leftovers;
+    PipelineDisposal disposal;
     std::uint64_t replacementsInUse = 0;
     std::optional<Diagnostic> replacementError;
 };

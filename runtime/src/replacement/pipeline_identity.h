@@ -1,6 +1,8 @@
 // Tells pipelines with equal contents from others, also after their package is gone.
 #pragma once
 
+#include <glint/package.h>
+
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
@@ -23,11 +25,12 @@ struct PipelineIdentity {
     }
 };
 
-// `stages` are the words of each stage in its order; `number` tells pipelines with the same stages apart.
-PipelineIdentity identify(VkPipelineBindPoint point, std::uint64_t number,
+// `stages` are the words of each stage in its order, of modules of the package; `number` tells pipelines with
+// the same stages apart.
+PipelineIdentity identify(const Package& package, VkPipelineBindPoint point, std::uint64_t number,
                           const std::vector<std::span<const std::uint32_t>>& stages);
 
 // The records of the shader binding table do not count: they are no part of the pipeline.
-PipelineIdentity identify(const RayPipelineSource& source);
+PipelineIdentity identify(const Package& package, const RayPipelineSource& source);
 
 }  // namespace glint

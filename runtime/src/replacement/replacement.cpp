@@ -5,9 +5,11 @@
 #include "renderer/renderer_state.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <limits>
 #include <map>
+#include <system_error>
 #include <utility>
 
 namespace glint {
@@ -232,9 +234,25 @@ std::uint32_t timerCapacity(const Package& package, const FrameSize& size) {
     return size.bandCount() * rounds * size.bounces * (kMaxFixedPasses + package.caseCount());
 }
 
-bool Leftovers::isBusy() const {
-    const auto makes = [](const Pipelines& made) { return made.background && made.background->isMaking(); };
-    return (pipelines && makes(*pipelines)) || (next && makes(next->pipelines));
+void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next) {
+    std::erase_if(running_, [](const std::future<void>& task) {
+        return task.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    });
+    if (!pipelines && !next) {
+        return;
+    }
+    try {
+        // The task may be copied, so it shares what it destroys.
+        const auto taken =
+            std::make_shared<std::pair<std::unique_ptr<Pipelines>, std::unique_ptr<NextPackage>>>(
+                std::move(pipelines), std::move(next));
+        running_.push_back(std::async(std::launch::async, [taken] {
+            taken->first.reset();
+            taken->second.reset();
+        }));
+    } catch (const std::system_error&) {
+        // There is no thread, so this call has destroyed them.
+    }
 }
 
 Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_ptr<const Package> package) {
@@ -301,7 +319,11 @@ void switchPackage(Renderer::State& state, VkCommandBuffer commands) {
 
 void releaseLeftovers(Renderer::State& state, std::uint64_t recording) {
     std::erase_if(state.leftovers, [&](const std::unique_ptr<Leftovers>& left) {
-        return left->recording <= recording && !left->isBusy();
+        if (left->recording > recording) {
+            return false;
+        }
+        state.disposal.take(std::move(left->pipelines), std::move(left->next));
+        return true;
     });
 }
 

@@ -11,6 +11,7 @@
 #include <glint/renderer.h>
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -55,9 +56,17 @@ struct Leftovers {
     std::optional<Timer> timer;
     std::unique_ptr<NextPackage> next;  // one that was given up
     std::unique_ptr<Pipelines> pipelines;
+};
 
-    // Whether threads are making a pipeline, which the destructor would wait for.
-    bool isBusy() const;
+// Destroys pipelines on threads of its own. A driver takes its time for each pipeline, and those that are
+// being made have to be waited for. The destructor waits until all are gone.
+class PipelineDisposal {
+public:
+    // Never waits, unless the system gives no thread.
+    void take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next);
+
+private:
+    std::vector<std::future<void>> running_;
 };
 
 // Implements Renderer::replacePackage().
@@ -67,7 +76,7 @@ Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_
 // it. If one could not be made, gives it up.
 void switchPackage(Renderer::State& state, VkCommandBuffer commands);
 
-// Destroys what recordings after `recording` do not use.
+// Destroys what recordings after `recording` do not use; pipelines are gone some time later.
 void releaseLeftovers(Renderer::State& state, std::uint64_t recording);
 
 }  // namespace glint

@@ -28,6 +28,7 @@ struct BlasGeometry {
     std::uint32_t triangleCount = 0;  // must not be 0
     bool opaque = true;
     bool once = false;                         // a ray meets each triangle at most once, although it goes on
+    bool shortIndices = false;                 // 16 bits each, else 32
     const DeviceMicromap* micromap = nullptr;  // must outlive the structure; null: none
 };
 

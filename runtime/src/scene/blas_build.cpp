@@ -31,7 +31,7 @@ VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry
     triangles.vertexData.deviceAddress = geometry.positions;
     triangles.vertexStride = 3 * sizeof(float);
     triangles.maxVertex = geometry.vertexCount - 1;
-    triangles.indexType = VK_INDEX_TYPE_UINT32;
+    triangles.indexType = geometry.shortIndices ? VK_INDEX_TYPE_UINT16 : VK_INDEX_TYPE_UINT32;
     triangles.indexData.deviceAddress = geometry.indices;
     return described;
 }

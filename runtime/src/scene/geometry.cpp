@@ -1,7 +1,7 @@
 #include "scene/geometry.h"
 
 #include "scene/instance_math.h"
-#include "scene/vertex_format.h"
+#include "vertices/vertex_format.h"
 
 #include <algorithm>
 #include <map>
@@ -12,7 +12,7 @@ namespace {
 
 // Vectors of four floats get an alignment of their size, which suits every device.
 constexpr VkDeviceSize kAttributeAlignment = 16;
-constexpr VkDeviceSize kTriangleIndexBytes = 3 * sizeof(std::uint32_t);
+constexpr std::size_t kMostShortVertices = std::size_t{1} << 16;
 // Custom indices have 24 bits.
 constexpr std::size_t kMaxGeometries = std::size_t{1} << 24;
 
@@ -24,6 +24,7 @@ struct AttributeUpload {
 
 // The words of attributes in a compact form. Those of the others are empty.
 struct CompactWords {
+    std::vector<std::uint32_t> indices;
     std::vector<std::uint32_t> normals;
     std::vector<std::uint32_t> tangents;
     std::vector<std::uint32_t> texCoords0;
@@ -31,6 +32,15 @@ struct CompactWords {
     std::vector<std::uint32_t> colors;
     std::uint32_t forms = 0;
 };
+
+// Returns two indices in each word.
+std::vector<std::uint32_t> shortIndices(std::span<const std::uint32_t> indices) {
+    std::vector<std::uint32_t> words((indices.size() + 1) / 2);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        words[i / 2] |= indices[i] << (i % 2 * 16);
+    }
+    return words;
+}
 
 CompactWords compactWords(const PrimitiveView& view) {
     CompactWords compact;
@@ -60,35 +70,75 @@ CompactWords compactWords(const PrimitiveView& view) {
 }
 
 std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, const CompactWords& compact,
-                                          std::span<const std::uint32_t> indices,
-                                          std::span<const float> attributes) {
+                                          const PrimitiveContent& content) {
     const auto either = [](const std::vector<std::uint32_t>& words, const auto& values) {
         return words.empty() ? bytesOf(values) : bytesOf(std::span(words));
     };
-    return {{bytesOf(indices), &GpuPrimitive::indices},
-            {bytesOf(view.positions), &GpuPrimitive::positions},
+    const std::span<const std::uint32_t> positions = content.positionWords;
+    return {{either(compact.indices, content.indices), &GpuPrimitive::indices},
+            {positions.empty() ? bytesOf(view.positions) : bytesOf(positions), &GpuPrimitive::positions},
             {either(compact.normals, view.normals), &GpuPrimitive::normals},
             {either(compact.tangents, view.tangents), &GpuPrimitive::tangents},
             {either(compact.texCoords0, view.texCoords0), &GpuPrimitive::texCoords0},
             {either(compact.texCoords1, view.texCoords1), &GpuPrimitive::texCoords1},
             {either(compact.colors, view.colors), &GpuPrimitive::colors},
-            {bytesOf(attributes), &GpuPrimitive::attributes}};
+            {bytesOf(content.declared), &GpuPrimitive::attributes}};
+}
+
+// Uploads the positions that acceleration structures are built from.
+Status uploadBuildInput(Context::State& context, Uploader& uploader, const PrimitiveView& view,
+                        MemoryPool& pool, GpuPrimitive& primitive) {
+    Result<Buffer> buffer =
+        createBuffer(context, pool, bytesOf(view.positions).size(),
+                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                         VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    primitive.buildPositions = buffer->address;
+    primitive.buildInput = std::move(*buffer);
+    return uploader.copyToBuffer(bytesOf(view.positions), primitive.buildInput, 0);
 }
 
 }  // namespace
 
+VkDeviceAddress indicesFrom(const GpuPrimitive& primitive, std::uint32_t triangle) {
+    const bool isShort = (primitive.forms & gpu::kGeometryShortIndices) != 0;
+    const VkDeviceSize bytes = isShort ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+    return primitive.indices + VkDeviceSize{3} * triangle * bytes;
+}
+
+BlasGeometry blasGeometry(const GpuPrimitive& primitive, std::uint32_t first, std::uint32_t count) {
+    BlasGeometry geometry;
+    geometry.positions = primitive.buildPositions;
+    geometry.indices = indicesFrom(primitive, first);
+    geometry.shortIndices = (primitive.forms & gpu::kGeometryShortIndices) != 0;
+    geometry.vertexCount = primitive.vertexCount;
+    geometry.triangleCount = count;
+    return geometry;
+}
+
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                     const PrimitiveView& view, std::span<const std::uint32_t> indices,
-                                     std::span<const float> declared, VertexForm form) {
+                                     const PrimitiveView& view, const PrimitiveContent& content,
+                                     const PrimitiveUpload& how) {
     GpuPrimitive primitive;
     primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
     primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
     if (primitive.triangleCount == 0) {
         return primitive;
     }
-    const CompactWords compact = form == VertexForm::Compact ? compactWords(view) : CompactWords{};
+    CompactWords compact = how.form == VertexForm::Full ? CompactWords{} : compactWords(view);
+    // Shaders read words, so triangles of 16-bit indices must begin where the primitive does.
+    if (how.form != VertexForm::Full && primitive.vertexCount <= kMostShortVertices &&
+        primitive.triangleCount <= how.unsplitTriangles) {
+        compact.indices = shortIndices(content.indices);
+        compact.forms |= gpu::kGeometryShortIndices;
+    }
+    if (!content.positionWords.empty()) {
+        compact.forms |= gpu::kGeometryPackedPositions;
+    }
     primitive.forms = compact.forms;
-    std::vector<AttributeUpload> attributes = attributesOf(view, compact, indices, declared);
+    std::vector<AttributeUpload> attributes = attributesOf(view, compact, content);
     VkDeviceSize bytes = 0;
     for (AttributeUpload& attribute : attributes) {
         attribute.offset = bytes;
@@ -116,6 +166,12 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
         }
     }
     primitive.buffer = std::move(*buffer);
+    primitive.buildPositions = primitive.positions;
+    if (!content.positionWords.empty()) {
+        if (Status status = uploadBuildInput(context, uploader, view, *how.builds, primitive); !status) {
+            return status.error();
+        }
+    }
     return primitive;
 }
 
@@ -128,7 +184,7 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
     record.featureInputs = entry.featureInputs;
     record.instanceIndex = instance;
     record.flags = entry.geometryFlags | primitive.forms;
-    record.indices = primitive.indices + firstTriangle * kTriangleIndexBytes;
+    record.indices = indicesFrom(primitive, firstTriangle);
     record.positions = primitive.positions;
     record.normals = primitive.normals;
     record.tangents = primitive.tangents;
@@ -269,7 +325,8 @@ void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, st
         record.positions = found->second.positions;
         record.normals = found->second.normals;
         record.tangents = found->second.tangents;
-        record.flags &= ~(gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
+        record.flags &=
+            ~(gpu::kGeometryPackedPositions | gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
     }
 }
 
@@ -338,7 +395,9 @@ std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader, const Package& package,
                                                    const PackageScene& known,
-                                                   std::span<const PrimitiveView> primitives, VertexForm form,
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const GridPositions> positions,
+                                                   const PrimitiveUpload& how,
                                                    std::span<const std::vector<std::uint32_t>> ordered) {
     std::vector<GpuPrimitive> uploaded;
     uploaded.reserve(primitives.size());
@@ -349,7 +408,7 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
         const std::vector<float> attributes =
             joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
         Result<GpuPrimitive> primitive =
-            uploadPrimitive(context, pool, uploader, view, indices, attributes, form);
+            uploadPrimitive(context, pool, uploader, view, {indices, attributes, positions[i].words}, how);
         if (!primitive) {
             return primitive.error();
         }

@@ -5,6 +5,7 @@
 #include "context/upload.h"
 #include "interop/scene.h"
 #include "scene/acceleration.h"
+#include "vertices/position_grid.h"
 
 #include <glint/package.h>
 #include <glint/scene_view.h>
@@ -22,6 +23,10 @@ namespace glint {
 // A primitive's attributes in one buffer. The address of an attribute that it lacks is 0.
 struct GpuPrimitive {
     Buffer buffer;
+    // Positions as acceleration structures are built from them. They are in memory of their own if shaders
+    // read others (kGeometryPackedPositions), and needed for the builds alone.
+    Buffer buildInput;
+    VkDeviceAddress buildPositions = 0;
     VkDeviceAddress indices = 0;
     VkDeviceAddress positions = 0;
     VkDeviceAddress normals = 0;
@@ -32,7 +37,21 @@ struct GpuPrimitive {
     VkDeviceAddress attributes = 0;  // of packs, as AttributeEntry describes
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
-    std::uint32_t forms = 0;  // kGeometryPacked* and kGeometryColors*: which attributes are in a compact form
+    // kGeometryPacked*, kGeometryColors* and kGeometryShortIndices: what is in a compact form
+    std::uint32_t forms = 0;
+};
+
+// Returns the address of the indices of a triangle.
+VkDeviceAddress indicesFrom(const GpuPrimitive& primitive, std::uint32_t triangle);
+// Returns the triangles [first, first + count) as a geometry of a BLAS, with the flags of an opaque one.
+BlasGeometry blasGeometry(const GpuPrimitive& primitive, std::uint32_t first, std::uint32_t count);
+
+// How primitives are uploaded.
+struct PrimitiveUpload {
+    VertexForm form = VertexForm::Compact;
+    // A primitive with more triangles becomes several geometries, which may begin at any of them.
+    std::uint64_t unsplitTriangles = 0;
+    MemoryPool* builds = nullptr;  // for GpuPrimitive::buildInput
 };
 
 // Returns the values of the package's attributes vertex by vertex; none if the primitive's key reads none.
@@ -43,19 +62,29 @@ std::vector<float> joinAttributes(const Package& package, const package::Primiti
 // them, or 0.
 std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
 
-// Queues the copies in `uploader`. `declared` are the joined attributes. A primitive without triangles gets
-// no buffer. With the compact form an attribute gets one that keeps its values nearly
-// (scene/vertex_format.h), if there is one; what joints and morph targets change stays as it is.
-Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                     const PrimitiveView& view, std::span<const std::uint32_t> indices,
-                                     std::span<const float> declared, VertexForm form);
+// What of a primitive is uploaded, beside the attributes of its view.
+struct PrimitiveContent {
+    std::span<const std::uint32_t> indices;
+    std::span<const float> declared;               // the joined attributes
+    std::span<const std::uint32_t> positionWords;  // of packPositions(); empty: the view's positions
+};
 
-// Queues the copies in `uploader`. Primitives without triangles get no buffer. `ordered` holds the indices of
-// each primitive in another order of its triangles; where it is empty, the primitives' own indices are used.
+// Queues the copies in `uploader`. A primitive without triangles gets no buffer. Unless the form is the full
+// one, an attribute gets a form that keeps its values nearly (vertices/vertex_format.h), if there is one;
+// what joints and morph targets change stays as it is.
+Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                     const PrimitiveView& view, const PrimitiveContent& content,
+                                     const PrimitiveUpload& how);
+
+// Queues the copies in `uploader`. Primitives without triangles get no buffer. `positions` are those of
+// packPositions(), whose values the primitives have. `ordered` holds the indices of each primitive in another
+// order of its triangles; if it is empty, the primitives' own indices are used.
 Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
                                                    Uploader& uploader, const Package& package,
                                                    const PackageScene& known,
-                                                   std::span<const PrimitiveView> primitives, VertexForm form,
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const GridPositions> positions,
+                                                   const PrimitiveUpload& how,
                                                    std::span<const std::vector<std::uint32_t>> ordered = {});
 
 // Makes the record of a geometry: triangles of `primitive` from `firstTriangle` on.

@@ -112,7 +112,8 @@ Status uploadMicromaps(GpuScene::State& state, const DecidedTriangles& decided) 
 }
 
 // Makes `deformer` if an instance changes its shape.
-Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene, SceneLayout& layout,
+Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene,
+                  std::span<const GridPositions> positions, MemoryPool& builds, SceneLayout& layout,
                   std::unique_ptr<Deformer>& deformer) {
     const PackageScene known = package.scene(scene.packageScene);
     Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
@@ -146,8 +147,9 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         ordered = orderedTriangles(scene.primitives, capacity, leafOrder, ordered, decided.splits);
         state.statistics.orderMs = millisecondsSince(begin);
     }
-    Result<std::vector<GpuPrimitive>> primitives = uploadPrimitives(
-        state.context, state.pool, **uploader, package, known, scene.primitives, scene.vertices, ordered);
+    Result<std::vector<GpuPrimitive>> primitives =
+        uploadPrimitives(state.context, state.pool, **uploader, package, known, scene.primitives, positions,
+                         {scene.vertices, capacity.triangles, &builds}, ordered);
     if (!primitives) {
         return primitives.error();
     }
@@ -239,19 +241,20 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
         const PrimitiveView& view = scene.primitives[range.primitive];
         const std::uint32_t flags = known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
         const GpuPrimitive& primitive = state.primitives[range.primitive];
-        const VkDeviceAddress indices = primitive.indices + range.first * 3 * sizeof(std::uint32_t);
-        VkDeviceAddress positions = primitive.positions;
+        BlasGeometry& geometry =
+            input.geometries.emplace_back(blasGeometry(primitive, range.first, range.count));
         if (part.instance) {
             const auto own = state.deformed.addresses.find({*part.instance, range.primitive});
-            positions = own == state.deformed.addresses.end() ? positions : own->second.positions;
+            geometry.positions =
+                own == state.deformed.addresses.end() ? geometry.positions : own->second.positions;
         }
         const auto micromap = state.micromaps.find(range.primitive);
-        const bool opaque =
+        geometry.opaque =
             range.opaque || (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
-        input.geometries.push_back(
-            {positions, indices, primitive.vertexCount, range.count, opaque,
-             (flags & gpu::kGeometryPassesLight) != 0,
-             opaque || micromap == state.micromaps.end() ? nullptr : &micromap->second});
+        geometry.once = (flags & gpu::kGeometryPassesLight) != 0;
+        if (!geometry.opaque && micromap != state.micromaps.end()) {
+            geometry.micromap = &micromap->second;
+        }
     }
     return input;
 }
@@ -304,6 +307,53 @@ Status buildTopLevel(GpuScene::State& state, const SceneView& scene, const Scene
     return okStatus();
 }
 
+// Uploads a scene that is not edited. `builds` gets what only the builds of acceleration structures read.
+Status uploadStill(GpuScene::State& state, const Package& package, const PackageScene& known,
+                   const SceneView& given, MemoryPool& builds) {
+    // Everything that is made of positions has those that the device reads.
+    const std::vector<GridPositions> positions = packPositions(given.primitives, given.vertices);
+    const std::vector<PrimitiveView> primitives = withPositions(given.primitives, positions);
+    SceneView scene = given;
+    scene.primitives = primitives;
+    SceneLayout layout;
+    std::unique_ptr<Deformer> deformer;
+    if (Status s = uploadData(state, package, scene, positions, builds, layout, deformer); !s) {
+        return s;
+    }
+    if (deformer) {
+        if (Status s = deformOnce(state.context, *deformer, scene.instances.size()); !s) {
+            return s;
+        }
+    }
+    std::vector<BlasInput> refitted;
+    if (Status s = buildBottomLevels(state, known, scene, layout, package.positionFetch(), refitted); !s) {
+        return s;
+    }
+    if (Status s = scene.moves ? createMotion(state, scene, layout, refitted, std::move(deformer))
+                               : buildTopLevel(state, scene, layout);
+        !s) {
+        return s;
+    }
+    for (GpuPrimitive& primitive : state.primitives) {
+        primitive.buildInput = {};
+    }
+    Result<std::vector<UniqueSampler>> samplers = createSamplers(state.context, known.samplers);
+    if (!samplers) {
+        return samplers.error();
+    }
+    state.samplers = std::move(*samplers);
+    if (Status s = createSceneSet(state); !s) {
+        return s;
+    }
+    state.statistics.triangles = layout.triangles;
+    state.statistics.geometries = static_cast<std::uint32_t>(layout.geometries.size());
+    state.statistics.instances = static_cast<std::uint32_t>(layout.instances.size());
+    if (!state.motion) {
+        state.batches = batchDraws(layout.draws);
+    }
+    return okStatus();
+}
+
 }  // namespace
 
 VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
@@ -353,6 +403,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     if (Status s = checkScene(package, known, scene, imageLimits(contextState)); !s) {
         return s.error();
     }
+    MemoryPool builds(contextState);  // of what only the builds below read
     auto state = std::make_unique<State>(contextState);
     if (scene.streamsTextures) {
         state->stream = std::make_unique<TextureStream>(
@@ -364,38 +415,8 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
         }
         return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
     }
-    SceneLayout layout;
-    std::unique_ptr<Deformer> deformer;
-    if (Status s = uploadData(*state, package, scene, layout, deformer); !s) {
+    if (Status s = uploadStill(*state, package, known, scene, builds); !s) {
         return s.error();
-    }
-    if (deformer) {
-        if (Status s = deformOnce(contextState, *deformer, scene.instances.size()); !s) {
-            return s.error();
-        }
-    }
-    std::vector<BlasInput> refitted;
-    if (Status s = buildBottomLevels(*state, known, scene, layout, package.positionFetch(), refitted); !s) {
-        return s.error();
-    }
-    if (Status s = scene.moves ? createMotion(*state, scene, layout, refitted, std::move(deformer))
-                               : buildTopLevel(*state, scene, layout);
-        !s) {
-        return s.error();
-    }
-    Result<std::vector<UniqueSampler>> samplers = createSamplers(contextState, known.samplers);
-    if (!samplers) {
-        return samplers.error();
-    }
-    state->samplers = std::move(*samplers);
-    if (Status s = createSceneSet(*state); !s) {
-        return s.error();
-    }
-    state->statistics.triangles = layout.triangles;
-    state->statistics.geometries = static_cast<std::uint32_t>(layout.geometries.size());
-    state->statistics.instances = static_cast<std::uint32_t>(layout.instances.size());
-    if (!state->motion) {
-        state->batches = batchDraws(layout.draws);
     }
     return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
 }

@@ -29,7 +29,8 @@ SceneView TestScene::view() {
             .instances = instances,
             .images = imageViews_,
             .lights = lights,
-            .traversalOrder = traversalOrder};
+            .traversalOrder = traversalOrder,
+            .vertices = VertexForm::Full};  // the shaders of these tests read floats and words
 }
 
 TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z) {

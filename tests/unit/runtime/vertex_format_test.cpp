@@ -1,5 +1,5 @@
 // The compact forms of vertices keep their values within the bounds that vertex_format.h states.
-#include "scene/vertex_format.h"
+#include "vertices/vertex_format.h"
 
 #include <gtest/gtest.h>
 

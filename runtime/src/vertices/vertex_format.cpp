@@ -1,4 +1,4 @@
-#include "scene/vertex_format.h"
+#include "vertices/vertex_format.h"
 
 #include <algorithm>
 #include <bit>

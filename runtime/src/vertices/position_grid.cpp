@@ -1,0 +1,212 @@
+#include "vertices/position_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+
+namespace glint {
+namespace {
+
+constexpr double kMostCode = 65535.0;
+constexpr std::size_t kGridWords = 6;  // least and step
+
+// The numbers of one axis.
+struct AxisGrid {
+    float least = 0.0F;
+    float step = 0.0F;
+};
+
+struct Bounds {
+    double least = std::numeric_limits<double>::infinity();
+    double most = -std::numeric_limits<double>::infinity();
+    bool finite = true;
+};
+
+template <typename Function>
+bool allOf(std::span<const PrimitiveView> mesh, std::size_t axis, const Function& function) {
+    return std::ranges::all_of(mesh, [&](const PrimitiveView& primitive) {
+        return std::ranges::all_of(primitive.positions, [&](const std::array<float, 3>& position) {
+            return function(position[axis]);
+        });
+    });
+}
+
+Bounds boundsOf(std::span<const PrimitiveView> mesh, std::size_t axis) {
+    Bounds bounds;
+    bounds.finite = allOf(mesh, axis, [&](float value) {
+        bounds.least = std::min<double>(bounds.least, value);
+        bounds.most = std::max<double>(bounds.most, value);
+        return std::isfinite(value);
+    });
+    return bounds;
+}
+
+std::uint32_t codeOnAxis(float value, const AxisGrid& grid) {
+    if (grid.step == 0.0F) {
+        return 0;
+    }
+    const double code = (static_cast<double>(value) - grid.least) / grid.step;
+    return static_cast<std::uint32_t>(std::clamp(std::round(code), 0.0, kMostCode));
+}
+
+// The product of a float and 16 bits is exact in a double, and a sum of two floats nearly always: the casts
+// round as floats do.
+float valueOnAxis(std::uint32_t code, const AxisGrid& grid) {
+    const auto offset = static_cast<float>(static_cast<double>(grid.step) * code);
+    return static_cast<float>(static_cast<double>(grid.least) + offset);
+}
+
+// Returns the exponent of the lowest bit that is set; 0 has none and takes any.
+int lowestBit(float value) {
+    if (value == 0.0F) {
+        return std::numeric_limits<int>::max();
+    }
+    int exponent = 0;
+    const auto digits = static_cast<std::uint32_t>(std::abs(std::frexp(value, &exponent)) * 16777216.0F);
+    return exponent - 24 + std::countr_zero(digits);
+}
+
+// Tries the steps of integers in files (KHR_mesh_quantization): as they are, and as shares of 1.
+std::optional<AxisGrid> gridOfIntegers(std::span<const PrimitiveView> mesh, std::size_t axis,
+                                       const Bounds& bounds) {
+    const double tolerance =
+        std::max(std::abs(bounds.least), std::abs(bounds.most)) * std::numeric_limits<float>::epsilon() * 2.0;
+    for (const double step : {1.0, 1.0 / 65535.0, 1.0 / 32767.0, 1.0 / 255.0, 1.0 / 127.0}) {
+        const AxisGrid grid{static_cast<float>(bounds.least), static_cast<float>(step)};
+        const bool keeps =
+            bounds.most - bounds.least <= (kMostCode + 0.5) * step && allOf(mesh, axis, [&](float value) {
+                const float kept = valueOnAxis(codeOnAxis(value, grid), grid);
+                return std::abs(static_cast<double>(kept) - value) <= tolerance;
+            });
+        if (keeps) {
+            return grid;
+        }
+    }
+    return std::nullopt;
+}
+
+// Tries the largest power of two of which all values are multiples.
+std::optional<AxisGrid> gridOfPowers(std::span<const PrimitiveView> mesh, std::size_t axis,
+                                     const Bounds& bounds) {
+    int lowest = std::numeric_limits<int>::max();
+    const double extent = bounds.most - bounds.least;
+    const bool keeps = allOf(mesh, axis, [&](float value) {
+        lowest = std::min(lowest, lowestBit(value));
+        return extent <= std::ldexp(kMostCode, lowest);
+    });
+    // Smaller steps are no normal floats, which devices may take for 0.
+    if (!keeps || lowest < std::numeric_limits<float>::min_exponent - 1) {
+        return std::nullopt;
+    }
+    return AxisGrid{static_cast<float>(bounds.least), std::ldexp(1.0F, lowest)};
+}
+
+std::optional<AxisGrid> keepingAxis(std::span<const PrimitiveView> mesh, std::size_t axis,
+                                    const Bounds& bounds) {
+    if (bounds.least == bounds.most) {
+        return AxisGrid{static_cast<float>(bounds.least), 0.0F};
+    }
+    const std::optional<AxisGrid> powers = gridOfPowers(mesh, axis, bounds);
+    return powers ? powers : gridOfIntegers(mesh, axis, bounds);
+}
+
+// Makes a grid of the three axes, each by `make`.
+template <typename Make>
+std::optional<PositionGrid> gridOf(std::span<const PrimitiveView> mesh, const Make& make) {
+    PositionGrid grid;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Bounds bounds = boundsOf(mesh, axis);
+        if (!bounds.finite || bounds.least > bounds.most) {
+            return std::nullopt;
+        }
+        const std::optional<AxisGrid> made = make(axis, bounds);
+        if (!made) {
+            return std::nullopt;
+        }
+        grid.least[axis] = made->least;
+        grid.step[axis] = made->step;
+    }
+    return grid;
+}
+
+bool deforms(const PrimitiveView& primitive) {
+    return !primitive.joints.empty() || !primitive.targets.empty();
+}
+
+}  // namespace
+
+std::optional<PositionGrid> findGrid(std::span<const PrimitiveView> mesh) {
+    return gridOf(mesh,
+                  [&](std::size_t axis, const Bounds& bounds) { return keepingAxis(mesh, axis, bounds); });
+}
+
+std::optional<PositionGrid> coverByGrid(std::span<const PrimitiveView> mesh) {
+    return gridOf(mesh, [&](std::size_t axis, const Bounds& bounds) -> std::optional<AxisGrid> {
+        if (const std::optional<AxisGrid> kept = keepingAxis(mesh, axis, bounds)) {
+            return kept;
+        }
+        const auto step = static_cast<float>((bounds.most - bounds.least) / kMostCode);
+        if (!std::isnormal(step)) {
+            return std::nullopt;
+        }
+        return AxisGrid{static_cast<float>(bounds.least), step};
+    });
+}
+
+GridPositions placeOnGrid(std::span<const std::array<float, 3>> positions, const PositionGrid& grid) {
+    GridPositions placed;
+    placed.values.reserve(positions.size());
+    placed.words.resize(kGridWords + (3 * positions.size() + 1) / 2);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        placed.words[axis] = std::bit_cast<std::uint32_t>(grid.least[axis]);
+        placed.words[3 + axis] = std::bit_cast<std::uint32_t>(grid.step[axis]);
+    }
+    std::size_t half = 2 * kGridWords;
+    for (const std::array<float, 3>& position : positions) {
+        std::array<float, 3>& value = placed.values.emplace_back();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const AxisGrid ofAxis{grid.least[axis], grid.step[axis]};
+            const std::uint32_t code = codeOnAxis(position[axis], ofAxis);
+            value[axis] = valueOnAxis(code, ofAxis);
+            placed.words[half / 2] |= code << (half % 2 * 16);
+            ++half;
+        }
+    }
+    return placed;
+}
+
+std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives, VertexForm form) {
+    std::vector<GridPositions> packed(primitives.size());
+    for (std::size_t first = 0; first < primitives.size() && form != VertexForm::Full;) {
+        const auto end =
+            std::find_if(primitives.begin() + static_cast<std::ptrdiff_t>(first), primitives.end(),
+                         [&](const PrimitiveView& other) { return other.mesh != primitives[first].mesh; });
+        const std::size_t count = static_cast<std::size_t>(std::distance(primitives.begin(), end)) - first;
+        const std::span<const PrimitiveView> mesh = primitives.subspan(first, count);
+        std::optional<PositionGrid> grid;
+        if (std::ranges::none_of(mesh, deforms)) {
+            grid = form == VertexForm::Quantized ? coverByGrid(mesh) : findGrid(mesh);
+        }
+        for (std::size_t i = 0; grid && i < count; ++i) {
+            packed[first + i] = placeOnGrid(mesh[i].positions, *grid);
+        }
+        first += count;
+    }
+    return packed;
+}
+
+std::vector<PrimitiveView> withPositions(std::span<const PrimitiveView> primitives,
+                                         std::span<const GridPositions> positions) {
+    std::vector<PrimitiveView> changed(primitives.begin(), primitives.end());
+    for (std::size_t i = 0; i < changed.size(); ++i) {
+        if (!positions[i].words.empty()) {
+            changed[i].positions = positions[i].values;
+        }
+    }
+    return changed;
+}
+
+}  // namespace glint

@@ -1,0 +1,52 @@
+// Positions of 16 bits: numbers of steps from a corner of the mesh's box.
+#pragma once
+
+#include <glint/scene_view.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// All primitives of a mesh have one grid, so that positions that are equal stay equal and no seam between
+// primitives opens. A coordinate is least + step * code, with codes of 0 to 65535; the product and the sum
+// are rounded to floats, one after the other, as shaders/host/geometry.glsl does.
+struct PositionGrid {
+    std::array<float, 3> least{};
+    std::array<float, 3> step{};
+};
+
+// A primitive's positions in 16 bits.
+struct GridPositions {
+    // For the device: the bits of least and step, then three codes of 16 bits for each vertex. Empty if the
+    // positions stay as they are.
+    std::vector<std::uint32_t> words;
+    // What the words mean, to the bit.
+    std::vector<std::array<float, 3>> values;
+};
+
+// Returns a grid on which every position lies, but for 2^-22 of the mesh's largest coordinate on an axis, as
+// rounded sums have it: coordinates that a file has as integers of 8 or 16 bits, and others that are
+// multiples of a power of two. None if there is no such grid.
+std::optional<PositionGrid> findGrid(std::span<const PrimitiveView> mesh);
+
+// Returns a grid over the box of the mesh, on which a coordinate moves by at most half a step: 1/131070 of
+// the box. An axis that findGrid() can keep is kept. None if a coordinate is not finite.
+std::optional<PositionGrid> coverByGrid(std::span<const PrimitiveView> mesh);
+
+GridPositions placeOnGrid(std::span<const std::array<float, 3>> positions, const PositionGrid& grid);
+
+// Returns the positions of each primitive in the form that the scene asks for. Those of meshes that follow
+// joints or morph targets stay as they are, because the device computes with them. `primitives` are sorted by
+// mesh.
+std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives, VertexForm form);
+
+// Returns the primitives with the values of `positions`, which must outlive the result, in the place of those
+// that they have.
+std::vector<PrimitiveView> withPositions(std::span<const PrimitiveView> primitives,
+                                         std::span<const GridPositions> positions);
+
+}  // namespace glint
