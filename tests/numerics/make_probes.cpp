@@ -32,6 +32,12 @@ constexpr std::string_view kRoot = R"(#version 460
 #include "numerics/textbook.glsl"
 )";
 
+constexpr std::string_view kProofRoot = R"(#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+#include "numerics/proofs.glsl"
+)";
+
 // Returns the part of a header that needs no device addresses: its constants.
 std::string constantsOf(std::string_view header) {
     std::string text = "#include \"interop/types.h\"\nGLINT_INTEROP_BEGIN\n";
@@ -106,21 +112,30 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     if (glint::Status status = sources.addGenerated(); !status) {
         return status;
     }
-    const glint::Result<glint::compiler::GlslUnit> unit = glint::compiler::flatten(
-        "probes", kRoot, [&](std::string_view name) { return sources.find(name); },
-        glint::compiler::FlattenSide::Glsl);
+    const auto flattened = [&](const char* name, std::string_view root) {
+        return glint::compiler::flatten(
+            name, root, [&](std::string_view file) { return sources.find(file); },
+            glint::compiler::FlattenSide::Glsl);
+    };
+    const glint::Result<glint::compiler::GlslUnit> unit = flattened("probes", kRoot);
     if (!unit) {
         return unit.error();
+    }
+    const glint::Result<glint::compiler::GlslUnit> proofs = flattened("proofs", kProofRoot);
+    if (!proofs) {
+        return proofs.error();
     }
     const std::string glsl = unit->withPlaces();
     const glint::Result<std::string> cpp = glint::numerics::translateToCpp(glsl);
     if (!cpp) {
         return cpp.error();
     }
-    const std::map<std::string, std::string> files{{"probes.glsl", glsl},
-                                                   {"probes.inc", *cpp},
-                                                   {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
-                                                   {"probe_list.inc", listProbes(glsl)}};
+    const std::map<std::string, std::string> files{
+        {"probes.glsl", glsl},
+        {"probes.inc", *cpp},
+        {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
+        {"probe_list.inc", listProbes(glsl)},
+        {"proofs_text.inc", "R\"glsl(" + proofs->withPlaces() + ")glsl\"\n"}};
     for (const auto& [name, text] : files) {
         if (glint::Status status = glint::base::writeFile(output / name, text); !status) {
             return status;

@@ -1,0 +1,79 @@
+#include "proofs.h"
+
+#include "evaluate.h"
+#include "proof_inputs.h"
+#include "prove/symbolic.h"
+#include "spirv/compiler.h"
+
+#include <fmt/format.h>
+
+namespace glint::numerics {
+namespace {
+
+constexpr std::string_view kText =
+#include "proofs_text.inc"
+    ;
+
+// A module with all claims, each of which stays a function.
+compiler::ShaderSource sourceOf(const std::vector<Proof>& proofs) {
+    std::string text(kText);
+    const std::size_t firstLine = text.find("#line");
+    text.insert(firstLine == std::string::npos ? 0 : firstLine,
+                fmt::format("#define GLINT_ENERGY_COMPENSATION 1\n"
+                            "#define PROOF(name) void prove##name(float i[{}], inout float o[{}])\n",
+                            kMaxInputs, kMaxOutputs));
+    compiler::ShaderSource source;
+    source.name = "proofs";
+    text += fmt::format(
+        "layout(local_size_x = 1) in;\nlayout(std430, binding = 0) buffer Results {{ float data[]; }} "
+        "results;\nvoid main() {{\n    float i[{}];\n    float o[{}];\n",
+        kMaxInputs, kMaxOutputs);
+    text += fmt::format("    for (int k = 0; k < {}; ++k) {{ i[k] = results.data[k]; }}\n", kMaxInputs);
+    for (const Proof& proof : proofs) {
+        const std::string name = fmt::format("prove{}", proof.name);
+        text += fmt::format("    {}(i, o);\n", name);
+        source.functionsApart.push_back(name);
+    }
+    text += fmt::format("    for (int k = 0; k < {}; ++k) {{ results.data[k] = o[k]; }}\n}}\n", kMaxOutputs);
+    source.glsl = std::move(text);
+    return source;
+}
+
+}  // namespace
+
+const std::vector<Proof>& allProofs() {
+    static const std::vector<Proof> kProofs = bsdfProofs();
+    return kProofs;
+}
+
+Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proofs) {
+    compiler::ShaderCompileOptions options;
+    options.debugInfo = true;  // names, by which functions are found
+    const Result<std::vector<std::uint32_t>> words = compiler::compileShader(sourceOf(proofs), options);
+    if (!words) {
+        return words.error();
+    }
+    std::vector<prove::Program> programs;
+    for (const Proof& proof : proofs) {
+        Result<prove::Program> program =
+            prove::executeSymbolically(*words, fmt::format("prove{}", proof.name));
+        if (!program) {
+            Diagnostic error = program.error();
+            error.where = std::string(proof.function);
+            return error;
+        }
+        programs.push_back(std::move(*program));
+    }
+    return programs;
+}
+
+std::string describeDomain(const prove::Claim& claim) {
+    std::string text;
+    for (const prove::InputRange& input : claim.inputs) {
+        text += fmt::format("{}{} in [{:.7g}, {:.7g}]", text.empty() ? "" : ", ", input.name, input.low,
+                            input.high);
+    }
+    return text;
+}
+
+}  // namespace glint::numerics

@@ -1,0 +1,42 @@
+// The list of claims: each function of shaders/ that needs no device, its documented domain, and the ranges
+// in which its results must lie.
+#pragma once
+
+#include "prove/prover.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::numerics {
+
+struct Proof {
+    std::string_view name;      // in proofs_*.glsl
+    std::string_view function;  // for people
+    std::string_view bound;     // what is claimed, for people
+    prove::Claim claim;
+    std::uint64_t boxes = 2'000;  // in continuous integration; the nightly run takes more
+    // The share of the domain that may stay undecided with so many boxes. 0 for what is proved.
+    double undecided = 0.0;
+};
+
+// A function about which nothing is claimed, and why.
+struct Unclaimed {
+    std::string_view function;
+    std::string_view reason;
+};
+
+const std::vector<Proof>& allProofs();
+const std::vector<Unclaimed>& unclaimedFunctions();
+
+// The programs of claims, in the order of `proofs`: what the compiler makes of their functions. Errors are
+// those of compileShader() and executeSymbolically().
+Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proofs);
+
+// "nDotV in [1e-07, 1], alpha in [1e-4, 1]".
+std::string describeDomain(const prove::Claim& claim);
+
+}  // namespace glint::numerics
