@@ -197,8 +197,8 @@ PROOF(SheenAlbedo) {
 }
 
 PROOF(SheenShares) {
-    Sheen layer = Sheen(vec3(i[0], i[1], i[2]), i[3], 0.0);
-    vec3 view = vec3(0.0, 0.0, i[4]);
+    Sheen layer = Sheen(vec3(i[0]), i[1], 0.0);
+    vec3 view = vec3(0.0, 0.0, i[2]);
     sheenPrepare(layer, view);
     LayerAlbedo shares = sheenShares(layer, view);
     o[0] = shares.reflected.x;
@@ -256,6 +256,6 @@ PROOF(RefractDirection) {
 
 PROOF(ThinTransmission) {
     float cosine;
-    o[0] = thinTransmission(UNIT(0), UNIT(3), vec2(i[6], i[7]), cosine);
+    o[0] = thinTransmission(UNIT(0), -UNIT(3), vec2(i[6], i[7]), cosine);
     o[1] = cosine;
 }

@@ -6,6 +6,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 
 int main(int argc, char** argv) {
     CLI::App app("Proves claims about the functions of the shaders on intervals");
@@ -36,6 +37,17 @@ int main(int argc, char** argv) {
         fmt::print("{:28} {:9} {:8.2e} {:7} boxes {:6} nodes {:6.2f} s\n", proofs[k].name,
                    nameOf(result.state), result.undecidedShare, result.boxes, (*programs)[k].nodes.size(),
                    seconds);
+        if (std::getenv("TRACE") != nullptr && !result.undecidedBox.empty()) {
+            glint::prove::BoxEvaluator e((*programs)[k]);
+            e.run(result.undecidedBox, true);
+            for (unsigned id = 0; id < (*programs)[k].nodes.size(); ++id) {
+                if ((*programs)[k].nodes[id].op != glint::prove::Op::Constant) {
+                    fmt::print("  {} {} [{:.6g}, {:.6g}]\n", id,
+                               glint::prove::describe((*programs)[k], id, 2), e.value(id).low,
+                               e.value(id).high);
+                }
+            }
+        }
         if (result.counterexample) {
             fmt::print("    {}", result.counterexample->what);
             for (const double input : result.counterexample->inputs) {

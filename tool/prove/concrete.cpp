@@ -195,6 +195,15 @@ double evaluateNode(const Node& node, double a, double b, double c) {
             return toFormat(toFormat(a - toFormat(sum - part, format), format) + toFormat(b - part, format),
                             format);
         }
+        case Op::CircleSum:
+            return c;
+        case Op::SquareOfRoot:
+        case Op::SphereSum:
+            return b;
+        case Op::Bounded:
+        case Op::UnitSum:
+        case Op::PartOfUnit:
+            return a;
         case Op::Less:
             return a < b ? 1.0 : 0.0;
         case Op::LessEqual:

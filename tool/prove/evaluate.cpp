@@ -105,6 +105,11 @@ const char* nameOf(Hazard hazard) {
 
 BoxEvaluator::BoxEvaluator(const Program& program) : program_(program), values_(program.nodes.size()) {}
 
+void BoxEvaluator::know(NodeId node, const Interval& range) {
+    known_.emplace_back(node, range);
+    std::sort(known_.begin(), known_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
 void BoxEvaluator::run(std::span<const Interval> box, bool withAffineForms) {
     box_ = box;
     findings_.clear();
@@ -126,8 +131,12 @@ void BoxEvaluator::run(std::span<const Interval> box, bool withAffineForms) {
             scratch.resize(symbols_.size());
         }
     }
+    auto known = known_.begin();
     for (NodeId id = 0; id < program_.nodes.size(); ++id) {
         evaluate(id);
+        for (; known != known_.end() && known->first == id; ++known) {
+            values_[id] = meet(values_[id], known->second);
+        }
     }
 }
 
@@ -145,7 +154,8 @@ void BoxEvaluator::evaluate(NodeId id) {
         values_[id] = Interval::nothing();
         return;
     }
-    const bool joins = node.op == Op::Merge || node.op == Op::Select;
+    const bool joins =
+        node.op == Op::Merge || node.op == Op::Select || node.op == Op::And || node.op == Op::Or;
     if (!joins) {
         for (const NodeId operand : {node.a, node.b, node.c}) {
             if (operand != kNoNode && of(operand).isEmpty()) {
@@ -168,7 +178,7 @@ void BoxEvaluator::evaluate(NodeId id) {
             return;
         }
     }
-    if (hazard != Hazard::None) {
+    if (hazard != Hazard::None && !node.isAuxiliary) {
         findings_.push_back({id, hazard});
     }
 }
@@ -260,13 +270,59 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
             return roundingError(a.magnitude() * b.magnitude());
         case Op::SumError:
             return roundingError(std::max(std::abs(a.low + b.low), std::abs(a.high + b.high)));
+        case Op::CircleSum: {
+            // The sine, the cosine and the products on the way are off by less than this.
+            Hazard ignored = Hazard::None;
+            const Interval squares = hull(arithmetic.square(a, ignored), arithmetic.square(b, ignored));
+            const double error = 32.0 * unitRoundoff(node.format);
+            return meet(c,
+                        arithmetic.convert({squares.low * (1.0 - error) - 8.0 * halfDenormal(node.format),
+                                            squares.high * (1.0 + error) + 8.0 * halfDenormal(node.format)},
+                                           ignored));
+        }
+        case Op::SquareOfRoot: {
+            Hazard ignored = Hazard::None;
+            const double error = 4.0 * unitRoundoff(node.format);
+            return meet(b, arithmetic.convert({a.low * (1.0 - error) - 2.0 * halfDenormal(node.format),
+                                               a.high * (1.0 + error) + 2.0 * halfDenormal(node.format)},
+                                              ignored));
+        }
+        case Op::Bounded: {
+            // The squared lengths are rounded down by less than this, and the sum up.
+            const double length =
+                std::sqrt(std::max(b.high, 0.0)) * (1.0 + 16.0 * unitRoundoff(node.format)) + 0x1p-60;
+            return meet(a, {roundDown(-length, node.format), roundUp(length, node.format)});
+        }
+        case Op::SphereSum: {
+            Hazard ignored = Hazard::None;
+            const double error = 40.0 * unitRoundoff(node.format);
+            const Interval radius2 = arithmetic.square(a, ignored);
+            return meet(
+                b, arithmetic.convert({radius2.low * (1.0 - error), radius2.high * (1.0 + error)}, ignored));
+        }
+        case Op::UnitSum:
+        case Op::PartOfUnit: {
+            // As for normalized(), the squared length must not underflow or overflow.
+            const double error = 32.0 * unitRoundoff(node.format);
+            if (b.low < 4.0 * kSmallestNormalSingle || !b.isFinite() || node.format == Format::Half) {
+                return a;
+            }
+            return meet(a, {node.op == Op::UnitSum ? 1.0 - error : 0.0, 1.0 + error});
+        }
         case Op::Less:
         case Op::LessEqual:
         case Op::Equal:
             return compared(node);
         case Op::And:
+            // An operand without a value belongs to a branch that is not taken.
+            if (a.isEmpty() || b.isEmpty()) {
+                return kFalse;
+            }
             return {std::min(a.low, b.low), std::min(a.high, b.high)};
         case Op::Or:
+            if (a.isEmpty() || b.isEmpty()) {
+                return kTrue;
+            }
             return {std::max(a.low, b.low), std::max(a.high, b.high)};
         case Op::Not:
             return notOf(a);
@@ -603,8 +659,27 @@ bool BoxEvaluator::formOf(const Node& node, Affine& result) {
             furtherUnits = 2.0;
             break;
         case Op::Refine:
+        case Op::Bounded:
+        case Op::UnitSum:
+        case Op::PartOfUnit:
             copyAffine(form(node.a), result);
             return true;
+        case Op::CircleSum:
+            if (node.a == node.b) {
+                squareAffine(form(node.a), result);
+                furtherUnits = 16.0;
+                break;
+            }
+            copyAffine(form(node.c), result);
+            return true;
+        case Op::SphereSum:
+            squareAffine(form(node.a), result);
+            furtherUnits = 20.0;
+            break;
+        case Op::SquareOfRoot:
+            copyAffine(form(node.a), result);
+            furtherUnits = 4.0;
+            break;
         case Op::Select:
         case Op::Merge:
             formOfMerge(node, result);

@@ -5,6 +5,7 @@
 #include "prove/program.h"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint::prove {
@@ -24,6 +25,12 @@ public:
 
     // `box` has an interval for each input of the program.
     void run(std::span<const Interval> box, bool withAffineForms);
+
+    // Adds what is known of a node for the boxes to come, until forget().
+    void know(NodeId node, const Interval& range);
+    void forget() {
+        known_.clear();
+    }
 
     const Interval& value(NodeId node) const {
         return values_[node];
@@ -61,6 +68,7 @@ private:
     std::vector<std::size_t> symbols_;  // the inputs with a slope of their own
     std::span<const Interval> box_;
     std::vector<Finding> findings_;
+    std::vector<std::pair<NodeId, Interval>> known_;
     bool withForms_ = false;
 };
 

@@ -9,20 +9,6 @@ namespace {
 // Doubles have 53 bits, so products of two floats are exact, and what a sum, a quotient or a root rounds is
 // known exactly by one more operation.
 
-double addDown(double a, double b) {
-    const double sum = a + b;
-    if (!std::isfinite(sum)) {
-        return sum;
-    }
-    const double part = sum - a;
-    const double error = (a - (sum - part)) + (b - part);
-    return error < 0.0 ? nextBelow(sum) : sum;
-}
-
-double addUp(double a, double b) {
-    return -addDown(-a, -b);
-}
-
 double divideDown(double a, double b) {
     const double quotient = a / b;
     if (!std::isfinite(quotient) || !std::isfinite(b) || quotient == 0.0) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace glint::prove {
 namespace {
@@ -94,6 +95,12 @@ const char* nameOf(Op op) {
                                              "splitLow",
                                              "productError",
                                              "sumError",
+                                             "circleSum",
+                                             "squareOfRoot",
+                                             "dot",
+                                             "unitSum",
+                                             "partOfUnit",
+                                             "sphereSum",
                                              "<",
                                              "<=",
                                              "==",
@@ -240,23 +247,14 @@ NodeId ProgramBuilder::refine(NodeId a, Relation relation, NodeId b) {
 
 NodeId ProgramBuilder::make(Node node) {
     node.guard = guard_;
+    node.isAuxiliary = makesAuxiliary_;
     if (isCommutative(node.op) && node.b < node.a) {
         std::swap(node.a, node.b);
     }
     if (const NodeId simple = simplified(node); simple != kNoNode) {
         return simple;
     }
-    const Key key{node.op, node.format, node.function, node.relation, node.isSigned, node.a, node.b,
-                  node.c,  0.0};
-    std::vector<NodeId>& found = known_[key];
-    for (const NodeId id : found) {
-        if (covers(this->node(id).guard)) {
-            return id;
-        }
-    }
-    const NodeId id = append(node);
-    found.push_back(id);
-    return id;
+    return appendOnce(node);
 }
 
 NodeId ProgramBuilder::folded(const Node& node) {
@@ -299,7 +297,28 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (isConstant(node.b, 0.0)) {
                 return node.a;
             }
-            return errorFree(node);
+            if (const NodeId exact = errorFree(node); exact != kNoNode) {
+                return exact;
+            }
+            if (const NodeId sum = sumOfSquares(node); sum != kNoNode) {
+                return sum;
+            }
+            if (const NodeId sum = sumOfNormalized(node); sum != kNoNode) {
+                return sum;
+            }
+            if (const NodeId sum = squaredRadius(node); sum != kNoNode) {
+                return sum;
+            }
+            return dotProduct(node);
+        case Op::Square:
+            if (this->node(node.a).op == Op::Negate) {
+                return make(Op::Square, node.format, this->node(node.a).a);
+            }
+            if (this->node(node.a).op == Op::Apply && this->node(node.a).function == Function::Sqrt) {
+                const NodeId root = node.a;
+                return make(Op::SquareOfRoot, node.format, this->node(root).a, appendOnce(node));
+            }
+            return kNoNode;
         case Op::Subtract:
             return isConstant(node.b, 0.0) ? node.a : errorFree(node);
         case Op::Divide:
@@ -339,6 +358,23 @@ NodeId ProgramBuilder::simplified(const Node& node) {
     }
 }
 
+NodeId ProgramBuilder::plainOf(NodeId id) const {
+    for (;;) {
+        const Node& known = node(id);
+        if (known.op == Op::SphereSum) {
+            id = known.b;
+        } else if (known.op == Op::Bounded || known.op == Op::UnitSum || known.op == Op::PartOfUnit) {
+            id = known.a;
+        } else if (known.op == Op::CircleSum) {
+            id = known.c;
+        } else if (known.op == Op::SquareOfRoot) {
+            id = known.b;
+        } else {
+            return id;
+        }
+    }
+}
+
 bool ProgramBuilder::isHighOf(NodeId high, NodeId of) const {
     if (isConstant(of)) {
         const Node split{.op = Op::SplitHigh};
@@ -356,7 +392,7 @@ bool ProgramBuilder::isLowOf(NodeId low, NodeId of) const {
 }
 
 bool ProgramBuilder::isProductOf(NodeId product, NodeId a, NodeId b) const {
-    const Node& found = node(product);
+    const Node& found = node(plainOf(product));
     if (a == b) {
         return found.op == Op::Square && found.a == a;
     }
@@ -364,7 +400,7 @@ bool ProgramBuilder::isProductOf(NodeId product, NodeId a, NodeId b) const {
 }
 
 bool ProgramBuilder::isSumOf(NodeId sum, NodeId a, NodeId b) const {
-    const Node& found = node(sum);
+    const Node& found = node(plainOf(sum));
     return found.op == Op::Add && ((found.a == a && found.b == b) || (found.a == b && found.b == a));
 }
 
@@ -440,6 +476,195 @@ NodeId ProgramBuilder::errorFree(const Node& node) {
                     return make(Op::ProductError, node.format, std::min(a, b), std::max(a, b));
                 }
             }
+        }
+    }
+    return kNoNode;
+}
+
+// Appends a node that simplified() has been asked about, unless it is there already.
+NodeId ProgramBuilder::appendOnce(const Node& node) {
+    const Key key{node.op, node.format, node.function, node.relation, node.isSigned, node.a, node.b,
+                  node.c,  0.0};
+    std::vector<NodeId>& found = known_[key];
+    for (const NodeId id : found) {
+        if (covers(this->node(id).guard)) {
+            program_.nodes[id].isAuxiliary = program_.nodes[id].isAuxiliary && node.isAuxiliary;
+            return id;
+        }
+    }
+    const NodeId id = append(node);
+    known_[key].push_back(id);
+    return id;
+}
+
+ProgramBuilder::Angular ProgramBuilder::angularOf(NodeId id) {
+    const Node node = this->node(id);
+    switch (node.op) {
+        case Op::Apply:
+            if (node.function == Function::Sin || node.function == Function::Cos) {
+                return {node.a, node.function == Function::Sin, constant(1.0, node.format)};
+            }
+            return {};
+        case Op::Negate:
+        case Op::Refine:
+            return angularOf(node.a);
+        case Op::Multiply:
+            for (const auto& [angular, factor] : {std::pair(node.a, node.b), std::pair(node.b, node.a)}) {
+                Angular found = angularOf(angular);
+                if (found.angle != kNoNode) {
+                    found.rest = make(Op::Multiply, node.format, found.rest, factor);
+                    return found;
+                }
+            }
+            return {};
+        case Op::Divide: {
+            Angular found = angularOf(node.a);
+            if (found.angle != kNoNode) {
+                found.rest = make(Op::Divide, node.format, found.rest, node.b);
+            }
+            return found;
+        }
+        default:
+            return {};
+    }
+}
+
+NodeId ProgramBuilder::sumOfSquares(const Node& node) {
+    const Node& first = this->node(node.a);
+    const Node& second = this->node(node.b);
+    if (first.op != Op::Square || second.op != Op::Square) {
+        return kNoNode;
+    }
+    const NodeId x = first.a;
+    const NodeId y = second.a;
+    const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
+    const Angular ofX = angularOf(x);
+    const Angular ofY = angularOf(y);
+    makesAuxiliary_ = wasAuxiliary;
+    if (ofX.angle == kNoNode || ofX.angle != ofY.angle || ofX.isSine == ofY.isSine) {
+        return kNoNode;
+    }
+    return make(Op::CircleSum, node.format, ofX.rest, ofY.rest, appendOnce(node));
+}
+
+NodeId ProgramBuilder::boundedDot(NodeId sum, const std::vector<NodeId>& a, const std::vector<NodeId>& b) {
+    if (a == b || isConstant(sum)) {
+        return sum;
+    }
+    const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
+    NodeId squares[2] = {kNoNode, kNoNode};
+    for (const bool second : {false, true}) {
+        NodeId& total = squares[second ? 1 : 0];
+        for (const NodeId part : second ? b : a) {
+            const NodeId square = make(Op::Square, node(sum).format, part);
+            total = total == kNoNode ? square : make(Op::Add, node(sum).format, total, square);
+        }
+    }
+    const NodeId both = make(Op::Multiply, node(sum).format, squares[0], squares[1]);
+    makesAuxiliary_ = wasAuxiliary;
+    return make(Op::Bounded, node(sum).format, sum, both);
+}
+
+// Finds the sum of three products, (a.x b.x + a.y b.y) + a.z b.z. Any pairing of factors gives a true bound.
+NodeId ProgramBuilder::dotProduct(const Node& node) {
+    for (const auto& [pair, last] : {std::pair(node.a, node.b), std::pair(node.b, node.a)}) {
+        const Node two = this->node(pair);
+        const Node third = this->node(last);
+        if (two.op != Op::Add || third.op != Op::Multiply) {
+            continue;
+        }
+        const Node first = this->node(two.a);
+        const Node second = this->node(two.b);
+        if (first.op != Op::Multiply || second.op != Op::Multiply || isConstant(first.a) ||
+            isConstant(second.a) || isConstant(third.a) || isConstant(first.b) || isConstant(second.b) ||
+            isConstant(third.b)) {
+            continue;
+        }
+        return boundedDot(appendOnce(node), {first.a, second.a, third.a}, {first.b, second.b, third.b});
+    }
+    return kNoNode;
+}
+
+NodeId ProgramBuilder::sumOfNormalized(const Node& given) {
+    // The squares in a sum, whatever else is known of the sum.
+    const auto squaresOf = [this](const auto& self, NodeId id, std::vector<NodeId>& squares) -> bool {
+        const Node& at = node(plainOf(id));
+        if (at.op == Op::Add) {
+            return self(self, at.a, squares) && self(self, at.b, squares);
+        }
+        squares.push_back(at.op == Op::Square ? at.a : kNoNode);
+        return at.op == Op::Square;
+    };
+    std::vector<NodeId> parts;
+    if (!squaresOf(squaresOf, given.a, parts) || !squaresOf(squaresOf, given.b, parts)) {
+        return kNoNode;
+    }
+    std::vector<NodeId> components;
+    for (const NodeId part : parts) {
+        if (node(part).op != Op::Normalized || node(part).c != node(parts.front()).c) {
+            return kNoNode;
+        }
+        components.push_back(node(part).a);
+    }
+    std::sort(components.begin(), components.end());
+    if (std::adjacent_find(components.begin(), components.end()) != components.end()) {
+        return kNoNode;
+    }
+    const NodeId length2 = node(parts.front()).c;
+    std::vector<NodeId> all;
+    const bool isSum = squaresOf(squaresOf, length2, all);
+    std::sort(all.begin(), all.end());
+    return make(isSum && all == components ? Op::UnitSum : Op::PartOfUnit, given.format, appendOnce(given),
+                length2);
+}
+
+bool ProgramBuilder::isSineOf(NodeId id, NodeId& cosine, NodeId& factor) {
+    const Node at = node(id);
+    if (at.op == Op::Multiply) {
+        for (const auto& [sine, other] : {std::pair(at.a, at.b), std::pair(at.b, at.a)}) {
+            if (isSineOf(sine, cosine, factor)) {
+                factor = make(Op::Multiply, at.format, factor, other);
+                return true;
+            }
+        }
+        return false;
+    }
+    if (at.op != Op::Apply || at.function != Function::Sqrt) {
+        return false;
+    }
+    const Node limited = node(at.a);
+    if (limited.op != Op::Maximum || !isConstant(limited.b, 0.0) || node(limited.a).op != Op::Multiply) {
+        return false;
+    }
+    const Node product = node(limited.a);
+    for (const auto& [minus, plus] : {std::pair(product.a, product.b), std::pair(product.b, product.a)}) {
+        const Node& m = node(minus);
+        const Node& p = node(plus);
+        if (m.op == Op::Subtract && isConstant(m.a, 1.0) && p.op == Op::Add &&
+            ((p.a == m.b && isConstant(p.b, 1.0)) || (p.b == m.b && isConstant(p.a, 1.0)))) {
+            cosine = m.b;
+            factor = constant(1.0, at.format);
+            return true;
+        }
+    }
+    return false;
+}
+
+NodeId ProgramBuilder::squaredRadius(const Node& given) {
+    for (const auto& [circle, last] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
+        const Node around = node(circle);
+        const Node square = node(last);
+        if (around.op != Op::CircleSum || around.a != around.b || square.op != Op::Square) {
+            continue;
+        }
+        NodeId cosine = kNoNode;
+        NodeId factor = kNoNode;
+        const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
+        const bool isSine = isSineOf(around.a, cosine, factor);
+        const NodeId expected = isSine ? make(Op::Multiply, given.format, cosine, factor) : kNoNode;
+        makesAuxiliary_ = wasAuxiliary;
+        if (isSine && expected == square.a) {
+            return make(Op::SphereSum, given.format, factor, appendOnce(given));
         }
     }
     return kNoNode;

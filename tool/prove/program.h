@@ -48,6 +48,13 @@ enum class Op : std::uint8_t {
     SplitLow,
     ProductError,
     SumError,
+    // What is known of sums as a whole.
+    CircleSum,     // c = (a cos t)² + (b sin t)², which lies between a² and b²
+    SquareOfRoot,  // b = √(a)², which is a but for rounding
+    Bounded,       // a, where |a| <= √b: a dot product and the product of the squared lengths
+    UnitSum,       // a, the sum of squares of a normalised vector, which is 1; b is its squared length before
+    PartOfUnit,    // a, the sum of some of these squares, which is at most 1
+    SphereSum,     // b = (a s cos t)² + (a s sin t)² + (a z)², where s² = (1 - z)(1 + z): it is a²
     // Comparisons, which give truth values.
     Less,
     LessEqual,
@@ -88,6 +95,7 @@ struct Node {
     Function function = Function::Sqrt;  // of Apply
     Relation relation = Relation::Less;  // of Refine
     bool isSigned = false;               // of integers
+    bool isAuxiliary = false;            // the shader does not have it; what fails in it does not matter
     NodeId a = kNoNode;
     NodeId b = kNoNode;
     NodeId c = kNoNode;
@@ -129,6 +137,9 @@ public:
     NodeId make(Op op, Format format, NodeId a, NodeId b = kNoNode, NodeId c = kNoNode);
     NodeId apply(Function function, Format format, NodeId a);
     NodeId refine(NodeId a, Relation relation, NodeId b);
+    // A dot product, which is no larger than the product of the lengths: `sum`, or what is known to be the
+    // same.
+    NodeId boundedDot(NodeId sum, const std::vector<NodeId>& a, const std::vector<NodeId>& b);
     NodeId merge(const std::vector<Edge>& edges);
     NodeId both(NodeId a, NodeId b);    // a and b; kNoNode is true
     NodeId either(NodeId a, NodeId b);  // a or b
@@ -160,11 +171,27 @@ private:
     using Key = std::tuple<Op, Format, Function, Relation, bool, NodeId, NodeId, NodeId, double>;
 
     NodeId append(const Node& node);
+    NodeId appendOnce(const Node& node);
     NodeId simplified(const Node& node);
     NodeId errorFree(const Node& node);
+    // A factor of a product that is the sine or the cosine of an angle, and the rest of the product.
+    struct Angular {
+        NodeId angle = kNoNode;
+        bool isSine = false;
+        NodeId rest = kNoNode;
+    };
+    Angular angularOf(NodeId id);
+    NodeId sumOfSquares(const Node& node);
+    NodeId dotProduct(const Node& node);
+    NodeId sumOfNormalized(const Node& node);
+    NodeId squaredRadius(const Node& node);
+    // √((1 - z)(1 + z)) times a factor.
+    bool isSineOf(NodeId id, NodeId& cosine, NodeId& factor);
     NodeId folded(const Node& node);
     // Whether what is computed under `outer` is known under the current guard.
     bool covers(NodeId outer) const;
+    // The operation that the shader has.
+    NodeId plainOf(NodeId id) const;
     bool isHighOf(NodeId high, NodeId of) const;
     bool isLowOf(NodeId low, NodeId of) const;
     bool isProductOf(NodeId product, NodeId a, NodeId b) const;
@@ -173,6 +200,7 @@ private:
     Program program_;
     std::map<Key, std::vector<NodeId>> known_;
     NodeId guard_ = kNoNode;
+    bool makesAuxiliary_ = false;
 };
 
 }  // namespace glint::prove

@@ -1,11 +1,13 @@
 #include "prove/prover.h"
 
 #include "prove/concrete.h"
+#include "prove/gradient.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <queue>
 #include <random>
 #include <utility>
@@ -28,15 +30,29 @@ double toSingle(double value) {
     return static_cast<double>(static_cast<float>(value));
 }
 
-// Where a side is cut: a float inside of it.
+// Where a side is cut: the greatest float of the lower half. The upper half begins with the next float.
 std::optional<double> cutOf(const Interval& side, Scale scale) {
-    double cut = 0.5 * (side.low + side.high);
-    if (scale == Scale::Logarithmic && side.high > 0.0) {
-        cut = side.low > 0.0 ? std::sqrt(side.low) * std::sqrt(side.high) : side.high * 0x1p-8;
+    if (scale == Scale::Whole || side.isPoint()) {
+        return std::nullopt;
     }
-    cut = toSingle(cut);
-    const bool isInside = side.low < cut && cut < side.high;
-    return isInside && scale != Scale::Whole ? std::optional(cut) : std::nullopt;
+    // Functions often decide at 0, which then gets a box of its own.
+    constexpr double kLeast = std::numeric_limits<float>::denorm_min();
+    const bool isLogarithmic = scale == Scale::Logarithmic;
+    if (side.low == 0.0 && (isLogarithmic || side.high < 1e-3)) {
+        return 0.0;
+    }
+    if (side.high == 0.0 && side.low > -1e-3) {
+        return -kLeast;
+    }
+    const double middle = isLogarithmic && side.low > 0.0 ? std::sqrt(side.low) * std::sqrt(side.high)
+                                                          : 0.5 * side.low + 0.5 * side.high;
+    const double cut = toSingle(middle);
+    // The nearest float may be the upper end.
+    return cut < side.high ? std::max(cut, side.low) : side.low;
+}
+
+double nextSingle(double value) {
+    return -static_cast<double>(nextFloatBelow(static_cast<float>(-value)));
 }
 
 double sizeOf(const Interval& side, const InputRange& range) {
@@ -58,7 +74,12 @@ double sizeOf(const Interval& side, const InputRange& range) {
 class Search {
 public:
     Search(const Program& program, const Claim& claim, const ProofOptions& options)
-        : program_(program), claim_(claim), options_(options), boxes_(program), random_(options.seed) {}
+        : program_(program),
+          claim_(claim),
+          options_(options),
+          boxes_(program),
+          gradient_(program),
+          random_(options.seed) {}
 
     ProofResult run();
 
@@ -67,17 +88,20 @@ private:
     bool samplePoints();
     double pointIn(const Interval& side, Scale scale);
     // Returns whether the claim is proved for the box, or the box is not in the domain.
-    bool isProved(Box& box, bool withForms);
+    bool isProved(Box& box);
+    bool holds(Box& box, bool withForms);
+    bool learnFromGradient(const Box& box);
     bool isOutside() const;
     std::string failureOf(NodeId& blamed) const;
     std::string describeFinding(const Finding& finding) const;
-    std::optional<std::size_t> sideToCut(const Box& box) const;
+    std::optional<std::size_t> sideToCut(const Box& box);
     void cut(const Box& box, std::size_t side);
 
     const Program& program_;
     const Claim& claim_;
     const ProofOptions& options_;
     BoxEvaluator boxes_;
+    GradientEvaluator gradient_;
     std::mt19937_64 random_;
     std::priority_queue<Box> open_;
     ProofResult result_;
@@ -161,31 +185,90 @@ std::string Search::failureOf(NodeId& blamed) const {
     return {};
 }
 
-bool Search::isProved(Box& box, bool withForms) {
+bool Search::holds(Box& box, bool withForms) {
     boxes_.run(box.sides, withForms);
     blamed_ = kNoNode;
     box.why = isOutside() ? std::string() : failureOf(blamed_);
     return box.why.empty();
 }
 
-std::optional<std::size_t> Search::sideToCut(const Box& box) const {
-    double changes = 0.0;
-    double sizes = 0.0;
-    for (std::size_t k = 0; k < box.sides.size(); ++k) {
-        changes += blamed_ == kNoNode ? 0.0 : boxes_.change(blamed_, k);
-        sizes += sizeOf(box.sides[k], claim_.inputs[k]);
+// Narrows what is known of the node to blame, by the ends of the inputs in which it is monotone. Returns
+// whether that gave anything.
+bool Search::learnFromGradient(const Box& box) {
+    const NodeId target = blamed_;
+    if (target == kNoNode || !gradient_.run(boxes_, target, box.sides.size())) {
+        return false;
     }
-    std::optional<std::size_t> best;
-    double bestScore = -1.0;
+    std::vector<Interval> least = box.sides;
+    std::vector<Interval> greatest = box.sides;
+    bool isMonotone = false;
     for (std::size_t k = 0; k < box.sides.size(); ++k) {
-        if (!cutOf(box.sides[k], claim_.inputs[k].scale)) {
+        const Interval& derivative = gradient_.derivative(k);
+        const bool rises = derivative.low >= 0.0;
+        if (box.sides[k].isPoint() || (!rises && !(derivative.high <= 0.0))) {
             continue;
         }
-        // What matters for the bound, and now and then what is large: the bound may depend on it nonlinearly.
-        const double matters =
-            changes > 0.0 && blamed_ != kNoNode ? boxes_.change(blamed_, k) / changes : 0.0;
-        const double isLarge = sizes > 0.0 ? sizeOf(box.sides[k], claim_.inputs[k]) / sizes : 0.0;
-        const double score = matters + 0.5 * isLarge;
+        isMonotone = true;
+        least[k] = Interval::of(rises ? box.sides[k].low : box.sides[k].high);
+        greatest[k] = Interval::of(rises ? box.sides[k].high : box.sides[k].low);
+    }
+    if (!isMonotone) {
+        return false;
+    }
+    const Interval before = boxes_.value(target);
+    boxes_.run(least, true);
+    const double low = boxes_.value(target).low;
+    boxes_.run(greatest, true);
+    const double high = boxes_.value(target).high;
+    if (!(low > before.low) && !(high < before.high)) {
+        return false;
+    }
+    boxes_.know(target, {std::max(low, before.low), std::min(high, before.high)});
+    return true;
+}
+
+bool Search::isProved(Box& box) {
+    // Forms cost ten times as much as intervals, and decide more.
+    if (holds(box, false) || holds(box, true)) {
+        return true;
+    }
+    constexpr int kMostLessons = 8;
+    bool proved = false;
+    for (int lesson = 0; lesson < kMostLessons && !proved && learnFromGradient(box); ++lesson) {
+        proved = holds(box, true);
+    }
+    if (!proved) {
+        // The side to cut is chosen by the forms over the box itself.
+        proved = holds(box, true);
+    }
+    boxes_.forget();
+    return proved;
+}
+
+// The side whose halves have the narrowest bound of what is to blame; a large side where that says nothing.
+std::optional<std::size_t> Search::sideToCut(const Box& box) {
+    const NodeId target = blamed_;
+    const double width = target == kNoNode ? kInfinity : boxes_.value(target).width();
+    std::optional<std::size_t> best;
+    double bestScore = -kInfinity;
+    for (std::size_t k = 0; k < box.sides.size(); ++k) {
+        const std::optional<double> cut = cutOf(box.sides[k], claim_.inputs[k].scale);
+        if (!cut) {
+            continue;
+        }
+        double gain = 0.0;
+        if (std::isfinite(width) && width > 0.0) {
+            std::vector<Interval> half = box.sides;
+            double widest = 0.0;
+            for (const bool upper : {false, true}) {
+                half[k] =
+                    upper ? Interval{nextSingle(*cut), box.sides[k].high} : Interval{box.sides[k].low, *cut};
+                boxes_.run(half, true);
+                widest += boxes_.value(target).isEmpty() ? 0.0 : 0.5 * boxes_.value(target).width();
+            }
+            gain = std::isfinite(widest) ? 1.0 - widest / width : 0.0;
+        }
+        const double score = gain + 0.3 * sizeOf(box.sides[k], claim_.inputs[k]);
         if (score > bestScore) {
             bestScore = score;
             best = k;
@@ -196,10 +279,11 @@ std::optional<std::size_t> Search::sideToCut(const Box& box) const {
 
 void Search::cut(const Box& box, std::size_t side) {
     const double place = *cutOf(box.sides[side], claim_.inputs[side].scale);
+    const double shareBelow = box.sides[side].low == place && place == 0.0 ? 0.0 : 0.5;
     for (const bool upper : {false, true}) {
         Box half = box;
-        (upper ? half.sides[side].low : half.sides[side].high) = place;
-        half.share *= 0.5;
+        (upper ? half.sides[side].low : half.sides[side].high) = upper ? nextSingle(place) : place;
+        half.share *= upper ? 1.0 - shareBelow : shareBelow;
         half.number = ++made_;
         open_.push(std::move(half));
     }
@@ -219,8 +303,7 @@ ProofResult Search::run() {
         Box box = open_.top();
         open_.pop();
         ++result_.boxes;
-        // Forms cost ten times as much as intervals, and decide more.
-        if (isProved(box, false) || isProved(box, true)) {
+        if (isProved(box)) {
             continue;
         }
         std::vector<double> point;

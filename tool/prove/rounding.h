@@ -37,6 +37,21 @@ inline double nextAbove(double x) {
     return -nextBelow(-x);
 }
 
+// A sum rounded down, or up; what rounding takes from it is known exactly (Knuth 1969).
+inline double addDown(double a, double b) {
+    const double sum = a + b;
+    if (!std::isfinite(sum)) {
+        return sum;
+    }
+    const double part = sum - a;
+    const double error = (a - (sum - part)) + (b - part);
+    return error < 0.0 ? nextBelow(sum) : sum;
+}
+
+inline double addUp(double a, double b) {
+    return -addDown(-a, -b);
+}
+
 inline float nextFloatBelow(float x) {
     if (x == 0.0F) {
         return -std::numeric_limits<float>::denorm_min();
