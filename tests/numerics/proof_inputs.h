@@ -8,7 +8,13 @@
 
 namespace glint::numerics {
 
+// Any float.
+inline constexpr double kAny = prove::kLargestSingle;
+// What rounding adds to a share of 1.
+inline constexpr double kOne = 1.0 + 1e-5;
+
 std::vector<Proof> bsdfProofs();
+std::vector<Proof> hitProofs();
 
 // Cosines above the horizon, down to kMinViewCosine.
 inline prove::InputRange cosineInput(std::string name) {

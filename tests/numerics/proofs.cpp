@@ -42,7 +42,12 @@ compiler::ShaderSource sourceOf(const std::vector<Proof>& proofs) {
 }  // namespace
 
 const std::vector<Proof>& allProofs() {
-    static const std::vector<Proof> kProofs = bsdfProofs();
+    static const std::vector<Proof> kProofs = [] {
+        std::vector<Proof> all = hitProofs();
+        const std::vector<Proof> bsdf = bsdfProofs();
+        all.insert(all.end(), bsdf.begin(), bsdf.end());
+        return all;
+    }();
     return kProofs;
 }
 

@@ -4,13 +4,7 @@
 namespace glint::numerics {
 namespace {
 
-using prove::Claim;
 using prove::OutputRange;
-
-constexpr double kAny = prove::kLargestSingle;
-
-// What rounding adds to a share of 1.
-constexpr double kOne = 1.0 + 1e-5;
 
 std::vector<OutputRange> components(const std::string& name, double size) {
     return {{name + ".x", -size, size}, {name + ".y", -size, size}, {name + ".z", -size, size}};
@@ -62,7 +56,7 @@ std::vector<Proof> fresnelProofs() {
         {"DielectricF0",
          "dielectricF0",
          "in [0, 1]",
-         {{{"ior", 0.0, 1e6, prove::Scale::Logarithmic}}, {{"f0", 0.0, 1.0}}}},
+         {{{"ior", 0.0, 1e6, prove::Scale::Logarithmic}}, {{"f0", 0.0, kOne}}}},
         {"SchlickWeight",
          "schlickWeight",
          "in [0, 1]",
@@ -182,7 +176,7 @@ std::vector<Proof> layerProofs() {
         {"BuildBasis",
          "buildBasis",
          "components of unit vectors",
-         {unitInput("n", Hemisphere::Whole),
+         {{rangeInput("n.z", -1.0, 1.0), rangeInput("azimuth of n", -3.1415927F, 3.1415927F)},
           {{"tangent.x", -kOne, kOne},
            {"tangent.y", -1.1, 1.1},
            {"tangent.z", -kOne, kOne},
@@ -274,12 +268,111 @@ std::vector<Proof> layerProofs() {
     };
 }
 
+// The four claims about a surface with some lobes, of proofs_bsdf.glsl's CLAIMS_OF_SURFACE.
+struct SurfaceNames {
+    std::string_view lobes;
+    std::string_view prepare;
+    std::string_view evaluate;
+    std::string_view density;
+    std::string_view chances;
+    std::string_view titles[4];
+};
+
+std::vector<Proof> surfaceProofs(const SurfaceNames& names) {
+    const std::vector<prove::InputRange> surface = inputs(
+        {{shareInput("f0"), alphaInput("alpha"), shareInput("color")}, unitInput("view", Hemisphere::Upper)});
+    const std::vector<prove::InputRange> lit = inputs({surface, unitInput("l", Hemisphere::Upper)});
+    return {
+        {names.prepare,
+         names.titles[0],
+         "shares",
+         {surface,
+          {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"mean loss", 0.0, 1.0}, {"mean bias", 0.0, 1.0}}}},
+        {names.evaluate, names.titles[1], "finite, not negative", {lit, {{"light", -1e-3, kAny}}}},
+        {names.density, names.titles[2], "finite, not negative", {lit, {{"density", -1e-3, kAny}}}},
+        {names.chances,
+         names.titles[3],
+         "chances, together 1",
+         {surface,
+          {{"microfacets", 0.0, kOne},
+           {"diffuse", -1e-5, kOne},
+           {"passed", -1e-5, kOne},
+           {"sum", 0.999, 1.001}}}},
+    };
+}
+
+std::vector<Proof> energyProofs() {
+    const std::vector<prove::InputRange> reflectances{shareInput("f0"), shareInput("f90 between f0 and 1")};
+    const prove::InputRange meanLoss = rangeInput("mean loss", 0.0, 0.75);
+    std::vector<Proof> all{
+        {"RefractedTransmission",
+         "refractedTransmission",
+         "finite, not negative",
+         {inputs({unitInput("v", Hemisphere::Upper),
+                  unitInput("-l", Hemisphere::Upper),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y"), etaInput()}}),
+          {{"light", 0.0, kAny}, {"cosine", 0.0, kOne}}}},
+        {"MultiScatterOf",
+         "multiScatterOf, meanFresnel",
+         "a share",
+         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, kOne}}}},
+        {"PassedAgain",
+         "passedAgain",
+         "a share; 1 with multiScatterOf()",
+         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, 1.001}, {"sum", 0.99, 1.01}}}},
+        {"SpecularShares",
+         "specularAlbedo, specularPassed",
+         "shares, together 1",
+         {inputs({reflectances, {shareInput("loss"), shareInput("bias over E"), meanLoss}}),
+          {{"reflected", 0.0, 1.001}, {"passed", 0.0, 1.001}, {"sum", 0.99, 1.01}}}},
+    };
+    static constexpr SurfaceNames kSurfaces[] = {
+        {"base",
+         "PrepareBase",
+         "EvaluateBase",
+         "DensityBase",
+         "ChancesBase",
+         {"prepareBsdf", "evaluateBsdf", "bsdfPdf", "lobeChances"}},
+        {"clearcoat",
+         "PrepareCoated",
+         "EvaluateCoated",
+         "DensityCoated",
+         "ChancesCoated",
+         {"prepareBsdf (clearcoat)", "evaluateBsdf (clearcoat)", "bsdfPdf (clearcoat)",
+          "lobeChances (clearcoat)"}},
+        {"sheen",
+         "PrepareSheen",
+         "EvaluateSheen",
+         "DensitySheen",
+         "ChancesSheen",
+         {"prepareBsdf (sheen)", "evaluateBsdf (sheen)", "bsdfPdf (sheen)", "lobeChances (sheen)"}},
+        {"transmission",
+         "PrepareThin",
+         "EvaluateThin",
+         "DensityThin",
+         "ChancesThin",
+         {"prepareBsdf (transmission)", "evaluateBsdf (transmission)", "bsdfPdf (transmission)",
+          "lobeChances (transmission)"}},
+        {"diffuse transmission",
+         "PrepareTranslucent",
+         "EvaluateTranslucent",
+         "DensityTranslucent",
+         "ChancesTranslucent",
+         {"prepareBsdf (diffuse transmission)", "evaluateBsdf (diffuse transmission)",
+          "bsdfPdf (diffuse transmission)", "lobeChances (diffuse transmission)"}}};
+    for (const SurfaceNames& names : kSurfaces) {
+        const std::vector<Proof> proofs = surfaceProofs(names);
+        all.insert(all.end(), proofs.begin(), proofs.end());
+    }
+    return all;
+}
+
 }  // namespace
 
 std::vector<Proof> bsdfProofs() {
     std::vector<Proof> all;
     for (const std::vector<Proof>& group :
-         {exactProofs(), fresnelProofs(), ggxProofs(), albedoProofs(), layerProofs()}) {
+         {exactProofs(), fresnelProofs(), ggxProofs(), albedoProofs(), layerProofs(), energyProofs()}) {
         all.insert(all.end(), group.begin(), group.end());
     }
     return all;

@@ -165,7 +165,7 @@ PROOF(ReflectAbout) {
 PROOF(BuildBasis) {
     vec3 tangent;
     vec3 bitangent;
-    buildBasis(UNIT(0), tangent, bitangent);
+    buildBasis(directionAt(i[0], i[1], 0.0), tangent, bitangent);
     WRITE3(0, tangent);
     WRITE3(3, bitangent);
 }
@@ -259,3 +259,92 @@ PROOF(ThinTransmission) {
     o[0] = thinTransmission(UNIT(0), -UNIT(3), vec2(i[6], i[7]), cosine);
     o[1] = cosine;
 }
+
+PROOF(RefractedTransmission) {
+    float cosine;
+    o[0] = refractedTransmission(UNIT(0), -UNIT(3), vec2(i[6], i[7]), i[8], cosine);
+    o[1] = cosine;
+}
+
+// bsdf/bsdf.glsl: the shares of energy. b has the reflectances of a dielectric and a loss and bias of its microfacets.
+
+Bsdf claimedBsdf(float f0, float f90, float loss, float meanLoss) {
+    Bsdf b;
+    b.f0 = vec3(f0);
+    b.f90 = f90;
+    b.metalF0 = vec3(f0);
+    b.metallic = 0.0;
+    b.diffuse = vec3(1.0);
+    b.transmitted = vec3(0.0);
+    b.diffuseTransmitted = vec3(0.0);
+    b.eta = vec3(1.5);
+    b.alpha = vec2(1.0);
+    b.viewLoss = loss;
+    b.viewBias = 0.0;
+    b.meanLoss = meanLoss;
+    b.meanBias = 0.0;
+    return b;
+}
+
+#define CLAIMED_FEATURES(lobes) Features(lobes, 0u, 0u, 0u, lobes, 0u)
+
+PROOF(MultiScatterOf) {
+    o[0] = multiScatterOf(vec3(i[0]), mix(i[0], 1.0, i[1]), i[2]).x;
+}
+
+PROOF(PassedAgain) {
+    Bsdf b = claimedBsdf(i[0], mix(i[0], 1.0, i[1]), 0.0, i[2]);
+    o[0] = passedAgain(b).x;
+    o[1] = o[0] + multiScatterOf(b.f0, b.f90, b.meanLoss).x;
+}
+
+// i[3]: the bias as a share of E.
+PROOF(SpecularShares) {
+    Bsdf b = claimedBsdf(i[0], mix(i[0], 1.0, i[1]), i[2], i[4]);
+    float bias = i[3] * (1.0 - i[2]);
+    o[0] = specularAlbedo(b, CLAIMED_FEATURES(0u), i[2], bias).x;
+    o[1] = specularPassed(b, i[2], bias).x;
+    o[2] = o[0] + o[1];
+}
+
+#define CLAIMED_SURFACE(lobes)                                                                  \
+    Bsdf b = claimedBsdf(i[0], 1.0, 0.0, 0.0);                                                  \
+    b.alpha = vec2(i[1]);                                                                       \
+    b.diffuse = vec3(i[2]);                                                                     \
+    b.transmitted = vec3(i[2]);                                                                 \
+    b.diffuseTransmitted = vec3(i[2]);                                                          \
+    b.layers.clearcoat = Clearcoat(i[2], i[1], vec3(0.0, 0.0, 1.0));                            \
+    b.layers.sheen = Sheen(vec3(i[2]), max(i[1], kMinSheenAlpha), 0.0);                         \
+    vec3 view = UNIT(3);                                                                        \
+    prepareBsdf(b, CLAIMED_FEATURES(lobes), vec3(view.xy, max(view.z, kMinViewCosine)))
+
+#define CLAIMS_OF_SURFACE(name, lobes, side)                                                    \
+    PROOF(Prepare##name) {                                                                      \
+        CLAIMED_SURFACE(lobes);                                                                 \
+        o[0] = b.viewLoss;                                                                      \
+        o[1] = b.viewBias;                                                                      \
+        o[2] = b.meanLoss;                                                                      \
+        o[3] = b.meanBias;                                                                      \
+    }                                                                                           \
+    PROOF(Evaluate##name) {                                                                     \
+        CLAIMED_SURFACE(lobes);                                                                 \
+        o[0] = evaluateBsdf(b, CLAIMED_FEATURES(lobes), side * UNIT(6)).x;                      \
+    }                                                                                           \
+    PROOF(Density##name) {                                                                      \
+        CLAIMED_SURFACE(lobes);                                                                 \
+        o[0] = bsdfPdf(b, CLAIMED_FEATURES(lobes), side * UNIT(6));                             \
+    }                                                                                           \
+    PROOF(Chances##name) {                                                                      \
+        CLAIMED_SURFACE(lobes);                                                                 \
+        LobeChances chances = lobeChances(b, CLAIMED_FEATURES(lobes));                          \
+        o[0] = chances.microfacets;                                                             \
+        o[1] = chances.diffuse;                                                                 \
+        o[2] = chances.passed;                                                                  \
+        o[3] = chances.microfacets + chances.diffuse + chances.passed + sumOfChances(chances.layers); \
+    }
+
+CLAIMS_OF_SURFACE(Base, 0u, 1.0)
+CLAIMS_OF_SURFACE(Coated, GLINT_CLEARCOAT, 1.0)
+CLAIMS_OF_SURFACE(Sheen, GLINT_SHEEN, 1.0)
+CLAIMS_OF_SURFACE(Thin, GLINT_TRANSMISSION, -1.0)
+CLAIMS_OF_SURFACE(Translucent, GLINT_DIFFUSE_TRANSMISSION, -1.0)

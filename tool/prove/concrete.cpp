@@ -179,6 +179,8 @@ double evaluateNode(const Node& node, double a, double b, double c) {
             return a < b ? b : a;
         case Op::Mix:
             return mixOf(node, a, b, c);
+        case Op::Lerp:
+            return toFormat(a + toFormat(toFormat(b - a, format) * c, format), format);
         case Op::Normalized:
             return toFormat(a * toFormat(1.0 / toFormat(std::sqrt(c), format), format), format);
         case Op::Convert:

@@ -251,6 +251,7 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::Maximum:
             return {std::max(a.low, b.low), std::max(a.high, b.high)};
         case Op::Mix:
+        case Op::Lerp:
             return arithmetic.mix(a, b, c, hazard);
         case Op::Normalized: {
             const Interval scale = arithmetic.apply(Function::InverseSqrt, c, hazard);
@@ -473,6 +474,13 @@ Interval BoxEvaluator::integer(const Node& node, Hazard& hazard) const {
             break;
         case Op::BitAnd:
             result = a.low >= 0.0 && b.low >= 0.0 ? Interval{0.0, std::min(a.high, b.high)} : all;
+            break;
+        case Op::BitOr:
+        case Op::BitXor:
+            // No bit above the highest of either.
+            if (a.low >= 0.0 && b.low >= 0.0) {
+                result = {0.0, std::exp2(std::floor(std::log2(std::max({a.high, b.high, 1.0}))) + 1.0) - 1.0};
+            }
             break;
         case Op::ShiftRight:
             if (a.low >= 0.0 && b.low >= 0.0 && b.high < 32.0) {

@@ -201,6 +201,7 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
             return true;
         }
         case Op::Mix:
+        case Op::Lerp:
             give(node.a, adjoint, plusOne(value(node.c), -1.0));
             give(node.b, adjoint, value(node.c));
             give(node.c, adjoint, plus(value(node.b), negative(value(node.a))));

@@ -89,6 +89,7 @@ const char* nameOf(Op op) {
                                              "min",
                                              "max",
                                              "mix",
+                                             "lerp",
                                              "normalize",
                                              "float16",
                                              "splitHigh",
@@ -297,6 +298,9 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (isConstant(node.b, 0.0)) {
                 return node.a;
             }
+            if (const NodeId between = interpolation(node); between != kNoNode) {
+                return between;
+            }
             if (const NodeId exact = errorFree(node); exact != kNoNode) {
                 return exact;
             }
@@ -320,6 +324,11 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             }
             return kNoNode;
         case Op::Subtract:
+            if (this->node(node.b).op == Op::Floor && this->node(node.b).a == node.a) {
+                const NodeId rest = appendOnce(node);
+                return refine(refine(rest, Relation::GreaterEqual, constant(0.0, node.format)),
+                              Relation::LessEqual, constant(1.0, node.format));
+            }
             return isConstant(node.b, 0.0) ? node.a : errorFree(node);
         case Op::Divide:
             return isConstant(node.b, 1.0) ? node.a : kNoNode;
@@ -351,6 +360,8 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             return node.b == node.c ? node.b : kNoNode;
         case Op::Convert:
             return this->node(node.a).format == node.format ? node.a : kNoNode;
+        case Op::ShiftRight:
+            return shifted(node);
         case Op::BitAnd:
             return isConstant(node.a, 0.0) ? node.a : isConstant(node.b, 0.0) ? node.b : kNoNode;
         default:
@@ -479,6 +490,40 @@ NodeId ProgramBuilder::errorFree(const Node& node) {
         }
     }
     return kNoNode;
+}
+
+// a + (b - a) c
+NodeId ProgramBuilder::interpolation(const Node& given) {
+    for (const auto& [start, product] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
+        const Node times = node(product);
+        if (times.op != Op::Multiply) {
+            continue;
+        }
+        for (const auto& [difference, share] : {std::pair(times.a, times.b), std::pair(times.b, times.a)}) {
+            const Node between = node(difference);
+            if (between.op == Op::Subtract && between.b == start && given.format == Format::Single) {
+                return make(Op::Lerp, given.format, start, between.a, share);
+            }
+        }
+    }
+    return kNoNode;
+}
+
+// (x >> a) >> b, which is 0 if nothing is left.
+NodeId ProgramBuilder::shifted(const Node& given) {
+    const Node before = node(given.a);
+    if (before.op != Op::ShiftRight || !isConstant(before.b) || !isConstant(given.b) || given.isSigned ||
+        before.isSigned) {
+        return kNoNode;
+    }
+    const double places = node(before.b).value + node(given.b).value;
+    if (places > 31.0) {
+        return constant(0.0, Format::Integer);
+    }
+    Node all = given;
+    all.a = before.a;
+    all.b = constant(places, Format::Integer);
+    return make(all);
 }
 
 // Appends a node that simplified() has been asked about, unless it is there already.

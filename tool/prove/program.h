@@ -39,7 +39,8 @@ enum class Op : std::uint8_t {
     ArcTangent,  // atan(a, b)
     Minimum,
     Maximum,
-    Mix,
+    Mix,         // a (1 - c) + b c
+    Lerp,        // a + (b - a) c
     Normalized,  // a / √(a² + b), where c = fl(a² + b)
     Convert,     // to another float format
     // Of error-free transformations: Veltkamp's split, Dekker's product and Knuth's sum
@@ -182,6 +183,8 @@ private:
     };
     Angular angularOf(NodeId id);
     NodeId sumOfSquares(const Node& node);
+    NodeId interpolation(const Node& node);
+    NodeId shifted(const Node& node);
     NodeId dotProduct(const Node& node);
     NodeId sumOfNormalized(const Node& node);
     NodeId squaredRadius(const Node& node);

@@ -170,11 +170,12 @@ void ModuleReader::readInFunction(const SpirvOperation& operation) {
             return;
         case spv::OpLabel:
             function.blockOf[operation.result] = function.blocks.size();
-            function.blocks.push_back({operation.result, {}, 0, 0});
+            function.blocks.emplace_back().label = operation.result;
             return;
         case spv::OpSelectionMerge:
         case spv::OpLoopMerge:
             function.blocks.back().merge = operation.operands[0];
+            function.blocks.back().isLoop = operation.opcode == spv::OpLoopMerge;
             return;
         case spv::OpLine:
         case spv::OpNoLine:

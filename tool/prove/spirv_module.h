@@ -48,6 +48,7 @@ struct SpirvOperation {
 struct SpirvBlock {
     SpirvId label = 0;
     std::vector<SpirvOperation> operations;  // the last one ends the block
+    bool isLoop = false;                     // a loop begins here
     SpirvId merge = 0;                       // where the construct that begins here ends; 0 if none begins
     std::uint32_t order = 0;                 // in reverse postorder, with the merge block after its construct
 };

@@ -22,6 +22,7 @@ struct IncomingEdge {
     SpirvId from = 0;
     SymbolicState state;
     std::map<SpirvId, SymbolicValue> phis;  // the values that this edge gives the block's OpPhi
+    std::map<SpirvId, SymbolicValue> kept;  // values of the loop that this edge leaves
 };
 
 struct Returned {
@@ -50,6 +51,9 @@ private:
     Status branch(Frame& frame, const SpirvBlock& block, SymbolicState& state);
     Status leave(Frame& frame, const SpirvBlock& block, SpirvId target, SymbolicState state, NodeId condition,
                  bool holds);
+    void keepLoopValues(const Frame& frame, const SpirvBlock& next, IncomingEdge& edge);
+    void joinLoopValues(Frame& frame, const std::vector<IncomingEdge>& edges,
+                        const std::vector<SymbolicState>& states);
     Status chooseBySwitch(Frame& frame, const SpirvBlock& block, const SymbolicState& state);
     Status callFunction(Frame& frame, SymbolicState& state, const SpirvOperation& operation);
     Status access(Frame& frame, const SymbolicState& state, const SpirvOperation& operation);
@@ -121,7 +125,7 @@ Result<Returned> Executor::call(const SpirvFunctionBody& function, std::vector<S
         frame.values[function.parameters[k].result] = std::move(arguments[k]);
     }
     const NodeId guard = state.guard;
-    frame.pending[function.blocks.front().order].push_back({0, std::move(state), {}});
+    frame.pending[function.blocks.front().order].push_back({0, std::move(state), {}, {}});
     std::map<std::uint32_t, const SpirvBlock*> blocks;
     for (const SpirvBlock& block : function.blocks) {
         blocks[block.order] = &block;
@@ -183,6 +187,9 @@ Status Executor::runBlock(Frame& frame, const SpirvBlock& block, std::vector<Inc
         }
         frame.values[id] = std::move(joined);
     }
+    if (edges.size() > 1) {
+        joinLoopValues(frame, edges, states);
+    }
     for (const SpirvOperation& operation : block.operations) {
         if (operation.opcode == spv::OpPhi) {
             continue;
@@ -212,7 +219,7 @@ Status Executor::leave(Frame& frame, const SpirvBlock& block, SpirvId target, Sy
         }
     }
     const SpirvBlock& next = frame.function.blocks[frame.function.blockOf.at(target)];
-    IncomingEdge edge{block.label, std::move(state), {}};
+    IncomingEdge edge{block.label, std::move(state), {}, {}};
     for (const SpirvOperation& operation : next.operations) {
         if (operation.opcode != spv::OpPhi) {
             break;
@@ -223,14 +230,53 @@ Status Executor::leave(Frame& frame, const SpirvBlock& block, SpirvId target, Sy
             }
         }
     }
-    std::vector<IncomingEdge>& pending = frame.pending[next.order];
-    const bool again = std::any_of(pending.begin(), pending.end(),
-                                   [&](const IncomingEdge& other) { return other.from == block.label; });
-    if (again && block.order < next.order && edge.phis.empty()) {
-        return unsupported("a loop that ends after a number of turns that depends on the inputs");
-    }
-    pending.push_back(std::move(edge));
+    keepLoopValues(frame, next, edge);
+    frame.pending[next.order].push_back(std::move(edge));
     return okStatus();
+}
+
+// What a loop has computed may be used after it, and each way out of the loop has its own values.
+void Executor::keepLoopValues(const Frame& frame, const SpirvBlock& next, IncomingEdge& edge) {
+    for (const SpirvBlock& header : frame.function.blocks) {
+        if (!header.isLoop || header.merge != next.label) {
+            continue;
+        }
+        for (const SpirvBlock& block : frame.function.blocks) {
+            if (block.order < header.order || block.order >= next.order) {
+                continue;
+            }
+            for (const SpirvOperation& operation : block.operations) {
+                if (operation.result != 0 && frame.values.contains(operation.result)) {
+                    const SymbolicValue value = valueOf(frame, edge.state, operation.result);
+                    if (!value.pointer && !value.nodes.empty()) {
+                        edge.kept[operation.result] = value;
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Joins them where the loop ends.
+void Executor::joinLoopValues(Frame& frame, const std::vector<IncomingEdge>& edges,
+                              const std::vector<SymbolicState>& states) {
+    for (const auto& [id, first] : edges.front().kept) {
+        const bool inAll = std::all_of(edges.begin(), edges.end(), [key = id](const IncomingEdge& edge) {
+            return edge.kept.contains(key);
+        });
+        if (!inAll) {
+            continue;
+        }
+        SymbolicValue joined;
+        for (std::size_t k = 0; k < first.nodes.size(); ++k) {
+            std::vector<NodeId> values;
+            for (const IncomingEdge& edge : edges) {
+                values.push_back(edge.kept.at(id).nodes[k]);
+            }
+            joined.nodes.push_back(joinValues(builder_, states, values));
+        }
+        frame.values[id] = std::move(joined);
+    }
 }
 
 Status Executor::chooseBySwitch(Frame& frame, const SpirvBlock& block, const SymbolicState& state) {

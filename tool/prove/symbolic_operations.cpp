@@ -573,11 +573,8 @@ NodeId SymbolicOperations::extendedScalar(std::uint32_t instruction, const Scala
             return make(Op::Floor, scalar, x[0]);
         case GLSLstd450Ceil:
             return make(Op::Ceil, scalar, x[0]);
-        case GLSLstd450Fract: {
-            const NodeId rest = make(Op::Subtract, scalar, x[0], make(Op::Floor, scalar, x[0]));
-            return builder_.refine(builder_.refine(rest, Relation::GreaterEqual, number(0.0)),
-                                   Relation::LessEqual, number(1.0));
-        }
+        case GLSLstd450Fract:
+            return make(Op::Subtract, scalar, x[0], make(Op::Floor, scalar, x[0]));
         case GLSLstd450Sqrt:
             return function(Function::Sqrt);
         case GLSLstd450InverseSqrt:
