@@ -98,11 +98,11 @@ private:
     std::map<std::string, std::string, std::less<>> texts_;
 };
 
-std::string listProbes(const std::string& glsl) {
-    static const std::regex kProbe(R"(PROBE\((\w+)\) \{)");
-    std::string list = "// Made by make_probes from probes.glsl and textbook.glsl. Do not edit.\n";
+std::string listFunctions(const std::string& glsl, const std::string& macro) {
+    const std::regex kProbe(macro + R"(\((\w+)\) \{)");
+    std::string list = "// Made by make_probes. Do not edit.\n";
     for (std::sregex_iterator i(glsl.begin(), glsl.end(), kProbe); i != std::sregex_iterator(); ++i) {
-        list += fmt::format("LISTED_PROBE({})\n", i->str(1));
+        list += fmt::format("LISTED_{}({})\n", macro, i->str(1));
     }
     return list;
 }
@@ -130,12 +130,18 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     if (!cpp) {
         return cpp.error();
     }
-    const std::map<std::string, std::string> files{
-        {"probes.glsl", glsl},
-        {"probes.inc", *cpp},
-        {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
-        {"probe_list.inc", listProbes(glsl)},
-        {"proofs_text.inc", "R\"glsl(" + proofs->withPlaces() + ")glsl\"\n"}};
+    const std::string proofGlsl = proofs->withPlaces();
+    const glint::Result<std::string> proofCpp = glint::numerics::translateToCpp(proofGlsl);
+    if (!proofCpp) {
+        return proofCpp.error();
+    }
+    const std::map<std::string, std::string> files{{"probes.glsl", glsl},
+                                                   {"probes.inc", *cpp},
+                                                   {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
+                                                   {"probe_list.inc", listFunctions(glsl, "PROBE")},
+                                                   {"proofs_text.inc", "R\"glsl(" + proofGlsl + ")glsl\"\n"},
+                                                   {"proofs.inc", *proofCpp},
+                                                   {"proof_list.inc", listFunctions(proofGlsl, "PROOF")}};
     for (const auto& [name, text] : files) {
         if (glint::Status status = glint::base::writeFile(output / name, text); !status) {
             return status;

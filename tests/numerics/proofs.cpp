@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 namespace glint::numerics {
 namespace {
 
@@ -70,6 +73,48 @@ Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proo
         programs.push_back(std::move(*program));
     }
     return programs;
+}
+
+Result<prove::Program> compileClaim(std::string_view statements) {
+    compiler::ShaderSource source;
+    source.name = "claim";
+    source.glsl = fmt::format(
+        "#version 460\nprecision highp float;\nlayout(local_size_x = 1) in;\nlayout(std430, binding = 0) "
+        "buffer Results "
+        "{{ float data[2]; }} results;\nvoid claim(float i[1], inout float o[1]) {{\n{}\n}}\nvoid main() "
+        "{{\n    float "
+        "i[1];\n    float o[1];\n    i[0] = results.data[0];\n    claim(i, o);\n    results.data[1] = "
+        "o[0];\n}}\n",
+        statements);
+    source.functionsApart = {"claim"};
+    compiler::ShaderCompileOptions options;
+    options.debugInfo = true;
+    const Result<std::vector<std::uint32_t>> words = compiler::compileShader(source, options);
+    if (!words) {
+        return words.error();
+    }
+    return prove::executeSymbolically(*words, "claim");
+}
+
+bool isProvedQuickly(const Proof& proof) {
+    static constexpr std::string_view kNames[] = {
+        "OctahedralDecode",    "TransformPoint",
+        "TransformNormal",     "SampleCone",
+        "RandomUnit",          "IncludeSample",
+        "AddProduct",          "DifferenceOfProducts",
+        "AccurateDot",         "SchlickWeight",
+        "SchlickF0",           "Luminance",
+        "GgxDistribution",     "GgxVisibility",
+        "SampleVisibleNormal", "VisibleNormalPdf",
+        "MirroredPdf",         "GgxLoss",
+        "GgxMeanAlbedo",       "SampleCosine",
+        "SheenDistribution",   "SheenLambda",
+        "SheenVisibility",     "SheenMasking",
+        "SheenHorizon",        "SheenAlbedo",
+        "CosineOfCycles",      "FilmSensitivity",
+        "DispersedIor",        "VolumeTransmittance",
+    };
+    return std::find(std::begin(kNames), std::end(kNames), proof.name) != std::end(kNames);
 }
 
 std::string describeDomain(const prove::Claim& claim) {

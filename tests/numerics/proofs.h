@@ -19,8 +19,6 @@ struct Proof {
     std::string_view bound;     // what is claimed, for people
     prove::Claim claim;
     std::uint64_t boxes = 2'000;  // in continuous integration; the nightly run takes more
-    // The share of the domain that may stay undecided with so many boxes. 0 for what is proved.
-    double undecided = 0.0;
 };
 
 // A function about which nothing is claimed, and why.
@@ -35,6 +33,14 @@ const std::vector<Unclaimed>& unclaimedFunctions();
 // The programs of claims, in the order of `proofs`: what the compiler makes of their functions. Errors are
 // those of compileShader() and executeSymbolically().
 Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proofs);
+
+// A claim about code of its own: statements that read i and write o. Errors as above.
+Result<prove::Program> compileClaim(std::string_view statements);
+
+// Whether a second on one core proves it: what continuous integration proves.
+bool isProvedQuickly(const Proof& proof);
+
+inline constexpr double kLargest = prove::kLargestSingle;
 
 // "nDotV in [1e-07, 1], alpha in [1e-4, 1]".
 std::string describeDomain(const prove::Claim& claim);

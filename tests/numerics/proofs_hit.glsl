@@ -7,6 +7,7 @@
 #include "hit/noise.glsl"
 #include "light/punctual.glsl"
 #include "hit/random.glsl"
+#include "hit/sequence.glsl"
 #include "effects/screen_ray.glsl"
 #include "numerics/proof_vectors.glsl"
 
@@ -76,6 +77,12 @@ PROOF(SampleCone) {
 
 PROOF(RandomUnit) {
     o[0] = randomUnit(uint(i[0]), uint(i[1]), uint(i[2]), uint(i[3]));
+}
+
+PROOF(SequencePair) {
+    vec2 u = sequencePair(uint(i[0]), uint(i[1]), uint(i[2]), uint(i[3]));
+    o[0] = u.x;
+    o[1] = u.y;
 }
 
 PROOF(IncludeSample) {

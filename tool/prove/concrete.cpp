@@ -213,13 +213,13 @@ double evaluateNode(const Node& node, double a, double b, double c) {
         case Op::Equal:
             return a == b ? 1.0 : 0.0;
         case Op::And:
-            return a != 0.0 && b != 0.0 ? 1.0 : 0.0;
+            return a > 0.0 && b > 0.0 ? 1.0 : 0.0;
         case Op::Or:
-            return a != 0.0 || b != 0.0 ? 1.0 : 0.0;
+            return a > 0.0 || b > 0.0 ? 1.0 : 0.0;
         case Op::Not:
             return a == 0.0 ? 1.0 : 0.0;
         case Op::Select:
-            return a != 0.0 ? b : c;
+            return a > 0.0 ? b : c;
         case Op::Refine:
             return holds(node.relation, a, b) ? a : std::nan("");
         case Op::ToInteger:
@@ -241,19 +241,21 @@ PointResult PointEvaluator::run(std::span<const double> inputs) {
     PointResult result;
     for (NodeId id = 0; id < program_.nodes.size(); ++id) {
         const Node& node = program_.nodes[id];
-        if (node.guard != kNoNode && values_[node.guard] == 0.0) {
+        // A guard within a branch that is not taken has no value.
+        if (node.guard != kNoNode && !(values_[node.guard] > 0.0)) {
             values_[id] = std::nan("");
             continue;
         }
         const auto operand = [this](NodeId from) { return from == kNoNode ? 0.0 : values_[from]; };
         if (node.op == Op::Input) {
-            values_[id] = inputs[static_cast<std::size_t>(node.value)];
+            const auto number = static_cast<std::size_t>(node.value);
+            values_[id] = number < inputs.size() ? inputs[number] : 0.0;
             continue;
         }
         if (node.op == Op::Merge) {
             for (std::uint32_t k = 0; k < node.count; ++k) {
                 const Edge& edge = program_.edges[node.first + k];
-                if (edge.guard == kNoNode || values_[edge.guard] != 0.0) {
+                if (edge.guard == kNoNode || values_[edge.guard] > 0.0) {
                     values_[id] = values_[edge.value];
                     break;
                 }
@@ -263,6 +265,11 @@ PointResult PointEvaluator::run(std::span<const double> inputs) {
         const double a = operand(node.a);
         const double b = operand(node.b);
         const double c = operand(node.c);
+        const bool joins = node.op == Op::Select || node.op == Op::And || node.op == Op::Or;
+        if (!joins && (std::isnan(a) || std::isnan(b) || std::isnan(c))) {
+            values_[id] = std::nan("");
+            continue;
+        }
         values_[id] = evaluateNode(node, a, b, c);
         const bool selects = node.op == Op::Select || node.op == Op::Refine;
         if (!result.failed && !selects && !std::isfinite(values_[id]) && std::isfinite(a) &&

@@ -210,7 +210,7 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::Constant:
             return Interval::of(node.value);
         case Op::Input:
-            return box_[static_cast<std::size_t>(node.value)];
+            return inputOf(node);
         case Op::Add:
             return arithmetic.add(a, b, hazard);
         case Op::Subtract:
@@ -336,6 +336,12 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         default:
             return integer(node, hazard);
     }
+}
+
+// Inputs that the claim does not have are 0.
+Interval BoxEvaluator::inputOf(const Node& node) const {
+    const auto number = static_cast<std::size_t>(node.value);
+    return number < box_.size() ? box_[number] : kFalse;
 }
 
 Interval BoxEvaluator::compared(const Node& node) {
@@ -596,7 +602,7 @@ bool BoxEvaluator::formOf(const Node& node, Affine& result) {
         case Op::Input: {
             const auto found =
                 std::find(symbols_.begin(), symbols_.end(), static_cast<std::size_t>(node.value));
-            const Interval& range = box_[static_cast<std::size_t>(node.value)];
+            const Interval range = inputOf(node);
             result.set(range);
             if (found != symbols_.end()) {
                 result.slopes[static_cast<std::size_t>(found - symbols_.begin())] = result.error;

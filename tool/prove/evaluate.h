@@ -45,6 +45,7 @@ private:
     void evaluate(NodeId id);
     void evaluateForm(NodeId id);
     Interval valueOf(const Node& node, Hazard& hazard);
+    Interval inputOf(const Node& node) const;
     Interval compared(const Node& node);
     Interval merged(const Node& node) const;
     Interval refined(const Node& node) const;

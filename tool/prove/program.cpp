@@ -511,7 +511,11 @@ NodeId ProgramBuilder::interpolation(const Node& given) {
 
 // (x >> a) >> b, which is 0 if nothing is left.
 NodeId ProgramBuilder::shifted(const Node& given) {
-    const Node before = node(given.a);
+    NodeId shiftedBefore = given.a;
+    while (node(shiftedBefore).op == Op::Refine) {
+        shiftedBefore = node(shiftedBefore).a;
+    }
+    const Node before = node(shiftedBefore);
     if (before.op != Op::ShiftRight || !isConstant(before.b) || !isConstant(given.b) || given.isSigned ||
         before.isSigned) {
         return kNoNode;

@@ -17,6 +17,8 @@ using Kind = SpirvType::Kind;
 // A function that is larger would take minutes a box.
 constexpr std::size_t kMostNodes = 400'000;
 constexpr std::size_t kMostBlocks = 100'000;
+// Turns of a loop whose end depends on the inputs: each is one condition more around those that follow.
+constexpr std::size_t kMostTurns = 64;
 
 struct IncomingEdge {
     SpirvId from = 0;
@@ -42,6 +44,7 @@ private:
         std::map<SpirvId, SymbolicValue> values;
         std::map<std::uint32_t, std::vector<IncomingEdge>> pending;  // by the order of the block
         std::vector<Returned> returns;
+        std::map<SpirvId, std::size_t> turns;  // of blocks that may not be reached, by their label
     };
 
     Result<Returned> call(const SpirvFunctionBody& function, std::vector<SymbolicValue> arguments,
@@ -120,7 +123,7 @@ Result<Program> Executor::run(const SpirvFunctionBody& function) {
 
 Result<Returned> Executor::call(const SpirvFunctionBody& function, std::vector<SymbolicValue> arguments,
                                 SymbolicState state) {
-    Frame frame{function, {}, {}, {}};
+    Frame frame{function, {}, {}, {}, {}};
     for (std::size_t k = 0; k < arguments.size(); ++k) {
         frame.values[function.parameters[k].result] = std::move(arguments[k]);
     }
@@ -173,6 +176,9 @@ Status Executor::runBlock(Frame& frame, const SpirvBlock& block, std::vector<Inc
     }
     SymbolicState state = join(builder_, states);
     builder_.setGuard(state.guard);
+    if (state.guard != kNoNode && ++frame.turns[block.label] > kMostTurns) {
+        return unsupported("a loop without a known end");
+    }
     for (const auto& [id, first] : edges.front().phis) {
         SymbolicValue joined;
         if (first.pointer) {
