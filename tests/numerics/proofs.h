@@ -42,7 +42,4 @@ bool isProvedQuickly(const Proof& proof);
 
 inline constexpr double kLargest = prove::kLargestSingle;
 
-// "nDotV in [1e-07, 1], alpha in [1e-4, 1]".
-std::string describeDomain(const prove::Claim& claim);
-
 }  // namespace glint::numerics

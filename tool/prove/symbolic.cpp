@@ -69,6 +69,7 @@ private:
     const SpirvModule& module_;
     ProgramBuilder builder_;
     SymbolicOperations operations_;
+    std::map<SpirvId, SymbolicValue> globals_;
     std::uint32_t memories_ = 0;
     std::size_t blocksRun_ = 0;
 };
@@ -84,6 +85,12 @@ std::uint32_t Executor::newMemory(SymbolicState& state, std::vector<NodeId> scal
 
 SymbolicValue Executor::valueOf(const Frame& frame, const SymbolicState& state, SpirvId id) {
     const auto found = frame.values.find(id);
+    if (found == frame.values.end()) {
+        const auto global = globals_.find(id);
+        if (global != globals_.end()) {
+            return global->second;
+        }
+    }
     SymbolicValue value = found != frame.values.end() ? found->second : operations_.constantOf(id);
     for (NodeId& node : value.nodes) {
         node = state.resolve(node);
@@ -110,6 +117,14 @@ Result<Program> Executor::run(const SpirvFunctionBody& function) {
         SymbolicValue argument;
         argument.pointer = SymbolicPointer{newMemory(state, std::move(scalars)), 0, {}, pointer.element};
         arguments.push_back(std::move(argument));
+    }
+    // Global variables of the shader's own are memories too; resources are not.
+    for (const SpirvOperation& variable : module_.variables) {
+        if (variable.operands[0] == spv::StorageClassPrivate) {
+            const SpirvId pointee = module_.types.at(variable.type).element;
+            globals_[variable.result].pointer =
+                SymbolicPointer{newMemory(state, operations_.zeroOf(pointee)), 0, {}, pointee};
+        }
     }
     const std::uint32_t outputs = arguments.empty() ? 0 : arguments.back().pointer->memory;
     Result<Returned> returned = call(function, std::move(arguments), state);
