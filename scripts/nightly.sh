@@ -21,6 +21,8 @@ Sets up, builds, and runs all parts, or those that are named:
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
             out/specification.json and out/specification.md
+  proofs    scripts/proofs.sh --nightly: claims about the shaders' functions on intervals, with a
+            hundred times as many boxes as the table of docs/numerics.md
   viewer    scripts/viewer_compare.sh, which is left out without Chromium, npm or network
   lint      scripts/lint.sh
   debian    scripts/debian_root.sh: the README's first command in a fresh root of Debian 12,
@@ -32,11 +34,11 @@ TEXT
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep sanitize spec viewer lint debian fuzz)
+    parts=(sweep sanitize spec proofs viewer lint debian fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | sanitize | spec | viewer | lint | debian | fuzz) ;;
+        sweep | sanitize | spec | proofs | viewer | lint | debian | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -74,6 +76,10 @@ for part in "${parts[@]}"; do
             mkdir -p out
             build/release/bin/glint_spec_oracle --many-views --samples 64 --map-width 512 --points 96 \
                 --json out/specification.json --markdown out/specification.md
+            ;;
+        proofs)
+            build glint_proofs
+            scripts/proofs.sh --nightly
             ;;
         viewer)
             scripts/setup.sh --viewer || true

@@ -26,9 +26,9 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     // The inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
     float attenuation = 1.0 / max(squared, kMinSquaredDistance);
     if (light.range > 0.0) {
-        float ratio = distance / light.range;
+        float ratio = min(distance / light.range, 1.0);
         float ratio2 = ratio * ratio;
-        attenuation *= clamp(1.0 - ratio2 * ratio2, 0.0, 1.0);
+        attenuation *= 1.0 - ratio2 * ratio2;
     }
     uint gate = attenuation > 0.0 ? kRaySent : kRayRange;
     if (light.type == kLightSpot) {

@@ -32,6 +32,12 @@ constexpr std::string_view kRoot = R"(#version 460
 #include "numerics/textbook.glsl"
 )";
 
+constexpr std::string_view kProofRoot = R"(#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+#include "numerics/proofs.glsl"
+)";
+
 // Returns the part of a header that needs no device addresses: its constants.
 std::string constantsOf(std::string_view header) {
     std::string text = "#include \"interop/types.h\"\nGLINT_INTEROP_BEGIN\n";
@@ -92,11 +98,11 @@ private:
     std::map<std::string, std::string, std::less<>> texts_;
 };
 
-std::string listProbes(const std::string& glsl) {
-    static const std::regex kProbe(R"(PROBE\((\w+)\) \{)");
-    std::string list = "// Made by make_probes from probes.glsl and textbook.glsl. Do not edit.\n";
+std::string listFunctions(const std::string& glsl, const std::string& macro) {
+    const std::regex kProbe(macro + R"(\((\w+)\) \{)");
+    std::string list = "// Made by make_probes. Do not edit.\n";
     for (std::sregex_iterator i(glsl.begin(), glsl.end(), kProbe); i != std::sregex_iterator(); ++i) {
-        list += fmt::format("LISTED_PROBE({})\n", i->str(1));
+        list += fmt::format("LISTED_{}({})\n", macro, i->str(1));
     }
     return list;
 }
@@ -106,21 +112,36 @@ glint::Status make(const fs::path& output, std::vector<fs::path> folders) {
     if (glint::Status status = sources.addGenerated(); !status) {
         return status;
     }
-    const glint::Result<glint::compiler::GlslUnit> unit = glint::compiler::flatten(
-        "probes", kRoot, [&](std::string_view name) { return sources.find(name); },
-        glint::compiler::FlattenSide::Glsl);
+    const auto flattened = [&](const char* name, std::string_view root) {
+        return glint::compiler::flatten(
+            name, root, [&](std::string_view file) { return sources.find(file); },
+            glint::compiler::FlattenSide::Glsl);
+    };
+    const glint::Result<glint::compiler::GlslUnit> unit = flattened("probes", kRoot);
     if (!unit) {
         return unit.error();
+    }
+    const glint::Result<glint::compiler::GlslUnit> proofs = flattened("proofs", kProofRoot);
+    if (!proofs) {
+        return proofs.error();
     }
     const std::string glsl = unit->withPlaces();
     const glint::Result<std::string> cpp = glint::numerics::translateToCpp(glsl);
     if (!cpp) {
         return cpp.error();
     }
+    const std::string proofGlsl = proofs->withPlaces();
+    const glint::Result<std::string> proofCpp = glint::numerics::translateToCpp(proofGlsl);
+    if (!proofCpp) {
+        return proofCpp.error();
+    }
     const std::map<std::string, std::string> files{{"probes.glsl", glsl},
                                                    {"probes.inc", *cpp},
                                                    {"probes_text.inc", "R\"glsl(" + glsl + ")glsl\"\n"},
-                                                   {"probe_list.inc", listProbes(glsl)}};
+                                                   {"probe_list.inc", listFunctions(glsl, "PROBE")},
+                                                   {"proofs_text.inc", "R\"glsl(" + proofGlsl + ")glsl\"\n"},
+                                                   {"proofs.inc", *proofCpp},
+                                                   {"proof_list.inc", listFunctions(proofGlsl, "PROOF")}};
     for (const auto& [name, text] : files) {
         if (glint::Status status = glint::base::writeFile(output / name, text); !status) {
             return status;

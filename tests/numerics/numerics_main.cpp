@@ -1,6 +1,7 @@
 // glint_numerics: measures every function of the shaders and writes the table of docs/numerics.md, or the
 // precision ladder of docs/accuracy.md.
 #include "base/files.h"
+#include "document_region.h"
 #include "ladder_report.h"
 #include "report.h"
 

@@ -33,9 +33,4 @@ std::string toJson(const Report& report);
 // Returns the form in the table: "exact", "< 1e-10", "1.2e-07", "not finite".
 std::string formatError(double error);
 
-// Returns `document` with the text between the markers "<!-- begin NAME -->" and "<!-- end NAME -->"
-// replaced. Error "report-marker" if it lacks them.
-Result<std::string> replaceRegion(const std::string& document, const std::string& name,
-                                  const std::string& region);
-
 }  // namespace glint::numerics

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 namespace glint::cli {
@@ -27,6 +28,8 @@ struct CheckArguments {
     std::int64_t samples = 4096;
     std::int64_t combinations = 12;
     std::string pictures;
+    bool prove = false;
+    std::int64_t boxes = 4096;
 };
 
 constexpr const char* kPictureSuffix = ".png";
@@ -168,6 +171,55 @@ int checkMaterialFeatures(const Console& console, const CheckArguments& argument
     return failed ? kExitFailed : kExitDone;
 }
 
+std::string toText(const std::vector<measure::FeatureProofOutcome>& outcomes, Detail detail) {
+    std::vector<std::vector<std::string>> rows{
+        {"feature", "proof", "undecided", "boxes", "what the bounds can't exclude"}};
+    for (const measure::FeatureProofOutcome& outcome : outcomes) {
+        const bool isOpen = outcome.state == measure::FeatureProofState::Undecided;
+        rows.push_back({outcome.feature, std::string(nameOf(outcome.state)),
+                        isOpen ? fmt::format("{:.2g}", outcome.undecidedShare) : "-",
+                        fmt::format("{}", outcome.boxes),
+                        isOpen ? fmt::format("{}, {}", outcome.message, outcome.place) : outcome.message});
+    }
+    return formatTable(rows, detail);
+}
+
+base::Json toJson(const measure::FeatureProofOutcome& outcome) {
+    return {{"feature", outcome.feature},
+            {"declaration", outcome.declaration},
+            {"state", nameOf(outcome.state)},
+            {"undecidedShare", outcome.undecidedShare},
+            {"boxes", outcome.boxes},
+            {"message", base::textOrNull(outcome.message)},
+            {"place", base::textOrNull(outcome.place)}};
+}
+
+// Proofs instead of samples.
+int proveMaterialFeatures(const Console& console, const CheckArguments& arguments) {
+    const Result<std::vector<measure::FeatureProofOutcome>> outcomes = measure::proveMaterials(
+        {arguments.options.packs, static_cast<std::uint64_t>(arguments.boxes)}, console);
+    if (!outcomes) {
+        return fail(console, outcomes.error());
+    }
+    if (console.isJson()) {
+        base::Json proofs = base::Json::array();
+        for (const measure::FeatureProofOutcome& outcome : *outcomes) {
+            proofs.push_back(toJson(outcome));
+        }
+        console.result(base::Json{{"proofs", proofs}});
+    } else {
+        console.print(toText(*outcomes, console.isVerbose() ? Detail::Whole : Detail::Short));
+    }
+    bool failed = false;
+    for (const measure::FeatureProofOutcome& outcome : *outcomes) {
+        if (const std::optional<Diagnostic> failure = measure::failureOf(outcome)) {
+            console.report(*failure);
+            failed = true;
+        }
+    }
+    return failed ? kExitFailed : kExitDone;
+}
+
 }  // namespace
 
 void addCheckMaterials(CLI::App& app, Action& chosen) {
@@ -187,12 +239,21 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
     addInteger(command, "--combinations", arguments->combinations, 1, 4096,
                "maximum number of parameter combinations for each feature;\n"
                "the first are the usual values and each range's ends");
+    addFlag(command, "--prove", arguments->prove,
+            "prove on intervals, without a device, that no operation fails\nand all results are finite and "
+            "in their ranges");
+    addInteger(
+        command, "--boxes", arguments->boxes, 1, 100000000,
+        "the most boxes of inputs that --prove looks at for each\nfeature; more decide a larger share");
     addText(command, "--device", arguments->options.device, "NAME",
             "part of the GPU's name (default: the first suitable one)");
     addFlag(command, "--validate", arguments->options.validate,
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error");
     command.callback([arguments, &chosen] {
-        chosen = [arguments](const Console& console) { return checkMaterialFeatures(console, *arguments); };
+        chosen = [arguments](const Console& console) {
+            return arguments->prove ? proveMaterialFeatures(console, *arguments)
+                                    : checkMaterialFeatures(console, *arguments);
+        };
     });
 }
 

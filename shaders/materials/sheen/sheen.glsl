@@ -20,11 +20,12 @@ float sheenLambdaFit(float x, float alpha) {
 }
 
 float sheenLambda(float cosine, float alpha) {
+    // The cosine of a unit vector may be rounded to more than 1, and no number has a power of less than 0.
     return exp(cosine < 0.5 ? sheenLambdaFit(cosine, alpha)
-                            : 2.0 * sheenLambdaFit(0.5, alpha) - sheenLambdaFit(1.0 - cosine, alpha));
+                            : 2.0 * sheenLambdaFit(0.5, alpha) - sheenLambdaFit(max(1.0 - cosine, 0.0), alpha));
 }
 
-// G / (4 (n·l) (n·v)). Both cosines are in (0, 1].
+// G / (4 (n·l) (n·v)). Both cosines are in (0, 1], but for rounding.
 float sheenVisibility(float nDotL, float nDotV, float alpha) {
     return 1.0 / ((1.0 + sheenLambda(nDotV, alpha) + sheenLambda(nDotL, alpha)) * 4.0 * nDotL * nDotV);
 }

@@ -79,6 +79,9 @@ constexpr DiagnosticInfo kTable[] = {
      "`glint check-materials`: a layer reflects another share of a white sky than its function says."},
     {"check-density", kError, "`glint check-materials`: the density of a layer does not integrate to one."},
     {"check-energy", kError, "`glint check-materials`: a material with the feature creates energy."},
+    {"check-proof", kError,
+     "`glint check-materials --prove`: an input was found for which a feature's code fails or leaves its "
+     "range."},
     {"check-range", kError,
      "`glint check-materials`: a feature returns NaN, infinity, or a value out of range."},
     {"check-reciprocity", kError,
@@ -247,6 +250,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"primitive-empty", kWarning, "A primitive has no triangle."},
     {"primitive-mode", kError, "A primitive's mode is unknown."},
     {"primitive-restart", kError, "An index is the value of a primitive restart, which glTF does not have."},
+    {"prove-unsupported", kError,
+     "`glint check-materials --prove`: the code reads a resource, or has a loop whose end depends on its inputs."},
     {"primitive-skipped", kWarning, "Points and lines are skipped: no ray can hit them."},
     {"profile-empty", kWarning, "A profile has no hit of the scene's keys."},
     {"profile-format", kError, "A profile can't be read."},

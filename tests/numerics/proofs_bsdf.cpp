@@ -1,0 +1,381 @@
+// Domains and ranges of the claims in proofs_bsdf.glsl. Domains are those that the shaders' comments state.
+#include "proof_inputs.h"
+
+namespace glint::numerics {
+namespace {
+
+using prove::OutputRange;
+
+std::vector<OutputRange> components(const std::string& name, double size) {
+    return {{name + ".x", -size, size}, {name + ".y", -size, size}, {name + ".z", -size, size}};
+}
+
+prove::InputRange etaInput() {
+    return {"eta", 0.25, 4.0, prove::Scale::Logarithmic};
+}
+
+std::vector<Proof> exactProofs() {
+    constexpr auto kUpper = Hemisphere::Upper;
+    constexpr auto kWhole = Hemisphere::Whole;
+    return {
+        {"AddProduct",
+         "exactAddProduct",
+         "finite; the error is at most 1e-7 of the terms",
+         {{rangeInput("a", -1000.0, 1000.0), rangeInput("b", -1000.0, 1000.0),
+           rangeInput("c", -1000.0, 1000.0)},
+          {{"sum", -1002000.0, 1002000.0}, {"error", -0.13, 0.13}}}},
+        {"DifferenceOfProducts",
+         "differenceOfProducts",
+         "at most the sum of the products",
+         {{rangeInput("a", -2.0, 2.0), rangeInput("b", -2.0, 2.0), rangeInput("c", -2.0, 2.0),
+           rangeInput("d", -2.0, 2.0)},
+          {{"difference", -8.00001, 8.00001}}}},
+        {"AccurateDot",
+         "accurateDot",
+         "in [-1, 1] but for rounding",
+         {inputs({unitInput("a", kWhole), unitInput("b", kWhole)}), {{"dot", -1.00001, 1.00001}}}},
+        {"HalfCosine2",
+         "halfCosine2",
+         "a squared cosine, at most 1",
+         {inputs({unitInput("a", kUpper), unitInput("b", kUpper)}),
+          {{"squared", -1e-6, 1.00001}, {"error", -1e-6, 1e-6}}}},
+        {"RefractedCosine2",
+         "refractedCosine2",
+         "at most 1; finite beyond the critical angle",
+         {{cosineInput("cosine"), etaInput()}, {{"squared", -16.0, kOne}}}},
+        {"AccurateCrossOfSum",
+         "accurateCrossOfSum",
+         "finite, at most the length of the sum",
+         {inputs({unitInput("n", kWhole), unitInput("a", kUpper), unitInput("b", kUpper)}),
+          components("cross", 4.0)}},
+    };
+}
+
+std::vector<Proof> fresnelProofs() {
+    return {
+        {"DielectricF0",
+         "dielectricF0",
+         "in [0, 1]",
+         {{{"ior", 0.0, 1e6, prove::Scale::Logarithmic}}, {{"f0", 0.0, kOne}}}},
+        {"SchlickWeight",
+         "schlickWeight",
+         "in [0, 1]",
+         {{rangeInput("cosine", 0.0, 1.0000002F)}, {{"weight", 0.0, 1.0}}}},
+        {"SchlickRest",
+         "schlickRest",
+         "in [0, 1], and 1 with schlickWeight()",
+         {{rangeInput("cosine", 0.0, 1.0000002F)}, {{"rest", 0.0, kOne}, {"sum", 1.0 - 1e-4, 1.0 + 1e-4}}}},
+        {"FresnelSchlick",
+         "fresnelSchlick, schlickPassed",
+         "shares; together at most 1",
+         {{shareInput("f0"), shareInput("f90 between f0 and 1"), rangeInput("cosine", 0.0, 1.0)},
+          {{"reflected", 0.0, kOne}, {"passed", 0.0, kOne}, {"sum", 1.0 - 1e-4, 1.0 + 1e-4}}}},
+        {"FresnelInterface",
+         "fresnelInterface, interfacePassed",
+         "shares",
+         {{shareInput("f0"), shareInput("f90 between f0 and 1"), cosineInput("cosine"), etaInput()},
+          {{"reflected", 0.0, kOne}, {"passed", 0.0, kOne}}}},
+        {"SchlickF0",
+         "schlickF0",
+         "in [0, 1]",
+         {{shareInput("reflectance"), shareInput("f90"), shareInput("cosine")}, {{"f0", 0.0, 1.0}}}},
+        {"Luminance",
+         "luminance",
+         "in [0, 1] for colours in [0, 1]",
+         {{shareInput("red"), shareInput("green"), shareInput("blue")}, {{"luminance", 0.0, kOne}}}},
+    };
+}
+
+std::vector<Proof> ggxProofs() {
+    constexpr auto kUpper = Hemisphere::Upper;
+    return {
+        {"GgxDistribution",
+         "ggxDistribution",
+         "positive, at most 1 / (pi alpha²)",
+         {inputs({unitInput("h", Hemisphere::Whole), {alphaInput("alpha.x"), alphaInput("alpha.y")}}),
+          {{"density", 0.0, 3.4e7}}}},
+        {"GgxProjection",
+         "ggxProjection",
+         "positive, at most 1",
+         {inputs({unitInput("v", kUpper), {alphaInput("alpha.x"), alphaInput("alpha.y")}}),
+          {{"area", 1e-8, kOne}}}},
+        {"GgxVisibility",
+         "ggxVisibility",
+         "finite and positive",
+         {inputs({unitInput("l", kUpper),
+                  unitInput("v", kUpper),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y")}}),
+          {{"visibility", 0.0, kAny}}}},
+        {"SampleVisibleNormal",
+         "sampleVisibleNormal",
+         "a unit vector above the surface",
+         {inputs({unitInput("v", kUpper),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y"), randomInput("u.x"), randomInput("u.y")}}),
+          {{"h.x", -kOne, kOne},
+           {"h.y", -kOne, kOne},
+           {"h.z", 0.0, kOne},
+           {"length", 1.0 - 1e-5, 1.0 + 1e-5}}}},
+        {"VisibleNormalPdf",
+         "visibleNormalPdf",
+         "finite, not negative",
+         {inputs({unitInput("v", kUpper),
+                  unitInput("h", Hemisphere::Whole),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y")}}),
+          {{"density", 0.0, kAny}}}},
+        {"MirroredPdf",
+         "mirroredPdf",
+         "finite, not negative",
+         {inputs({unitInput("v", kUpper),
+                  unitInput("h", Hemisphere::Whole),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y")}}),
+          {{"density", 0.0, kAny}}}},
+    };
+}
+
+std::vector<Proof> albedoProofs() {
+    return {
+        {"GgxLoss",
+         "ggxLoss",
+         "a share",
+         {{cosineInput("nDotV"), alphaInput("alpha")}, {{"loss", 0.0, 1.0}}}},
+        {"GgxAlbedo",
+         "ggxAlbedo",
+         "0 <= bias <= E <= 1",
+         {{cosineInput("nDotV"), alphaInput("alpha")},
+          {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"E - bias", -1e-6, 1.0}}}},
+        {"GgxMeanAlbedo",
+         "ggxMeanAlbedo",
+         "shares, together at most 1",
+         {{alphaInput("alpha")}, {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"E - bias", 0.0, 1.0}}}},
+        {"AnisotropicGgxAlbedo",
+         "anisotropicGgxAlbedo",
+         "shares",
+         {inputs(
+              {unitInput("v", Hemisphere::Upper), {alphaInput("alpha.x"), alphaInput("alpha.y / alpha.x")}}),
+          {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"E - bias", -1e-6, 1.0}}}},
+        {"AnisotropicGgxMeanAlbedo",
+         "anisotropicGgxMeanAlbedo",
+         "shares",
+         {{alphaInput("alpha.x"), alphaInput("alpha.y / alpha.x")},
+          {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}}}},
+    };
+}
+
+std::vector<Proof> layerProofs() {
+    return {
+        {"SampleCosine",
+         "sampleCosine, cosineDensity",
+         "a direction above the surface, a density at most 1 / pi",
+         {{randomInput("u.x"), randomInput("u.y")},
+          {{"l.x", -kOne, kOne}, {"l.y", -kOne, kOne}, {"l.z", 0.0, 1.0}, {"density", 0.0, 0.31831}}}},
+        {"ReflectAbout",
+         "reflectAbout",
+         "finite, at most the length 1 in each component",
+         {inputs({unitInput("v", Hemisphere::Upper), unitInput("h", Hemisphere::Whole)}),
+          components("l", 3.0)}},
+        {"BuildBasis",
+         "buildBasis",
+         "components of unit vectors",
+         {{rangeInput("n.z", -1.0, 1.0), rangeInput("azimuth of n", -3.1415927F, 3.1415927F)},
+          {{"tangent.x", -kOne, kOne},
+           {"tangent.y", -1.1, 1.1},
+           {"tangent.z", -kOne, kOne},
+           {"bitangent.x", -1.1, 1.1},
+           {"bitangent.y", -kOne, kOne},
+           {"bitangent.z", -kOne, kOne}}}},
+        {"SheenDistribution",
+         "sheenDistribution",
+         "finite, not negative",
+         {{shareInput("sine²"), sheenAlphaInput("alpha")}, {{"density", 0.0, 33.0}}}},
+        {"SheenLambda",
+         "sheenLambda",
+         "finite, positive",
+         {{cosineInput("cosine"), sheenAlphaInput("alpha")}, {{"lambda", 0.0, kAny}}}},
+        {"SheenVisibility",
+         "sheenVisibility",
+         "finite, positive",
+         {{cosineInput("nDotL"), cosineInput("nDotV"), sheenAlphaInput("alpha")},
+          {{"visibility", 0.0, kAny}}}},
+        {"SheenMasking",
+         "sheenMasking",
+         "finite, positive",
+         {{cosineInput("nDotV"), sheenAlphaInput("alpha")}, {{"masking", 0.0, 10.0}}}},
+        {"SheenHorizon",
+         "sheenHorizon",
+         "a share",
+         {{cosineInput("nDotV"), sheenAlphaInput("alpha")}, {{"share", 0.0, 1.0}}}},
+        {"SheenAlbedo",
+         "sheenAlbedo",
+         "finite, not negative",
+         {{cosineInput("nDotV"), sheenAlphaInput("alpha")}, {{"albedo", 0.0, 1000.0}}}},
+        {"SheenShares",
+         "sheenShares",
+         "shares; what is reflected and what passes are 1 together",
+         {{shareInput("color"), sheenAlphaInput("alpha"), cosineInput("nDotV")},
+          {{"reflected", 0.0, 1.0}, {"passed", 0.0, 1.0}, {"sum", 0.0, kOne}}}},
+        {"ClearcoatFresnel",
+         "clearcoatFresnel, clearcoatPassed",
+         "shares, together 1",
+         {{shareInput("factor"), rangeInput("nDotV", 0.0, 1.0)},
+          {{"reflected", 0.0, kOne}, {"passed", 0.0, kOne}, {"sum", 1.0 - 1e-4, 1.0 + 1e-4}}}},
+        {"ClearcoatProjection",
+         "clearcoatProjection",
+         "positive, at most 1",
+         {{cosineInput("cosine"), alphaInput("alpha")}, {{"area", 1e-8, kOne}}}},
+        {"ClearcoatGain",
+         "clearcoatGain",
+         "1 to 3.3",
+         {{cosineInput("nDotV"), alphaInput("alpha")}, {{"gain", 1.0, 3.3}}}},
+        {"CosineOfCycles",
+         "cosineOfCycles",
+         "in [-1, 1]",
+         {{rangeInput("cycles", -1e6, 1e6)}, {{"cosine", -1.0, 1.0}}}},
+        {"FilmSensitivity",
+         "filmSensitivity",
+         "finite",
+         {{{"path difference", 0.0, 1e9, prove::Scale::Logarithmic}, rangeInput("turns", 0.0, 2.0)},
+          components("sensitivity", 8.0)}},
+        {"IridescentFresnel",
+         "iridescentFresnel",
+         "in [0, 1]",
+         {{rangeInput("cosine", 0.0, 1.0),
+           shareInput("base F0"),
+           rangeInput("film's index", 1.0, 3.0),
+           {"thickness", 0.0, 10000.0, prove::Scale::Logarithmic}},
+          {{"reflectance", 0.0, 1.0}}}},
+        {"DispersedIor",
+         "dispersedIor",
+         "finite",
+         {{rangeInput("ior", 1.0, 4.0), rangeInput("dispersion", 0.0, 10.0)}, components("ior", 4.8)}},
+        {"VolumeTransmittance",
+         "volumeTransmittance",
+         "a share",
+         {{{"absorption", 0.0, 1e30, prove::Scale::Logarithmic},
+           {"distance", 0.0, 1e8, prove::Scale::Logarithmic}},
+          {{"share", 0.0, 1.0 + 1e-6}}}},
+        {"RefractDirection",
+         "refractDirection",
+         "components of a unit vector",
+         {inputs({unitInput("v", Hemisphere::Upper), unitInput("h", Hemisphere::Whole), {etaInput()}}),
+          components("l", kOne)}},
+        {"ThinTransmission",
+         "thinTransmission",
+         "finite, not negative",
+         {inputs({unitInput("v", Hemisphere::Upper),
+                  unitInput("-l", Hemisphere::Upper),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y")}}),
+          {{"light", 0.0, kAny}, {"cosine", 0.0, 1.0}}}},
+    };
+}
+
+// The four claims about a surface with some lobes, of proofs_bsdf.glsl's CLAIMS_OF_SURFACE.
+struct SurfaceNames {
+    std::string_view lobes;
+    std::string_view prepare;
+    std::string_view evaluate;
+    std::string_view density;
+    std::string_view chances;
+    std::string_view titles[4];
+};
+
+std::vector<Proof> surfaceProofs(const SurfaceNames& names) {
+    const std::vector<prove::InputRange> surface = inputs(
+        {{shareInput("f0"), alphaInput("alpha"), shareInput("color")}, unitInput("view", Hemisphere::Upper)});
+    const std::vector<prove::InputRange> lit = inputs({surface, unitInput("l", Hemisphere::Upper)});
+    return {
+        {names.prepare,
+         names.titles[0],
+         "shares",
+         {surface,
+          {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"mean loss", 0.0, 1.0}, {"mean bias", 0.0, 1.0}}}},
+        {names.evaluate, names.titles[1], "finite, not negative", {lit, {{"light", -1e-3, kAny}}}},
+        {names.density, names.titles[2], "finite, not negative", {lit, {{"density", -1e-3, kAny}}}},
+        {names.chances,
+         names.titles[3],
+         "chances, together 1",
+         {surface,
+          {{"microfacets", 0.0, kOne},
+           {"diffuse", -1e-5, kOne},
+           {"passed", -1e-5, kOne},
+           {"sum", 0.999, 1.001}}}},
+    };
+}
+
+std::vector<Proof> energyProofs() {
+    const std::vector<prove::InputRange> reflectances{shareInput("f0"), shareInput("f90 between f0 and 1")};
+    const prove::InputRange meanLoss = rangeInput("mean loss", 0.0, 0.75);
+    std::vector<Proof> all{
+        {"RefractedTransmission",
+         "refractedTransmission",
+         "finite, not negative",
+         {inputs({unitInput("v", Hemisphere::Upper),
+                  unitInput("-l", Hemisphere::Upper),
+                  {alphaInput("alpha.x"), alphaInput("alpha.y"), etaInput()}}),
+          {{"light", 0.0, kAny}, {"cosine", 0.0, kOne}}}},
+        {"MultiScatterOf",
+         "multiScatterOf, meanFresnel",
+         "a share",
+         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, kOne}}}},
+        {"PassedAgain",
+         "passedAgain",
+         "a share; 1 with multiScatterOf()",
+         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, 1.001}, {"sum", 0.99, 1.01}}}},
+        {"SpecularShares",
+         "specularAlbedo, specularPassed",
+         "shares, together 1",
+         {inputs({reflectances, {shareInput("loss"), shareInput("bias over E"), meanLoss}}),
+          {{"reflected", 0.0, 1.001}, {"passed", 0.0, 1.001}, {"sum", 0.99, 1.01}}}},
+    };
+    static constexpr SurfaceNames kSurfaces[] = {
+        {"base",
+         "PrepareBase",
+         "EvaluateBase",
+         "DensityBase",
+         "ChancesBase",
+         {"prepareBsdf", "evaluateBsdf", "bsdfPdf", "lobeChances"}},
+        {"clearcoat",
+         "PrepareCoated",
+         "EvaluateCoated",
+         "DensityCoated",
+         "ChancesCoated",
+         {"prepareBsdf (clearcoat)", "evaluateBsdf (clearcoat)", "bsdfPdf (clearcoat)",
+          "lobeChances (clearcoat)"}},
+        {"sheen",
+         "PrepareSheen",
+         "EvaluateSheen",
+         "DensitySheen",
+         "ChancesSheen",
+         {"prepareBsdf (sheen)", "evaluateBsdf (sheen)", "bsdfPdf (sheen)", "lobeChances (sheen)"}},
+        {"transmission",
+         "PrepareThin",
+         "EvaluateThin",
+         "DensityThin",
+         "ChancesThin",
+         {"prepareBsdf (transmission)", "evaluateBsdf (transmission)", "bsdfPdf (transmission)",
+          "lobeChances (transmission)"}},
+        {"diffuse transmission",
+         "PrepareTranslucent",
+         "EvaluateTranslucent",
+         "DensityTranslucent",
+         "ChancesTranslucent",
+         {"prepareBsdf (diffuse transmission)", "evaluateBsdf (diffuse transmission)",
+          "bsdfPdf (diffuse transmission)", "lobeChances (diffuse transmission)"}}};
+    for (const SurfaceNames& names : kSurfaces) {
+        const std::vector<Proof> proofs = surfaceProofs(names);
+        all.insert(all.end(), proofs.begin(), proofs.end());
+    }
+    return all;
+}
+
+}  // namespace
+
+std::vector<Proof> bsdfProofs() {
+    std::vector<Proof> all;
+    for (const std::vector<Proof>& group :
+         {exactProofs(), fresnelProofs(), ggxProofs(), albedoProofs(), layerProofs(), energyProofs()}) {
+        all.insert(all.end(), group.begin(), group.end());
+    }
+    return all;
+}
+
+}  // namespace glint::numerics

@@ -1,0 +1,288 @@
+// Claims about the shaders' functions hold; what proves them encloses what the functions compute; and faults
+// that are planted are found.
+#include "proofs.h"
+
+#include "proof_functions.h"
+#include "prove/concrete.h"
+#include "prove/evaluate.h"
+#include "prove/interval.h"
+#include "prove/prover.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace glint::numerics {
+namespace {
+
+using prove::Interval;
+
+const std::vector<prove::Program>& programs() {
+    static const std::vector<prove::Program> kPrograms = [] {
+        Result<std::vector<prove::Program>> made = compileProofs(allProofs());
+        EXPECT_TRUE(made) << (made ? "" : toString(made.error()));
+        return made ? std::move(*made) : std::vector<prove::Program>{};
+    }();
+    return kPrograms;
+}
+
+// A number in [0, 1), and often an end.
+double randomShare(std::mt19937_64& random) {
+    const double share = static_cast<double>(random() >> 11U) * 0x1p-53;
+    return share < 0.05 ? 0.0 : share > 0.95 ? 0.99999 : share;
+}
+
+double between(std::mt19937_64& random, const Interval& range) {
+    const auto value =
+        static_cast<double>(static_cast<float>(range.low + randomShare(random) * range.width()));
+    return std::clamp(value, range.low, range.high);
+}
+
+TEST(Proofs, SucceedForTheQuickSet) {
+    ASSERT_EQ(programs().size(), allProofs().size());
+    std::size_t proved = 0;
+    for (std::size_t k = 0; k < programs().size(); ++k) {
+        const Proof& proof = allProofs()[k];
+        if (!isProvedQuickly(proof)) {
+            continue;
+        }
+        prove::ProofOptions options;
+        options.mostBoxes = proof.boxes;
+        options.samples = 100;
+        const prove::ProofResult result = prove::prove(programs()[k], proof.claim, options);
+        EXPECT_EQ(result.state, prove::ProofState::Proved)
+            << proof.name << ": " << result.undecidedWhy
+            << (result.counterexample ? result.counterexample->what : std::string());
+        ++proved;
+    }
+    EXPECT_GE(proved, 30U);
+}
+
+TEST(Proofs, NoClaimIsRefutedBySamples) {
+    ASSERT_EQ(programs().size(), allProofs().size());
+    for (std::size_t k = 0; k < programs().size(); ++k) {
+        prove::ProofOptions options;
+        options.mostBoxes = 1;
+        options.samples = 3000;
+        options.seed = 7;
+        const prove::ProofResult result = prove::prove(programs()[k], allProofs()[k].claim, options);
+        ASSERT_TRUE(result.state != prove::ProofState::Refuted)
+            << allProofs()[k].name << ": " << result.counterexample->what;
+    }
+}
+
+// Inputs for which claims once were wrong.
+TEST(Proofs, HoldForEarlierCounterexamples) {
+    struct Case {
+        const char* claim;
+        std::vector<double> inputs;
+    };
+    const Case cases[] = {
+        // The cosine of the view was rounded to more than 1, and a power of a negative number was taken.
+        {"EvaluateSheen",
+         {0.163801059F, 1.0, 0.595538139F, 1.0, -3.14159274F, 1.32458908e-07F, 0.0479270294F, 2.0699687F,
+          2.00000002e-07F}},
+        // The mean of the bias fell below 0.
+        {"AnisotropicGgxMeanAlbedo", {0.743968368F, 1.0}},
+        // The fourth power of the distance over the range overflowed.
+        {"SampleLight",
+         {0.140447244F, 2.27492142F, -1.39183172e-07F, 2.18818389e-16F, 2.00296691e-23F, 239.830826F,
+          758.09082F, -0.0635154843F, -1.80689096F, -1.06979094e-07F, 0.160171479F}},
+    };
+    for (const Case& known : cases) {
+        const auto found = std::find_if(allProofs().begin(), allProofs().end(),
+                                        [&](const Proof& proof) { return proof.name == known.claim; });
+        ASSERT_NE(found, allProofs().end());
+        const auto place = static_cast<std::size_t>(found - allProofs().begin());
+        const auto wrong = prove::refute(programs()[place], found->claim, known.inputs);
+        EXPECT_FALSE(wrong.has_value()) << known.claim << ": " << *wrong;
+    }
+}
+
+// For random boxes: whatever any operation gives at a point of the box lies in its interval, with and without
+// forms.
+TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {
+    std::mt19937_64 random(3);
+    std::uint64_t compared = 0;
+    for (std::size_t k = 0; k < programs().size(); ++k) {
+        const prove::Program& program = programs()[k];
+        const prove::Claim& claim = allProofs()[k].claim;
+        prove::BoxEvaluator boxes(program);
+        prove::PointEvaluator points(program);
+        for (int turn = 0; turn < 12; ++turn) {
+            std::vector<Interval> box;
+            for (const prove::InputRange& input : claim.inputs) {
+                const double a = between(random, {input.low, input.high});
+                const double size = std::exp2(-static_cast<double>(turn) * 2.0) * (input.high - input.low);
+                const auto b = static_cast<double>(static_cast<float>(a + size * randomShare(random)));
+                box.push_back({a, std::clamp(b, a, input.high)});
+            }
+            boxes.run(box, turn % 3 != 0);
+            for (int point = 0; point < 6; ++point) {
+                std::vector<double> inputs;
+                for (const Interval& side : box) {
+                    inputs.push_back(between(random, side));
+                }
+                points.run(inputs);
+                for (prove::NodeId id = 0; id < program.nodes.size(); ++id) {
+                    const double value = points.value(id);
+                    if (!std::isfinite(value)) {
+                        continue;
+                    }
+                    ++compared;
+                    ASSERT_TRUE(boxes.value(id).contains(value))
+                        << allProofs()[k].name << ": " << prove::describe(program, id) << " is " << value
+                        << ", not in [" << boxes.value(id).low << ", " << boxes.value(id).high << "]";
+                }
+            }
+        }
+    }
+    EXPECT_GT(compared, 500'000U);
+}
+
+// The intervals are about SPIR-V, and these builds about the text: both mean the same functions.
+TEST(Intervals, EncloseTheFloatAndTheDoubleBuild) {
+    std::mt19937_64 random(5);
+    std::size_t functions = 0;
+    for (std::size_t k = 0; k < floatProofs().size(); ++k) {
+        const auto proof = std::find_if(allProofs().begin(), allProofs().end(), [&](const Proof& candidate) {
+            return candidate.name == floatProofs()[k].name;
+        });
+        if (proof == allProofs().end()) {
+            continue;
+        }
+        ++functions;
+        const prove::Program& program = programs()[static_cast<std::size_t>(proof - allProofs().begin())];
+        prove::BoxEvaluator boxes(program);
+        for (int turn = 0; turn < 40; ++turn) {
+            float given[kMaxInputs] = {};
+            double exact[kMaxInputs] = {};
+            std::vector<Interval> box;
+            for (std::size_t input = 0; input < proof->claim.inputs.size(); ++input) {
+                const prove::InputRange& range = proof->claim.inputs[input];
+                exact[input] = between(random, {range.low, range.high});
+                given[input] = static_cast<float>(exact[input]);
+                box.push_back(Interval::of(exact[input]));
+            }
+            boxes.run(box, false);
+            if (!boxes.findings().empty()) {
+                continue;
+            }
+            float single[kMaxOutputs] = {};
+            double real[kMaxOutputs] = {};
+            floatProofs()[k].call(given, single);
+            doubleProofs()[k].call(exact, real);
+            for (std::size_t output = 0; output < proof->claim.outputs.size(); ++output) {
+                const Interval& value = boxes.value(program.outputs[output]);
+                ASSERT_TRUE(value.contains(static_cast<double>(single[output])))
+                    << proof->name << " output " << output << ": " << single[output] << " is not in ["
+                    << value.low << ", " << value.high << "]";
+                // The text's constants are floats in SPIR-V, and doubles here.
+                const double slack = 1e-6 * (1.0 + std::abs(real[output]));
+                ASSERT_TRUE(value.low - slack <= real[output] && real[output] <= value.high + slack)
+                    << proof->name << " output " << output << ": " << real[output] << " is not in ["
+                    << value.low << ", " << value.high << "]";
+            }
+        }
+    }
+    EXPECT_GT(functions, 50U);
+}
+
+// Directed rounding: the bounds are the floats around the exact result, so that bounds which are narrower by
+// one unit in the last place lose it.
+TEST(Intervals, ABoundThatIsOneUnitTooNarrowIsNoticed) {
+    std::mt19937_64 random(11);
+    const prove::Arithmetic single(prove::Format::Single);
+    int lostBelow = 0;
+    int lostAbove = 0;
+    for (int turn = 0; turn < 10'000; ++turn) {
+        const auto a = static_cast<double>(static_cast<float>(std::exp2(randomShare(random) * 40.0 - 20.0)));
+        const auto b = static_cast<double>(static_cast<float>(std::exp2(randomShare(random) * 40.0 - 20.0)));
+        prove::Hazard hazard = prove::Hazard::None;
+        const double exact[] = {a + b, a * b, a / b, std::sqrt(a)};
+        const Interval bounds[] = {single.add(Interval::of(a), Interval::of(b), hazard),
+                                   single.multiply(Interval::of(a), Interval::of(b), hazard),
+                                   single.divide(Interval::of(a), Interval::of(b), hazard),
+                                   single.apply(prove::Function::Sqrt, Interval::of(a), hazard)};
+        ASSERT_EQ(hazard, prove::Hazard::None);
+        for (std::size_t k = 0; k < 4; ++k) {
+            ASSERT_TRUE(bounds[k].contains(exact[k]));
+            ASSERT_LE(bounds[k].width(), std::abs(exact[k]) * 0x1p-22);
+            const double narrowLow = -prove::nextFloatBelow(static_cast<float>(-bounds[k].low));
+            const double narrowHigh = prove::nextFloatBelow(static_cast<float>(bounds[k].high));
+            lostBelow += exact[k] < narrowLow ? 1 : 0;
+            lostAbove += exact[k] > narrowHigh ? 1 : 0;
+        }
+    }
+    EXPECT_GT(lostBelow, 30'000);
+    EXPECT_GT(lostAbove, 30'000);
+}
+
+// The same for a claim: (1 - cosine)^5 is 1 at 0 and 0 at 1, and not a unit less or more.
+TEST(Proofs, AClaimThatIsOneUnitTooNarrowIsRefuted) {
+    const auto proof = std::find_if(allProofs().begin(), allProofs().end(),
+                                    [](const Proof& candidate) { return candidate.name == "SchlickWeight"; });
+    const prove::Program& program = programs()[static_cast<std::size_t>(proof - allProofs().begin())];
+    prove::Claim claim = proof->claim;
+    EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Proved);
+    claim.outputs[0].high = prove::nextFloatBelow(1.0F);
+    EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Refuted);
+    claim.outputs[0] = {"weight", std::numeric_limits<float>::denorm_min(), 1.0};
+    EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Refuted);
+}
+
+struct Planted {
+    const char* code;
+    prove::InputRange input;
+    prove::ProofState state;
+    const char* words;  // of what was found
+};
+
+// Each operation's domain is checked; a branch that keeps out of the way is understood.
+TEST(Proofs, AMissingCheckOfADomainIsFound) {
+    using prove::ProofState;
+    const Planted cases[] = {
+        {"o[0] = sqrt(i[0]);", {"x", -1.0, 1.0}, ProofState::Refuted, "sqrt"},
+        {"o[0] = i[0] > 0.0 ? sqrt(i[0]) : 0.0;", {"x", -1.0, 1.0}, ProofState::Proved, ""},
+        {"o[0] = 1.0 / i[0];", {"x", -1.0, 1.0}, ProofState::Refuted, "/"},
+        {"if (i[0] > 0.25) { o[0] = 1.0 / i[0]; }", {"x", -1.0, 1.0}, ProofState::Proved, ""},
+        {"o[0] = acos(i[0]);", {"x", -1.0, 1.0000002F}, ProofState::Refuted, "acos"},
+        {"o[0] = acos(clamp(i[0], -1.0, 1.0));", {"x", -1.0, 1.0000002F}, ProofState::Proved, ""},
+        {"o[0] = log(i[0]);", {"x", 0.0, 1.0}, ProofState::Refuted, "log"},
+        {"o[0] = pow(i[0], 0.2);", {"x", -1e-7F, 1.0}, ProofState::Refuted, "pow"},
+        {"o[0] = i[0] * i[0];", {"x", 0.0, 1e20F}, ProofState::Refuted, "square"},
+        {"o[0] = exp(i[0]);", {"x", 0.0, 100.0}, ProofState::Refuted, "exp"},
+        {"o[0] = normalize(vec2(i[0], 0.0)).x;", {"x", 0.0, 1.0}, ProofState::Refuted, ""},
+        // 16 bits end at 65504.
+        {"mediump float h = i[0]; o[0] = h * h;", {"x", 0.0, 300.0}, ProofState::Refuted, ""},
+        {"mediump float h = i[0]; o[0] = h * h;", {"x", 0.0, 250.0}, ProofState::Proved, ""},
+        {"for (int k = 0; k < 4; ++k) { o[0] += i[0]; }", {"x", 0.0, 1.0}, ProofState::Proved, ""},
+    };
+    for (const Planted& planted : cases) {
+        const Result<prove::Program> program = compileClaim(planted.code);
+        ASSERT_TRUE(program) << toString(program.error());
+        const prove::Claim claim{{planted.input}, {{"result", -kLargest, kLargest}}};
+        const prove::ProofResult result = prove::prove(*program, claim, {});
+        EXPECT_EQ(result.state, planted.state)
+            << planted.code << ": " << result.undecidedWhy
+            << (result.counterexample ? result.counterexample->what : std::string());
+        if (result.counterexample) {
+            EXPECT_NE(result.counterexample->what.find(planted.words), std::string::npos)
+                << result.counterexample->what;
+        }
+    }
+}
+
+// What depends on a resource is no proof.
+TEST(Proofs, WhatCannotBeFollowedIsSaid) {
+    const Result<prove::Program> program = compileClaim("while (o[0] < i[0]) { o[0] = o[0] * 1.5 + 1.0; }");
+    ASSERT_FALSE(program);
+    EXPECT_EQ(program.error().id, "prove-unsupported");
+}
+
+}  // namespace
+}  // namespace glint::numerics
