@@ -251,7 +251,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"primitive-mode", kError, "A primitive's mode is unknown."},
     {"primitive-restart", kError, "An index is the value of a primitive restart, which glTF does not have."},
     {"prove-unsupported", kError,
-     "`glint check-materials --prove`: the code reads a resource, or has a loop whose end depends on its inputs."},
+     "`glint check-materials --prove`: the code reads a resource, or has a loop whose end depends on its "
+     "inputs."},
     {"primitive-skipped", kWarning, "Points and lines are skipped: no ray can hit them."},
     {"profile-empty", kWarning, "A profile has no hit of the scene's keys."},
     {"profile-format", kError, "A profile can't be read."},
