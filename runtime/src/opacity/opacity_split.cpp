@@ -2,7 +2,7 @@
 
 #include "context/parallel.h"
 #include "scene/material_table.h"
-#include "scene/vertex_format.h"
+#include "vertices/vertex_format.h"
 
 #include <algorithm>
 #include <bit>
