@@ -181,14 +181,14 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
     addText(command, "--pictures", arguments->pictures, "DIR",
             "write PNG files: each feature's lobe over all directions for\n"
             "three views, and a sphere in a white furnace, which is\n"
-            "brighter than the background, or red, where it makes light");
+            "brighter than the background, or red, where it creates energy");
     addInteger(command, "--samples", arguments->samples, 256, 1 << 20,
                "sampled directions for each combination and view; more\nfind smaller errors of densities");
     addInteger(command, "--combinations", arguments->combinations, 1, 4096,
-               "the most combinations of parameters for each feature; the\n"
-               "first are the usual values and each range's ends");
+               "maximum number of parameter combinations for each feature;\n"
+               "the first are the usual values and each range's ends");
     addText(command, "--device", arguments->options.device, "NAME",
-            "part of the GPU's name (default: the first that will do)");
+            "part of the GPU's name (default: the first suitable one)");
     addFlag(command, "--validate", arguments->options.validate,
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error");
     command.callback([arguments, &chosen] {
