@@ -26,8 +26,9 @@ gltf::Primitive leaves(int material, float z) {
         const gltf::Primitive leaf = makeQuad(material, {x, y, z + 0.02F * std::sin(5.0F * x + 3.0F * y)},
                                               {0.19F, 0, 0.01F}, {0.01F, 0.19F, 0});
         const auto first = static_cast<std::uint32_t>(all.positions.size());
-        // A third of the texture each: opaque, an edge, transparent; some mirrored and some across the seam.
-        const float left = i % 7 == 6 ? 0.9F : 0.33F * static_cast<float>(i % 3);
+        // A third of the texture each: opaque, an edge, transparent; some mirrored and some across the seam,
+        // which the others stay clear of: a lookup at 0 may read the other side.
+        const float left = i % 7 == 6 ? 0.9F : 0.02F + 0.33F * static_cast<float>(i % 3);
         for (std::size_t corner = 0; corner < leaf.positions.size(); ++corner) {
             const float u = i % 4 == 1 ? 1.0F - leaf.texCoords0[corner][0] : leaf.texCoords0[corner][0];
             all.positions.push_back(leaf.positions[corner]);
