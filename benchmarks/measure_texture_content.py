@@ -57,8 +57,9 @@ def generated(folder):
         {"name": "rough", "pbrMetallicRoughness": {"metallicRoughnessTexture": slot["rough"]}},
         {"name": "constant", "pbrMetallicRoughness": {"metallicRoughnessTexture": slot["constant"],
                                                       "metallicFactor": 0.5}},
-        {"name": "no glass here", "extensions": {"KHR_materials_transmission": {
-            "transmissionFactor": 1, "transmissionTexture": slot["halves"]}}},
+        {"name": "no glass here", "pbrMetallicRoughness": {"metallicFactor": 0},
+         "extensions": {"KHR_materials_transmission": {
+             "transmissionFactor": 1, "transmissionTexture": slot["halves"]}}},
         {"name": "no coat here", "extensions": {"KHR_materials_clearcoat": {
             "clearcoatFactor": 1, "clearcoatTexture": slot["halves"]}}},
         {"name": "flat", "normalTexture": slot["flat"], **base},

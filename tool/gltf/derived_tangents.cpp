@@ -9,7 +9,8 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr double kTolerance = 1e-4;
+// What single precision rounds where positions and coordinates are subtracted.
+constexpr double kTolerance = 2e-6;
 
 using Vector = std::array<double, 3>;
 
