@@ -6,14 +6,14 @@ usage() {
     cat <<'TEXT'
 usage: scripts/fetch_basisu.sh [--where]
 
-Fetches the source package basis-universal through apt, from the mirror and under the
-key that this machine uses already, and keeps the files that Glint compiles (4 MB) in
+Fetches the source package basis-universal by apt, from the mirror and with the key that
+this machine already uses, and keeps the files that Glint compiles (4 MB) in
 $GLINT_BASISU_ROOT, else in $XDG_CACHE_HOME/glint-sources/basis-universal, else below
-~/.cache. Does nothing where they are there. No release of Debian 12, Debian 13 and
+~/.cache. Does nothing if they are there. No release of Debian 12, Debian 13 and
 Ubuntu 24.04 has the package, but later ones do. apt's own configuration stays as it is.
 
-Where the package can't be had, it says so in one line and exits 1; Glint builds without
-it, and reads no KTX2 textures then.
+If the package can't be fetched, the script says so in one line and exits with 1. Glint is
+then built without it and reads no KTX2 textures.
 
   --where   print the folder, and exit
 TEXT

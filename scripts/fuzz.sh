@@ -10,16 +10,16 @@ usage: scripts/fuzz.sh [SECONDS] [TARGET…]
        scripts/fuzz.sh --report [TARGET…]
 
 Runs the libFuzzer targets of tests/fuzz, all of them or those named, and prints a Markdown table: executions,
-coverage (edges, and libFuzzer's features), time, findings. Inputs that are new stay in build/fuzz/corpus, findings
-in build/fuzz/findings; exit 1 if there is any. Needs Clang: scripts/setup.sh --sanitize.
+coverage (edges, and libFuzzer's features), time, findings. New inputs are kept in build/fuzz/corpus, and findings in
+build/fuzz/findings. Exits with 1 if there is a finding. Needs Clang: scripts/setup.sh --sanitize.
 
-  SECONDS         run each target that long (60), two at a time
+  SECONDS         run each target for this time (default 60), two at a time
   --executions N  run one target after the other until each has had N executions since its last finding
-  --seconds S     with --executions: no longer than that for a target
-  --report        run nothing; print what the runs so far have counted
+  --seconds S     with --executions: run each target for at most this time
+  --report        run nothing; print the counts of all runs so far
 
-Every run adds its executions to tests/fuzz/executions.txt, or sets a target back to 0 that had a finding. Commit the
-file, so that the runs of all machines add up. Its head says what it counts.
+Every run adds its executions to tests/fuzz/executions.txt, or sets a target with a finding back to 0. Commit the file,
+so that the runs of all machines add up. Its head says what it counts.
 TEXT
 }
 

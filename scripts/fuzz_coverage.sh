@@ -8,10 +8,10 @@ usage() {
 usage: scripts/fuzz_coverage.sh [--html DIR]
 
 Builds the replays of tests/fuzz with Clang's source coverage (in build/coverage), runs them over tests/fuzz/corpus
-and over what scripts/fuzz.sh left in build/fuzz/corpus, and prints a Markdown table: lines of each reader, and how
-many of them ran.
+and over the inputs of scripts/fuzz.sh in build/fuzz/corpus, and prints a Markdown table: the lines of each reader, and
+how many of them ran.
 
-  --html DIR  also write which lines those are, as pages
+  --html DIR  also write pages that show these lines
 
 Needs Clang: scripts/setup.sh --sanitize.
 TEXT

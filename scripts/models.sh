@@ -7,13 +7,14 @@ usage() {
     cat <<'TEXT'
 usage: eval "$(scripts/models.sh)"       sets GLINT_MODELS in this shell
        scripts/models.sh --list          prints each model, its repository, commit and path
-       scripts/models.sh --check         compares the models with the checksums of those that Glint was measured with
+       scripts/models.sh --check         compares checksums of the models with those that Glint was measured with
 
 The folder is the first of
-  1. what the environment variable GLINT_MODELS names,
+  1. the folder that the environment variable GLINT_MODELS names,
   2. ../shared/models,
   3. build/models, into which the models are fetched by git, each from its repository at its commit.
-A model that can't be had is named, and what needs it is skipped. Exit 1 only where --check finds a difference.
+If a model is not available, the script names it, and tests that need it are skipped. Exits with 1 only if --check
+finds a difference.
 TEXT
 }
 

@@ -14,8 +14,9 @@ Sets up, builds, and runs all parts, or those that are named:
   sweep     test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values;
             test_strategies_agree with every merge policy for every scene; test_half and
-            test_library with the gallery; the orderings with other subgroup sizes. All with
-            lavapipe's LLVM passes, which scripts/test.sh leaves out
+            test_library with the gallery; the orderings with other subgroup sizes; twice to three
+            times as many materials in test_furnace and test_sampling; a fault at every call that
+            writes. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -24,19 +25,20 @@ Sets up, builds, and runs all parts, or those that are named:
             hundred times as many boxes as the table of docs/numerics.md
   viewer    scripts/viewer_compare.sh, which is left out without Chromium, npm or network
   lint      scripts/lint.sh
-  debian13  scripts/debian13.sh: builds and runs every test with the newer compiler and
-            libraries of Debian 13, below build/debian13; needs root
+  debian    scripts/debian_root.sh: the README's first command in a fresh root of Debian 12,
+            below build/debian12, and every test with the newer compiler and libraries of
+            Debian 13, below build/debian13; needs root
   fuzz      scripts/fuzz.sh --executions 10000000
 TEXT
 }
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep sanitize spec proofs viewer lint debian13 fuzz)
+    parts=(sweep sanitize spec proofs viewer lint debian fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | sanitize | spec | proofs | viewer | lint | debian13 | fuzz) ;;
+        sweep | sanitize | spec | proofs | viewer | lint | debian | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -58,9 +60,10 @@ scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
         sweep)
-            build test_combinations test_strategies_agree test_half test_library test_live_edit \
-                test_ordering
-            for program in test_combinations test_strategies_agree test_half test_library test_live_edit; do
+            whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
+                test_ordering test_furnace test_sampling test_cli_robustness)
+            build "${whole[@]}" glint
+            for program in "${whole[@]}"; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"
             done
             for bits in 128 512; do
@@ -84,11 +87,13 @@ for part in "${parts[@]}"; do
             scripts/viewer_compare.sh
             ;;
         lint) scripts/lint.sh ;;
-        debian13)
+        debian)
             if [[ $(id -u) -eq 0 ]]; then
-                scripts/debian13.sh build/debian13
+                rm -rf build/debian12
+                scripts/debian_root.sh 12 build/debian12 scripts/demo.sh
+                scripts/debian_root.sh 13 build/debian13
             else
-                printf 'nightly: debian13 is left out: it needs root\n'
+                printf 'nightly: debian is left out: it needs root\n'
             fi
             ;;
         fuzz) scripts/fuzz.sh --executions 10000000 ;;

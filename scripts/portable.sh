@@ -8,13 +8,13 @@ usage() {
 usage: scripts/portable.sh [--test ROOT]
 
 On Debian 12, builds a release glint, with gallery, glint_numerics, bench_ordering,
-test_ray_steps and the example engine, into which everything is linked but the C library
-and the Vulkan loader, and packs them as out/glint-VERSION-linux-ARCHITECTURE.tar.gz with
-the README, the licences, and the scenes of both examples with their packages for every
-strategy and tracer.
+test_ray_steps and the example engine. They are statically linked except for the C library
+and the Vulkan loader. The script packs them as out/glint-VERSION-linux-ARCHITECTURE.tar.gz
+with the README, the licences, and the scenes of both examples with their packages for
+every strategy and tracer.
 
-Libraries of which Debian has no static archive are built from Debian's own source
-packages, once, in build/portable/deps. Needs what scripts/setup.sh --portable installs.
+Libraries without a static archive in Debian are built from Debian's own source packages,
+once, in build/portable/deps. Needs the packages of scripts/setup.sh --portable.
 
   --test ROOT  also unpacks the archive in a root of Debian 12 with nothing but a
                Vulkan loader and driver, made by debootstrap in the folder ROOT where

@@ -18,8 +18,8 @@ scripts/setup.sh --sanitize) and runs
     of the strategies in turn.
 With --all, as in scripts/nightly.sh, every file goes through the command, and every scene through every command and
 strategy.
-Exit 1 on a report of a sanitizer, on a command that takes 15 minutes, and where one ends in another way than done or
-with a diagnostic.
+Exits with 1 after a report of a sanitizer, and if a command takes 15 minutes or ends neither successfully nor with a
+diagnostic.
 TEXT
 }
 

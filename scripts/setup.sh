@@ -8,15 +8,15 @@ usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
-Then scripts/fetch_basisu.sh fetches the sources by which Glint reads KTX2 textures; where
-they can't be had, that is said, and Glint builds without.
+Then scripts/fetch_basisu.sh fetches the sources with which Glint reads KTX2 textures. If
+they can't be fetched, the script says so, and Glint is built without them.
 
-  --check     install nothing; print what is missing and exit 1 if anything is
-  --browser   also Chromium and its driver, in which scripts/test.sh looks at the page of glint bench
-  --lint      also what scripts/lint.sh needs
-  --portable  also what scripts/portable.sh needs, which is for Debian 12
-  --sanitize  also what scripts/sanitize.sh and scripts/fuzz.sh need
-  --viewer    also what scripts/viewer_compare.sh needs: what --browser adds, and npm
+  --check     install nothing; print the missing packages and exit 1 if there are any
+  --browser   also Chromium and its driver, with which scripts/test.sh checks the page of glint bench
+  --lint      also the packages for scripts/lint.sh
+  --portable  also the packages for scripts/portable.sh, which is for Debian 12
+  --sanitize  also the packages for scripts/sanitize.sh and scripts/fuzz.sh
+  --viewer    also the packages for scripts/viewer_compare.sh: those of --browser, and npm
 TEXT
 }
 

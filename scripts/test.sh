@@ -7,12 +7,12 @@ usage() {
     cat <<'TEXT'
 usage: scripts/test.sh [--werror] [--sanitize]
 
-Installs what is missing, builds Glint and runs every test. What scripts/demo.sh built before is not built again.
+Installs missing packages, builds Glint and runs every test. Files that scripts/demo.sh has built are not built again.
 
   --werror    treat the compiler's warnings as errors, as continuous integration does; this builds everything again
-              where it was built without the option
-  --sanitize  run scripts/sanitize.sh first: a build of its own and every command over every scene with
-              AddressSanitizer and UndefinedBehaviorSanitizer; a finding ends the run
+              if it was built without the option before
+  --sanitize  run scripts/sanitize.sh first, which makes a separate build with AddressSanitizer and
+              UndefinedBehaviorSanitizer and runs the commands with it; a finding ends the run
 TEXT
 }
 

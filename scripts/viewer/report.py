@@ -1,4 +1,6 @@
 """Compares the pictures of Glint and of the viewer by region, and writes the report as JSON, Markdown and PNG."""
+import textwrap
+
 import numpy as np
 
 import images
@@ -214,9 +216,10 @@ def markdown(scenes, results, package):
     """The report as lines: how it was made, the tables, the faults."""
     size = next((result["size"] for scene, result in zip(scenes, results) if not scene.rows), None)
     sizes = (f"models at {size[0]} × {size[1]}, " if size else "") + "spheres at 64 × 64"
-    lines = [f"{package}; {sizes}. Every number is a ratio, Glint to the viewer; a pair is the ratio of luminance, "
-             "prefiltered and traced. \"Difference\" is the mean of the absolute differences of luminance, over the "
-             "mean luminance.", ""]
+    head = (f"{package}; {sizes}. Every number is a ratio, Glint to the viewer; a pair is the ratio of luminance, "
+            "prefiltered and traced. \"Difference\" is the mean of the absolute differences of luminance, over the "
+            "mean luminance.")
+    lines = textwrap.wrap(head, 120) + [""]
     models = [result for scene, result in zip(scenes, results) if not scene.rows]
     if models:
         lines += scene_table(models) + [""]

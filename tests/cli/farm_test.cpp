@@ -63,8 +63,8 @@ TEST_F(Farm, MakesTheSamePackageToTheByte) {
     const std::string many = "many/scene.gltf";
     const std::string tiny = "scene.gltf";
     const std::vector<std::pair<Words, Words>> runs{
-        {{many}, {"--strategy", "uber,visibility", "--merge", "none"}},
-        {{many, tiny}, {"--strategy", "all", "--tracer", "all", "--emit", "glsl,header"}},
+        {{many}, {"--strategy", "uber", "--merge", "none"}},
+        {{many, tiny}, {"--strategy", "visibility,hit-shaders", "--tracer", "all", "--emit", "glsl,header"}},
         {{tiny}, {"--strategy", "sorted-uber", "--merge", "all", "--debug-info"}},
         {{tiny},
          {"--strategy", "hit-shaders", "--variant", "Day", "--alpha=tested", "--hit-lobes=base,sheen"}},

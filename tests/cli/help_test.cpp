@@ -35,7 +35,7 @@ TEST_F(Help, SaysWhatOptionsTakeAndNeed) {
          "their own; ray-query: "
          "compute shaders trace; ray-pipeline: ray generation shaders trace, for devices without ray "
          "queries"},
-        {"compile", "what strategies that sort hits keep of a hit between passes;"},
+        {"compile", "data of a hit that strategies which sort hits keep between passes;"},
         {"compile",
          "limit of shaders: --merge auto and profile stay within it, the others fail above it; 0: no limit, "
          "or 32 for auto and profile"},

@@ -71,8 +71,9 @@ std::string headline(const Ladder& ladder) {
 std::string summary(const Ladder& ladder) {
     const LadderCounts counts = countRungs(ladder);
     return fmt::format(
-        "Against the forms of textbooks ours in float is faster for {} functions, slower for {}, and no "
-        "different as far as can be told for {}; {} are too short to tell.",
+        "Compared with their textbook forms, {} of Glint's functions in float are faster, {} are slower and "
+        "{} "
+        "tie; {} are too short to measure.",
         counts.faster, counts.slower, counts.ties, counts.unknown);
 }
 

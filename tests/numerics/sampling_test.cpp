@@ -1,5 +1,6 @@
 // Compares samples with densities: integrals of the densities, and chi-square tests of where samples land.
 #include "materials.h"
+#include "support/nightly.h"
 
 #include <gtest/gtest.h>
 
@@ -241,7 +242,8 @@ TEST_P(BsdfSampling, SamplesFollowTheDensity) {
 // Density and lost samples add up to 1, however sharp the lobes are.
 TEST_P(BsdfSampling, DensityIntegratesToOneLessWhatIsLost) {
     Engine engine(kSeed + 1 + GetParam().lobes);
-    for (int i = 0; i < 10; ++i) {
+    const int count = test::nightly() ? 10 : 4;
+    for (int i = 0; i < count; ++i) {
         const TestMaterial seen = make(engine, 1e-4);
         const double sum =
             quadratureOf(seen)
@@ -263,7 +265,8 @@ TEST_P(BsdfSampling, DensityIntegratesToOneLessWhatIsLost) {
 
 TEST_P(BsdfSampling, MeanOfWeightsIsTheAlbedo) {
     Engine engine(kSeed + 2 + GetParam().lobes);
-    for (int i = 0; i < 4; ++i) {
+    const int count = test::nightly() ? 4 : 2;
+    for (int i = 0; i < count; ++i) {
         const TestMaterial seen = make(engine, 1e-3);
         glm::dvec3 sum(0.0);
         glm::dvec3 squares(0.0);

@@ -2,6 +2,7 @@
 // so that the mean is the same, and the noise is less.
 #include "render/harness.h"
 #include "render/scene_builder.h"
+#include "support/nightly.h"
 
 #include <gtest/gtest.h>
 
@@ -256,6 +257,9 @@ TEST(EmissiveLights, TheMeanIsThatOfChance) {
         EXPECT_NE(sampled.package().emission(), nullptr);
         expectSameMean(estimate(sampled, scene, ways, 64), expected, std::to_string(lights) + " lights");
     }
+    if (!test::nightly()) {
+        return;
+    }
     // Three bounces by chance are two with samples.
     const Ways further{EmissiveLights::Off, 0, 3};
     const LoadedScene third = load(scene, further);
@@ -279,7 +283,7 @@ TEST(EmissiveLights, StrategiesAgree) {
         compiler::CompileSettings settings = settingsOf(ways);
         settings.strategies = isInline ? package::allStrategies() : std::uint32_t{package::kStrategyUber};
         settings.tracers = package::kAllTracers;
-        settings.plan.merge = compiler::MergePolicy::None;
+        settings.plan.merge = test::nightly() ? compiler::MergePolicy::None : compiler::MergePolicy::All;
         const LoadedScene loaded(scene, settings, noLights);
         ASSERT_TRUE(loaded.ok());
         for (const package::Strategy strategy : package::strategies()) {

@@ -2,6 +2,7 @@
 // is not so.
 #include "render/harness.h"
 #include "render/order_problems.h"
+#include "support/nightly.h"
 
 #include <algorithm>
 #include <array>
@@ -99,8 +100,13 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
         for (const std::uint32_t alignment : {1U, gpu::kRayGroupSize}) {
             for (const Spread spread : kSpreads) {
                 // The numbers of rays are: none, one, less than a workgroup, one for each bucket, and two
-                // that leave the last workgroup or tile partly empty.
+                // that leave the last workgroup or tile partly empty. Many buckets take long on the host, and
+                // by day they have the numbers that the others leave out.
                 for (const std::uint32_t rays : {0U, 1U, 37U, bucketCount, 4099U, 12305U}) {
+                    const bool isLong = bucketCount > 256 && rays != bucketCount && rays != 12305;
+                    if (isLong && !test::nightly()) {
+                        continue;
+                    }
                     OrderProblem problem = makeProblem(spread, bucketCount, rays);
                     problem.alignment = alignment;
                     SCOPED_TRACE(std::string(nameOf(format)) + ", " + nameOf(spread) + ", rays " +

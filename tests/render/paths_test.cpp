@@ -473,42 +473,4 @@ TEST(Paths, GlassAbsorbsOverTheRealDistance) {
     EXPECT_LT(mean, 0.55);
 }
 
-// The error of pictures with paths falls with the root of the number of samples.
-TEST(Paths, ErrorFallsWithTheRootOfTheSamples) {
-    gltf::Scene scene = roomOfMaterials();
-    for (materials::Material& material : scene.materials) {
-        material["roughnessFactor"] = std::max<float>(material["roughnessFactor"], 0.5F);
-        material["clearcoatRoughnessFactor"] = 0.5F;
-    }
-    compiler::CompileSettings settings = pathSettings(4, package::kStrategyUber);
-    settings.plan.merge = compiler::MergePolicy::All;
-    const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
-    const auto render = [&](std::uint32_t samples, std::uint32_t seed) {
-        RenderSetup setup = pathSetup(scene, 12, 8, samples);
-        setup.frame.seed = seed;
-        return loaded.render(pathOptions(4, package::kStrategyUber), setup);
-    };
-    const LinearImage reference = render(4096, 1);
-    ASSERT_FALSE(reference.pixels.empty());
-    std::vector<double> errors;
-    for (const std::uint32_t samples : {4U, 256U}) {
-        double squares = 0.0;
-        for (std::uint32_t seed = 2; seed < 6; ++seed) {
-            const LinearImage image = render(samples, seed);
-            for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-                for (int channel = 0; channel < 3; ++channel) {
-                    const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-                    squares += difference * difference;
-                }
-            }
-        }
-        errors.push_back(std::sqrt(squares));
-        std::printf("%u samples: error %.5f\n", samples, errors.back());
-    }
-    const double slope = std::log2(errors[1] / errors[0]) / 6.0;
-    std::printf("slope %.3f\n", slope);
-    EXPECT_NEAR(slope, -0.5, 0.12);
-}
-
 }  // namespace

@@ -108,7 +108,7 @@ int run(const Console& console, const BenchArguments& arguments) {
 }  // namespace
 
 void addBench(CLI::App& app, Action& chosen) {
-    CLI::App& command = addCommand(app, "bench", "Measure what accuracy costs in time, setting by setting",
+    CLI::App& command = addCommand(app, "bench", "Measure the error and the time of each accuracy setting",
                                    "glint bench scene.gltf -o out/bench --quick --budget-ms 20");
     const auto arguments = std::make_shared<BenchArguments>();
     addBenchOptions(command, *arguments);

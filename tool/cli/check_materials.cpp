@@ -233,12 +233,12 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
     addText(command, "--pictures", arguments->pictures, "DIR",
             "write PNG files: each feature's lobe over all directions for\n"
             "three views, and a sphere in a white furnace, which is\n"
-            "brighter than the background, or red, where it makes light");
+            "brighter than the background, or red, where it creates energy");
     addInteger(command, "--samples", arguments->samples, 256, 1 << 20,
                "sampled directions for each combination and view; more\nfind smaller errors of densities");
     addInteger(command, "--combinations", arguments->combinations, 1, 4096,
-               "the most combinations of parameters for each feature; the\n"
-               "first are the usual values and each range's ends");
+               "maximum number of parameter combinations for each feature;\n"
+               "the first are the usual values and each range's ends");
     addFlag(command, "--prove", arguments->prove,
             "prove on intervals, without a device, that no operation fails\nand all results are finite and "
             "in their ranges");
@@ -246,7 +246,7 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
         command, "--boxes", arguments->boxes, 1, 100000000,
         "the most boxes of inputs that --prove looks at for each\nfeature; more decide a larger share");
     addText(command, "--device", arguments->options.device, "NAME",
-            "part of the GPU's name (default: the first that will do)");
+            "part of the GPU's name (default: the first suitable one)");
     addFlag(command, "--validate", arguments->options.validate,
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error");
     command.callback([arguments, &chosen] {

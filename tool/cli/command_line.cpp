@@ -25,7 +25,7 @@ using Arguments = std::span<const char* const>;
 void describe(CLI::App& app) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.name("glint");
-    app.description("Compiles the materials of glTF scenes into ray-query hit shaders, and runs them.");
+    app.description("Compiles the materials of glTF scenes into shaders for ray hits, and runs them.");
     app.set_version_flag(
         "--version",
         std::string("glint ") + GLINT_VERSION +

@@ -290,7 +290,7 @@ int diff(const Console& console, const DiffArguments& arguments) {
 
 void addDiff(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<DiffArguments>();
-    CLI::App& command = addCommand(app, "diff", "Show what is different between two packages",
+    CLI::App& command = addCommand(app, "diff", "Show the differences between two packages",
                                    "glint diff before.glint after.glint");
     addText(command, "A", arguments->before, "DIR", "folder of the package before").required();
     addText(command, "B", arguments->after, "DIR", "folder of the package after").required();

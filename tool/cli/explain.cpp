@@ -338,7 +338,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
 void addExplain(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<ExplainArguments>();
     CLI::App& command =
-        addCommand(app, "explain", "Say which key and which shader each material gets, and what was dropped",
+        addCommand(app, "explain", "Show which key and which shader each material gets, and what was dropped",
                    "glint explain scene.gltf --material Leaves --alpha tested");
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
     CLI::Option& material = addText(command, "--material", arguments->material, "NAME|INDEX",
@@ -346,8 +346,8 @@ void addExplain(CLI::App& app, Action& chosen) {
                                     "all)");
     addFlag(command, "--plan", arguments->wholePlan,
             "show the shaders instead of the materials: what each\n"
-            "costs by the cost model of --merge auto, what shares it,\n"
-            "and why")
+            "costs by the cost model of --merge auto, which keys share\n"
+            "it, and why")
         .excludes(&material);
     addReadingOptions(command, arguments->settings);
     addCalibration(command, arguments->settings);

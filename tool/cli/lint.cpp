@@ -268,7 +268,7 @@ void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const
 void addLint(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<LintArguments>();
     CLI::App& command =
-        addCommand(app, "lint", "Find what is slow on mobile GPUs in SPIR-V, and check budgets",
+        addCommand(app, "lint", "Find code in SPIR-V that is slow on mobile GPUs, and check budgets",
                    "glint lint scene.glint --max-texture-fetches 12 --werror");
     command.add_option("PATH", arguments->paths, "SPIR-V files, packages, or folders of .spv files")
         ->type_name("FILE|DIR")

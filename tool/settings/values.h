@@ -456,8 +456,9 @@ inline constexpr SettingValues kLights{
         },
     .words =
         [] {
-            return std::vector<SettingWord>{{"auto", "all up to 256 lights, and 8 of more"},
-                                            {"all", "every light"}};
+            return std::vector<SettingWord>{
+                {"auto", "all lights in scenes with up to 256, and 8 in scenes with more"},
+                {"all", "every light"}};
         },
     .min = 1,
     .max = package::kMaxLightSamples,
@@ -479,7 +480,7 @@ inline constexpr SettingValues kBounces{
         },
     .words =
         [] {
-            return std::vector<SettingWord>{{std::string(kUnlimited), "64, the most"}};
+            return std::vector<SettingWord>{{std::string(kUnlimited), "64"}};
         },
     .min = 1,
     .max = package::kMaxBounces,
@@ -487,8 +488,8 @@ inline constexpr SettingValues kBounces{
 
 inline constexpr Named<bool> kEnergyNames[] = {{true, "on"}, {false, "off"}};
 inline constexpr Named<bool> kTrustNames[] = {
-    {false, "off", "textures may hold anything"},
-    {true, "on", "textures hold what their images hold now"},
+    {false, "off", "textures may have any values"},
+    {true, "on", "textures have the values of their images"},
 };
 inline constexpr Named<bool> kFalloffNames[] = {
     {false, "none", "all count alike"},

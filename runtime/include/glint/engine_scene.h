@@ -1,5 +1,5 @@
 // A scene that a host keeps on the device by itself: its vertex buffers, acceleration structures, textures
-// and samplers stay where they are. docs/engine.md leads through it.
+// and samplers stay where they are. docs/engine.md shows how to use it.
 #pragma once
 
 #include <glint/context.h>
@@ -19,8 +19,8 @@ namespace glint {
 
 // One geometry of one instance, which a hit can be on. Addresses are device addresses in the formats that the
 // package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
-// position and a normal, four a tangent and a colour, two a UV. An attribute that the package's key of this
-// primitive lacks may be 0, another may not.
+// position and a normal, four a tangent and a colour, two a UV. The address of an attribute may be 0 only if
+// the package's key of this primitive lacks the attribute.
 struct EngineGeometryView {
     std::uint32_t mesh = 0;  // which primitive of the package's scene has this geometry's material and key
     std::uint32_t primitive = 0;  // within the mesh
@@ -55,8 +55,8 @@ struct EngineSamplerView {
 // number of the instance's first geometry plus the index of the geometry in its BLAS.
 enum class RecordsBy : std::uint32_t {
     CustomIndex = 0,       // instanceCustomIndex is the number of the instance's first geometry
-    CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is
-    InstanceTable = 2,     // firstRecords[place of the instance in the TLAS] is
+    CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is that number
+    InstanceTable = 2,     // firstRecords[place of the instance in the TLAS] is that number
 };
 
 struct EngineSceneView {
@@ -91,8 +91,8 @@ public:
     EngineScene(const EngineScene&) = delete;
     EngineScene& operator=(const EngineScene&) = delete;
 
-    // Records new transforms, as many as at creation, and new lights, at most as many. The transforms before
-    // become those that motion is measured from. The values travel in the command buffer, so they need not be
+    // Records new transforms, as many as at creation, and new lights, at most as many. Motion is then
+    // measured from the previous transforms. The values are stored in the command buffer, so they need not be
     // kept and any number of frames may be in flight. Errors: "engine-scene" (also for a shared scene),
     // "scene-light".
     Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,

@@ -20,7 +20,7 @@ class Package;
 struct FrameCounters;
 struct RendererOptions;
 
-// What a pass moves bytes for.
+// The unit for which a pass moves bytes.
 enum class TrafficUnit : std::uint32_t {
     Pixel,
     Sample,      // a pixel and an effect that sends rays
@@ -45,7 +45,7 @@ constexpr std::span<const Named<TrafficUnit>> namesOf(TrafficUnit /*type*/) {
     return kTrafficUnitNames;
 }
 
-// What decides how many bytes there are.
+// The properties of a frame that determine the bytes.
 struct TrafficShape {
     package::Strategy strategy = package::kDefaultStrategy;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;

@@ -67,8 +67,8 @@ public:
     bool alphaTested() const;
     // What rays do with the alpha of materials.
     package::AlphaPolicy alpha() const;
-    // What light of lights keeps on its straight way through alpha and glass. It is Alpha where the scenes
-    // call for nothing else.
+    // How the light of punctual lights passes through alpha and glass. It is Alpha where the scenes call for
+    // nothing else.
     package::ShadowThrough shadowThrough() const;
     // Returns the strategies, the tracers, the placement of shadow rays and whatever else decides which
     // modules the package has.
@@ -76,7 +76,7 @@ public:
     package::HitRecordFormat hitRecord() const;
     // Whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
-    // Whether shaders note what they read of textures (FrameCounters::textureLevels).
+    // Whether shaders record which levels of textures they read (FrameCounters::textureLevels).
     bool textureLevels() const;
     // Whether shaders read the positions of hit triangles from acceleration structures. The device then needs
     // DeviceHandles::positionFetch.

@@ -41,7 +41,7 @@ enum class AlphaPolicy : std::uint32_t {
     Stochastic = 2,  // as above, but a ray stops at BLEND with the probability alpha
 };
 
-// What light of lights keeps on its straight way through alpha and glass.
+// How the light of punctual lights passes through alpha and glass.
 enum class ShadowThrough : std::uint32_t {
     Alpha = 0,   // what AlphaPolicy gives all rays; glass blocks it
     Opaque = 1,  // glass and alphaMode BLEND block it
@@ -61,16 +61,16 @@ inline constexpr std::uint32_t kMaxBounces = 64;
 // Which passes a package has.
 enum class Passes : std::uint32_t {
     Frame = 0,  // a whole frame: the raster pass, lighting, effects, and the hits of their rays
-    Steps = 1,  // what traces, orders and shades rays of a host's own (RaySteps)
+    Steps = 1,  // the passes that trace, order and shade a host's own rays (RaySteps)
 };
 
-// What a ray of a host's own is answered with.
+// What RaySteps returns for a host's ray.
 enum class HitAnswer : std::uint32_t {
     Radiance = 0,  // the light that comes back along the ray
     Surface = 1,   // gpu::SurfaceRecord: the surface that it hit, for a host that lights it
 };
 
-// Where shaders find what a host binds. The defaults are those of Renderer, which takes no other.
+// Where shaders find a host's bindings. Renderer accepts only the defaults.
 struct Bindings {
     std::uint32_t sceneSet = 0;        // descriptor set of the next three
     std::uint32_t tlas = 0;            // accelerationStructureEXT[]
@@ -89,7 +89,7 @@ struct Bindings {
 // How many bits shading computes with.
 enum class ShadingPrecision : std::uint32_t {
     Single = 0,  // everything in 32-bit float
-    Half = 1,    // 16-bit float where the result keeps its meaning; the device needs shaderFloat16
+    Half = 1,    // 16-bit float where that is exact enough; the device needs shaderFloat16
 };
 
 // How hits are counted into buckets and copied in the order of the buckets. Each method gives each hit one
@@ -138,7 +138,7 @@ struct PackageHeader {
         lightSamples;        // lights that a surface chooses by the hierarchy; 0: it takes all, without one
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
-    std::uint32_t textureLevels;  // 1: shaders note the finest level that they read of each texture
+    std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
     std::uint32_t pad;
 };
 

@@ -106,8 +106,7 @@ inline constexpr Named<ShadingPrecision> kPrecisionNames[] = {
 };
 inline constexpr Named<Ordering> kOrderingNames[] = {
     {Ordering::GlobalAtomics, "global-atomics", "one atomic for each hit"},
-    {Ordering::WaveLoop, "wave-loop",
-     "an atomic for each shader in a subgroup, which are found one after the other"},
+    {Ordering::WaveLoop, "wave-loop", "an atomic for each shader in a subgroup, found one after the other"},
     {Ordering::WaveAggregated, "wave-aggregated", "a loop over all shaders, for few shaders only"},
     {Ordering::WaveBallot, "wave-ballot", "an atomic for each shader in a subgroup, found by ballots"},
     {Ordering::LocalHistogram, "local-histogram", "counts in shared memory, an atomic for each shader"},
@@ -117,11 +116,11 @@ static_assert(std::size(kOrderingNames) == static_cast<std::size_t>(Ordering::Co
 
 inline constexpr Named<Passes> kPassesNames[] = {
     {Passes::Frame, "frame", "a whole frame, for Renderer"},
-    {Passes::Steps, "steps", "what traces, orders and shades the rays of an engine's own, for RaySteps"},
+    {Passes::Steps, "steps", "passes that trace, order and shade an engine's own rays, for RaySteps"},
 };
 inline constexpr Named<HitAnswer> kAnswerNames[] = {
-    {HitAnswer::Radiance, "radiance", "the light that comes back along it"},
-    {HitAnswer::Surface, "surface", "the surface that it hits, which the engine lights"},
+    {HitAnswer::Radiance, "radiance", "the light that comes back along the ray"},
+    {HitAnswer::Surface, "surface", "the surface that the ray hits, which the engine lights"},
 };
 
 constexpr std::span<const Named<Tracer>> namesOf(Tracer /*type*/) {

@@ -1,4 +1,4 @@
-// What becomes of a renderer whose package is replaced by another one of the same scene.
+// Reports about a renderer whose package is replaced by another one of the same scene.
 #pragma once
 
 #include <glint/result.h>
@@ -23,13 +23,13 @@ struct PackageReplacement {
     std::uint32_t buffersMade = 0;
 };
 
-// How far the last replacement is.
+// The progress of the last replacement.
 struct ReplacementProgress {
     std::uint64_t inUse = 0;    // replacements that recordings have begun to use
-    bool pending = false;       // a package waits; recordings use the one before
+    bool pending = false;       // a package waits; recordings use the old one
     bool ready = false;         // the next recording uses the package that waits
     std::uint32_t missing = 0;  // pipelines that it still waits for
-    // Why the last replacement was given up; recordings go on with the package before. The next
+    // Why the last replacement was given up; recordings continue with the old package. The next
     // replacePackage() clears it.
     std::optional<Diagnostic> error{};
 };

@@ -1,4 +1,4 @@
-// Notices that `glint compile --watch` has written a package anew.
+// Detects that `glint compile --watch` has written a new package.
 #pragma once
 
 #include <glint/package.h>
@@ -15,8 +15,8 @@ namespace glint {
 namespace package {
 
 // The stamp of a package is a file beside its folder: "room.glint.stamp" of "room.glint". It has one line: a
-// decimal counter, a space and the hash of tables.bin as 16 hexadecimal digits. The compiler counts up after
-// a package with other contents is in place, and replaces the file by a rename.
+// decimal counter, a space and the hash of tables.bin as 16 hexadecimal digits. The compiler increments the
+// counter after a package with other contents is in place, and replaces the file by a rename.
 inline constexpr std::string_view kStampSuffix = ".stamp";
 
 // Returns the stamp's file of a package's folder.

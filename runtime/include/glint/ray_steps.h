@@ -1,5 +1,5 @@
 // Traces, orders and shades the rays of a host, in the host's command buffer, with the host's bindings.
-// docs/engine.md leads through it.
+// docs/engine.md shows how to use it.
 #pragma once
 
 #include <glint/engine_scene.h>
@@ -83,7 +83,7 @@ struct RayBatch {
     std::uint8_t mask = 0xFF;     // instances that share no bit with it are not hit
     std::uint32_t tlasIndex = 0;  // which of the structures of Bindings::tlas
     VkDeviceAddress tlas = 0;     // the structure itself, if Bindings::tlas is kByAddress
-    // The light that rays find which leave the scene, for answers of light.
+    // The light for rays that leave the scene, with HitAnswer::Radiance.
     SkyView sky{};
     // With a package that reads an environment map. The host binds Environment's image at
     // Bindings::environment.
@@ -125,17 +125,17 @@ public:
     RaySteps& operator=(const RaySteps&) = delete;
 
     // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
-    // travel in the command buffer. Batches share buffers, so on several queues the host orders them itself.
-    // Errors: "ray-steps", "sky", "environment-missing", "environment-unread".
+    // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
+    // itself. Errors: "ray-steps", "sky", "environment-missing", "environment-unread".
     Status begin(VkCommandBuffer commands, const RayBatch& batch);
-    // Finds what the rays hit. Strategies that order no hits shade where they trace, so this and
-    // order() do nothing with them.
+    // Traces the rays. Strategies that order no hits trace and shade in one pass, in shade(), so with them
+    // this and order() do nothing.
     void trace(VkCommandBuffer commands);
     // Orders the hits by shader.
     void order(VkCommandBuffer commands);
     // Shades the hits and writes the answers, which later commands may read at any stage.
     void shade(VkCommandBuffer commands);
-    // All of it.
+    // Records all of these steps.
     Status record(VkCommandBuffer commands, const RayBatch& batch);
 
     // The results of the last batch, which the device must have completed. Error "frame-not-recorded".

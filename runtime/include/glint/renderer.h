@@ -78,12 +78,12 @@ public:
     std::vector<MemoryItem> memory() const;
     std::uint64_t allocatedBytes() const;
 
-    // Returns what edits a scene with SceneView::editable (glint/scene_edit.h), or null for other scenes. It
-    // lives as long as the scene.
+    // Returns the editor of a scene with SceneView::editable (glint/scene_edit.h), or null for other scenes.
+    // It lives as long as the scene.
     SceneEditor* editor();
 
-    // Returns what brings the levels of a scene with SceneView::streamsTextures (glint/texture_stream.h), or
-    // null for other scenes. It lives as long as the scene.
+    // Returns the stream of texture levels of a scene with SceneView::streamsTextures
+    // (glint/texture_stream.h), or null for other scenes. It lives as long as the scene.
     TextureStream* textureStream();
 
     // Records the commands that bring a scene with SceneView::moves to another pose. `commands` is a command
@@ -139,7 +139,7 @@ enum class Pass : std::uint32_t {
     Offset,
     Copy,
     CheckOrder,
-    Shade,  // what a strategy shades hits with, but for passes of one case
+    Shade,  // the shading of hits, except in passes of one case
     ShadeCase,
     ShadowDispatch,
     Shadow,
@@ -207,7 +207,7 @@ enum class PixelPath : std::uint8_t {
     Miss,    // the ray left the scene
 };
 
-// How far the threads are that make pipelines while frames are drawn.
+// The progress of the threads that make pipelines while frames are drawn.
 struct PipelineProgress {
     std::uint32_t wanted = 0;   // pipelines that are made in the background
     std::uint32_t made = 0;     // those that were made, or have failed
@@ -238,11 +238,11 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // Takes over another package of the same scene: one that was compiled again after a material, a pack's
+    // Switches to another package of the same scene: one that was compiled again after a material, a pack's
     // GLSL or a setting changed. Waits neither for the queue nor for frames in flight. It keeps pipelines
     // whose SPIR-V is the same and buffers of the same size. The rest is made in this call or, with
-    // RendererOptions::backgroundPipelines, by threads. Recordings use the package before until everything
-    // is there. The first recording after that switches pipelines, material records and shader IDs at once.
+    // RendererOptions::backgroundPipelines, by threads. Until everything is ready, recordings use the old
+    // package. The first recording after that switches pipelines, material records and shader IDs at once.
     // Its commands must be submitted, because those of later recordings rely on them. If it has a sampleIndex
     // above 0, its picture averages samples of both packages; see ReplacementProgress::ready.
     //

@@ -1,4 +1,4 @@
-// Edits of a scene that is on the device and drawn. docs/live.md, "Editing a scene", leads through it.
+// Edits of a scene that is on the device and drawn. docs/live.md, "Editing a scene", shows how to use it.
 #pragma once
 
 #include <glint/package.h>
@@ -66,10 +66,10 @@ struct TextureUse {
     std::uint32_t texCoord = 0;  // UV set: 0 or 1
 };
 
-// A material that is not, or not so, in the package.
+// A material that the package does not have, or has with other values.
 struct MaterialSource {
     // A record in the package's layout (MaterialRecord of its C++ header). Texture transforms are taken from
-    // it; which textures it has, is said by `textures`.
+    // it; `textures` says which textures it has.
     std::span<const std::uint8_t> record;
     // One for each set of attributes that a primitive with this material has or will have.
     std::span<const MaterialKey> keys;
@@ -83,7 +83,7 @@ struct MissingCase {
     std::vector<std::string> names;  // the names of these features
 };
 
-// What an edit says about itself.
+// The report of an edit.
 struct EditReport {
     // Materials that the fallback shades from now on. Each key is listed once in an edit.
     std::vector<MissingCase> missing;
@@ -145,7 +145,7 @@ public:
     // Textures get a full pyramid of mips. With `srgb` the values are colours. Errors: "scene-image",
     // "scene-edit-room" (SceneView::textureRoom textures are there).
     Result<TextureHandle> addTexture(const ImageView& image, bool srgb);
-    // Puts another image, of any size and format, in the place of a texture. Materials that use it follow.
+    // Replaces the image of a texture by another one of any size and format, for all materials that use it.
     Status replaceTexture(TextureHandle texture, const ImageView& image);
     Status removeTexture(TextureHandle texture);
 
@@ -163,7 +163,7 @@ public:
     // BLASes are built by the commands of record() and are not compacted. Errors: "scene-attribute",
     // "scene-index".
     Result<AddedMesh> addMesh(std::span<const EditedPrimitive> primitives);
-    // Gives a primitive of the mesh another material, and with it the instances that have none of their own.
+    // Gives a primitive of the mesh another material. Instances that have none of their own follow.
     Result<EditReport> setMeshMaterial(MeshHandle mesh, std::uint32_t primitive, MaterialHandle material);
     Status removeMesh(MeshHandle mesh);
 
@@ -192,8 +192,8 @@ public:
     // follow in the same command buffer; its accumulation should start anew. The commands must be submitted
     // before other commands that use the scene, to the Context's queue or ordered after its work. `frame` is
     // the number of the frame that the commands belong to, by the caller's count; it may not be below that of
-    // the last call. Memory that the edits made needless is freed by complete(). On an error nothing is
-    // recorded, and the edits wait for the next call. Errors: "scene-edit-frame", "tlas-limit".
+    // the last call. Memory that is no longer needed is freed by complete(). On an error nothing is recorded,
+    // and the edits wait for the next call. Errors: "scene-edit-frame", "tlas-limit".
     Status record(VkCommandBuffer commands, std::uint64_t frame);
     // Says that the device has completed all commands of frames up to `frame`, and frees what they alone
     // used. Command buffers of these frames may not be submitted again.

@@ -120,21 +120,21 @@ enum class TraversalOrder : std::uint32_t {
 };
 inline constexpr Named<TraversalOrder> kTraversalOrderNames[] = {
     {TraversalOrder::Auto, "auto", "halving on a CPU, input on a GPU"},
-    {TraversalOrder::Input, "input", "as in the scene"},
-    {TraversalOrder::Halving, "halving", "for drivers whose trees halve what they are given"},
+    {TraversalOrder::Input, "input", "that of the scene"},
+    {TraversalOrder::Halving, "halving", "for drivers that build trees by halving their input"},
 };
 constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/) {
     return kTraversalOrderNames;
 }
 
-// How the vertices of a scene lie in memory.
+// How the vertices of a scene are stored on the device.
 enum class VertexForm : std::uint32_t {
     Compact,
     Full,
 };
 inline constexpr Named<VertexForm> kVertexFormNames[] = {
     {VertexForm::Compact, "compact",
-     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that keeps the values nearly"},
+     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that is exact enough"},
     {VertexForm::Full, "full", "32 bits"},
 };
 constexpr std::span<const Named<VertexForm>> namesOf(VertexForm /*type*/) {
@@ -153,8 +153,8 @@ struct SceneView {
     // GpuScene::update() may change these materials and no others.
     std::span<const MaterialView> materials{};
     TraversalOrder traversalOrder = TraversalOrder::Auto;
-    // What a vertex has besides its position takes 20 bytes or less in the compact form and up to 60 in the
-    // full one. docs/memory.md says what becomes of its values.
+    // The attributes of a vertex besides its position take at most 20 bytes in the compact form and up to 60
+    // in the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
     // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;

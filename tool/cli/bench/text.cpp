@@ -1,6 +1,7 @@
 // The text that glint bench prints.
-#include "base/text.h"
+#include "cli/bench/text.h"
 
+#include "base/text.h"
 #include "cli/table.h"
 
 #include <glint/measure/render_settings.h>

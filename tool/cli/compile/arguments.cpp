@@ -79,7 +79,7 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
         .group("Output")
         ->type_name("FILE.cpp");
     addChoices(command, "--emit", arguments.emit, {"glsl", "header", "library", "linkable"},
-               "what else the package holds, separated by commas:\n"
+               "what else the package contains, separated by commas:\n"
                "glsl: the shaders' sources; header: C++ tables; library:\n"
                "shading as GLSL functions, for shaders of your own;\n"
                "linkable: these functions as SPIR-V, for linkers")
@@ -89,7 +89,7 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     dry.group("Output");
     addFlag(command, kWatch, arguments.watch,
             "compile again whenever an input changes, until Ctrl-C, and\n"
-            "count up the file DIR.stamp after each new package")
+            "increment the counter in DIR.stamp after each new package")
         .group("Output")
         ->excludes(&dry);
     addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one for each core")

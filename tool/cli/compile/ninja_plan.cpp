@@ -19,6 +19,8 @@ namespace glint::cli {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 Diagnostic ninjaNameError(const std::string& name, const char* why) {
     return makeError("ninja-name", name, fmt::format("can't be written to a file for Ninja: it has {}", why),
                      "rename it, or give another path");

@@ -92,7 +92,7 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
             .group(group);
     }
     addFlag(command, "--quiet", arguments.quiet, "print only errors").group(group);
-    addFlag(command, "--verbose", arguments.verbose, "say what is read, decided and made, with times")
+    addFlag(command, "--verbose", arguments.verbose, "print what is read, decided and made, with times")
         .group(group);
     addChoice(command, "--color", arguments.color, {"auto", "always", "never"},
               "colour of diagnostics; auto: where stderr is a terminal\nand NO_COLOR is not set")

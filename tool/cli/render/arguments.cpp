@@ -2,7 +2,10 @@
 
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "emit/compile.h"
 #include "image/image_file.h"
+
+#include <fmt/format.h>
 
 namespace glint::cli {
 
@@ -62,7 +65,7 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
 
 void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, "--device", arguments.device, "NAME",
-            "part of the GPU's name (default: the first that will do)")
+            "part of the GPU's name (default: the first suitable one)")
         .group("Device");
     addFlag(command, "--validate", arguments.validate,
             "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
@@ -75,11 +78,11 @@ void addRenderReports(CLI::App& command, RenderArguments& arguments) {
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters as JSON")
         .group("Report");
     addFlag(command, "--pipeline-statistics", arguments.pipelineStatistics,
-            "report what the driver says about each pipeline:\n"
-            "registers, spills, instructions, or whatever it has")
+            "report the driver's statistics of each pipeline, such as\n"
+            "registers, spills and instructions")
         .group("Report");
     addImageOutput(command, "--coverage", arguments.coverage, {".png"},
-                   "write how each pixel of the last sample came to its\n"
+                   "write how each pixel of the last sample got its\n"
                    "reflection; orange: found in screen space; blue: by a\n"
                    "ray that hit; light blue: by a ray that missed; grey: no\n"
                    "ray; black: no surface")
@@ -169,8 +172,8 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
     addMotionOptions(command, arguments->motion);
     addText(command, "--package", arguments->package, "DIR",
             "use this package of the scene instead of compiling it\n"
-            "(excludes --merge, --max-shaders, --alpha, --hit-lobes,\n--energy-compensation, --texture-lod, "
-            "--precision,\n--shadows, --hit-record, --effects, --profile and --host)")
+            "(excludes --host, --profile, and all settings that are\n"
+            "decided for the package: docs/cli.md)")
         .group("Shaders");
     addRenderReports(command, *arguments);
     command.callback([arguments, then, &command] {

@@ -1,4 +1,4 @@
-// Makes what SceneEditor takes (glint/scene_edit.h) of a material of glTF: a record, keys and textures.
+// Makes what SceneEditor takes (glint/scene_edit.h) from a glTF material: a record, keys and textures.
 #pragma once
 
 #include "emit/material_layout.h"

@@ -1,24 +1,25 @@
 #!/usr/bin/env bash
-# Builds and tests what is committed in a Debian 13 root, whose glslang and Mesa are newer: --position-fetch works there.
+# Builds and tests what is committed in a fresh root of Debian 12 or 13. That of Debian 13 has newer glslang and Mesa, so
+# that --position-fetch works there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
-usage: scripts/debian13.sh ROOT [COMMAND…]
+usage: scripts/debian_root.sh 12|13 ROOT [COMMAND…]
 
-Makes a Debian 13 root in the folder ROOT by debootstrap, where there is none, from
-the mirror that apt has here. Copies the commit that is checked out to ROOT/glint, and
-runs COMMAND there, scripts/test.sh if none is given. Models are those of $GLINT_MODELS,
-else of ../shared/models, where they are. What was built there before is kept, so that a
-second run builds what changed.
+Makes a root of Debian 12 or 13 in the folder ROOT by debootstrap, if there is none,
+from the mirror that apt uses here. Copies the commit that is checked out to ROOT/glint
+and runs COMMAND there (default: scripts/test.sh). Models are those of $GLINT_MODELS,
+else those of ../shared/models, if they exist. Files that were built there before are
+kept, so that a second run builds only what changed.
 
 Needs root, some 4 GB and the package debootstrap, which it installs.
 TEXT
 }
 
 fail() {
-    printf 'debian13: error: %s\n' "$*" >&2
+    printf 'debian_root: error: %s\n' "$*" >&2
     exit 1
 }
 
@@ -46,7 +47,7 @@ make_root() {
     if [[ $keys == /* ]]; then
         options+=("--keyring=$keys")
     fi
-    debootstrap "${options[@]}" trixie "$root" "$mirror"
+    debootstrap "${options[@]}" "$suite" "$root" "$mirror"
 }
 
 # Copies a pack of commits, so that files that did not change keep their time stamps.
@@ -58,14 +59,21 @@ copy_commit() {
     git -C "$root/glint" reset -q --hard FETCH_HEAD
 }
 
-if [[ $# -eq 0 || $1 == -h || $1 == --help ]]; then
+if [[ $# -lt 2 || $1 == -h || $1 == --help ]]; then
     usage
-    exit "$(($# == 0 ? 2 : 0))"
+    [[ ${1:-} == -h || ${1:-} == --help ]] && exit 0
+    exit 2
 fi
+release=$1
+case $release in
+    12) suite=bookworm ;;
+    13) suite=trixie ;;
+    *) fail "$release is neither 12 nor 13" ;;
+esac
 [[ $(id -u) -eq 0 ]] || fail "this makes a root folder and mounts /proc in it: run it as root"
-mkdir -p "$1"
-root=$(realpath "$1")
-shift
+mkdir -p "$2"
+root=$(realpath "$2")
+shift 2
 [[ $root != / ]] || fail "ROOT is to be a folder of its own, not this system"
 [[ $# -gt 0 ]] || set -- scripts/test.sh
 
@@ -75,7 +83,7 @@ if [[ ! -x $root/usr/bin/apt-get ]]; then
     make_root
 fi
 version=$(sed -n 's/^VERSION_ID="\?\([0-9]*\)"\?$/\1/p' "$root/etc/os-release")
-[[ $version == 13 ]] || fail "$root holds another system than Debian 13"
+[[ $version == "$release" ]] || fail "$root holds another system than Debian $release"
 copy_commit
 
 # The mounts belong to a namespace that ends with the command. The shell in the middle is that of the new
