@@ -235,6 +235,47 @@ TEST(Proofs, AClaimThatIsOneUnitTooNarrowIsRefuted) {
     EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Refuted);
 }
 
+// Whatever intervals, forms and derivatives say together: a range that some point of the domain leaves is not
+// proved.
+TEST(Proofs, NeverSucceedForAClaimThatAPointRefutes) {
+    std::mt19937_64 random(17);
+    std::size_t claims = 0;
+    for (std::size_t k = 0; k < programs().size(); ++k) {
+        prove::Claim claim = allProofs()[k].claim;
+        prove::PointEvaluator points(programs()[k]);
+        std::vector<double> least(claim.outputs.size(), prove::kInfinity);
+        std::vector<double> greatest(claim.outputs.size(), -prove::kInfinity);
+        for (int point = 0; point < 300; ++point) {
+            std::vector<double> inputs;
+            for (const prove::InputRange& input : claim.inputs) {
+                inputs.push_back(between(random, {input.low, input.high}));
+            }
+            const prove::PointResult result = points.run(inputs);
+            for (std::size_t output = 0; output < claim.outputs.size(); ++output) {
+                least[output] = std::min(least[output], result.outputs[output]);
+                greatest[output] = std::max(greatest[output], result.outputs[output]);
+            }
+        }
+        prove::ProofOptions options;
+        options.samples = 0;
+        options.mostBoxes = 40;
+        for (const bool upper : {false, true}) {
+            const std::size_t output = random() % claim.outputs.size();
+            prove::OutputRange& range = claim.outputs[output];
+            const prove::OutputRange whole = range;
+            const auto bound = static_cast<float>(upper ? greatest[output] : -least[output]);
+            (upper ? range.high : range.low) =
+                upper ? prove::nextFloatBelow(bound) : -static_cast<double>(prove::nextFloatBelow(bound));
+            EXPECT_NE(prove::prove(programs()[k], claim, options).state, prove::ProofState::Proved)
+                << allProofs()[k].name << " " << range.name << " in [" << range.low << ", " << range.high
+                << "]";
+            range = whole;
+            ++claims;
+        }
+    }
+    EXPECT_GT(claims, 100U);
+}
+
 struct Planted {
     const char* code;
     prove::InputRange input;

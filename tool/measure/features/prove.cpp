@@ -1,4 +1,5 @@
 #include "emit/feature_proof.h"
+#include "gltf/scene_list.h"
 #include "materials/packs.h"
 #include "measure/features/combinations.h"
 #include "plan/plan.h"
