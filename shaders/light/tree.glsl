@@ -9,8 +9,10 @@
 const float kMinLightFacing = 0.05;
 // What the cosines of bounds may lose to rounding.
 const float kLightCosineSlack = 1e-3;
-// The levels after which another random number is taken. A choice costs one bit of 24 on average.
-const uint kLevelsOfNumber = 12u;
+// The distance between random numbers. Each choice divides it by the probability of what was chosen.
+const float kGrain = 1.0 / 16777216.0;
+// Where the distance has grown to this, another random number is taken.
+const float kCoarseGrain = 1.0 / 4096.0;
 // The most that a random number is: the largest float below 1.
 const float kBelowOne = 0.99999994;
 
@@ -101,7 +103,8 @@ uint lightOfTree(LightReceiver receiver, vec3 u, out float probability) {
     uint index = 0u;
     precise float product = 1.0;
     precise float random = u.x;
-    uint level = 0u;
+    precise float grain = kGrain;
+    uint numbers = 1u;
     uint next = nodes.data[0].next;
     while ((next & kLightLeaf) == 0u) {
         float first = lightImportance(nodes.data[index + 1u], receiver);
@@ -112,17 +115,26 @@ uint lightOfTree(LightReceiver receiver, vec3 u, out float probability) {
             return 0u;
         }
         precise float share = first / both;
-        if (random < share) {
+        // A number stands for those up to the next one, so their middle decides. Otherwise the number 0 would choose
+        // lights whose probability is far below that of the number, and these would be far too bright.
+        precise float middle = random + 0.5 * grain;
+        precise float taken = share;
+        if (share >= 1.0 || middle < share) {
             index += 1u;
             random = random / share;
-            product *= share;
         } else {
+            taken = 1.0 - share;
             index = next;
-            random = (random - share) / (1.0 - share);
-            product *= 1.0 - share;
+            random = max(random - share, 0.0) / taken;
         }
-        level += 1u;
-        random = level == kLevelsOfNumber ? u.y : level == 2u * kLevelsOfNumber ? u.z : min(random, kBelowOne);
+        product *= taken;
+        grain = grain / taken;
+        if (grain > kCoarseGrain && numbers < 3u) {
+            random = numbers == 1u ? u.y : u.z;
+            grain = kGrain;
+            numbers += 1u;
+        }
+        random = min(random, kBelowOne);
         next = nodes.data[index].next;
     }
     probability = product;

@@ -2,6 +2,7 @@
 #include "render/hit_kernel.h"
 #include "render/pixel_test.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <map>
@@ -224,6 +225,37 @@ TEST(ManyLights, ProbabilitiesAreThoseOfTheChoice) {
     for (const auto& [light, seen] : chosen) {
         EXPECT_NEAR(seen.second, 2048.0 * seen.first, 2.0) << "light " << light;
     }
+}
+
+// Numbers that lie on a grid, as all random numbers do, choose no light whose probability is far below the
+// distance of the grid: its light is divided by that probability.
+TEST(ManyLights, CoarseNumbersChooseNoLightThatIsNearlyImpossible) {
+    gltf::Scene scene = hallOfLights();
+    scene.lights.pop_back();  // the sun
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        scene.lights[i].intensity *= std::pow(10.0F, -2.0F * static_cast<float>(i % 10));
+    }
+    const LoadedScene loaded = load(scene, 1);
+    ASSERT_TRUE(loaded.ok());
+    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "light_tree.comp");
+    ASSERT_TRUE(kernel) << toString(kernel.error());
+    constexpr std::uint32_t kCount = 4096;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    std::vector<gpu::RayRecord> rays(kCount);
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        rays[i].origin = {0.5F, -1.0F, -3.0F};
+        rays[i].direction = {static_cast<float>(i) / kCount, unit(random), unit(random)};
+    }
+    const Result<std::vector<std::uint32_t>> words =
+        (*kernel)->run({}, rays, kCount, std::size_t{5} * kCount);
+    ASSERT_TRUE(words) << toString(words.error());
+    float least = 1.0F;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        const auto probability = std::bit_cast<float>((*words)[5 * i + 1]);
+        least = probability > 0.0F ? std::min(least, probability) : least;
+    }
+    EXPECT_GT(least, 1e-9F);
 }
 
 }  // namespace
