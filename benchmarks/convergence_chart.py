@@ -17,8 +17,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 def rows_of(path):
     """The numbers of samples, and the errors of each kind of light."""
-    lines = [line for line in pathlib.Path(path).read_text(encoding="utf-8").split("\n\n")[0].splitlines() if "|" in line]
-    cells = [[cell.strip() for cell in line.strip("| ").split("|")] for line in lines]
+    table = pathlib.Path(path).read_text(encoding="utf-8").split("\n\n")[0]
+    cells = [[cell.strip() for cell in line.strip("| ").split("|")] for line in table.splitlines()]
     samples = [int(cell.split()[0]) for cell in cells[0][1:-1]]
     return samples, {row[0]: [float(cell) for cell in row[1:-1]] for row in cells[2:]}
 
