@@ -107,7 +107,8 @@ TEST(PathFurnace, LightThatACoatSendsBelowIsLostOrReflected) {
     image.height = 1;
     image.pixels.assign(std::begin(kTurned), std::end(kTurned));
     scene.images.push_back(std::move(image));
-    scene.textures.push_back({.image = 0});
+    scene.samplers.emplace_back();
+    scene.textures.push_back({.image = 0, .sampler = 0});
     scene.materials.at(0).texture("clearcoatNormalTexture").texture = 0;
     gltf::Primitive& quad = scene.meshes.at(0).primitives.at(0);
     quad.texCoords0 = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
