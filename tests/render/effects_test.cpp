@@ -190,7 +190,8 @@ TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
         return bytes;
     };
     EXPECT_LT(bytesOf(compact), bytesOf(full));
-    EXPECT_LT(bytesOf(quantized), bytesOf(compact));
+    // All positions of the room are on a grid that keeps them.
+    EXPECT_LE(bytesOf(quantized), bytesOf(compact));
     const RenderSetup setup = smallSetup(scene);
     const LinearImage a = full.render(package::kStrategyUber, setup);
     for (const LoadedScene* const other : {&compact, &quantized}) {
