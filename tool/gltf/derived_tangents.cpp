@@ -9,8 +9,8 @@ namespace glint::gltf {
 
 namespace {
 
-// What single precision rounds where positions and coordinates are subtracted.
-constexpr double kTolerance = 2e-6;
+// What single precision rounds in a unit vector.
+constexpr double kTolerance = 2.5e-7;
 
 using Vector = std::array<double, 3>;
 
