@@ -191,6 +191,7 @@ EditedSceneOptions::EditedSceneOptions(package::Strategy strategy, package::Trac
 }
 
 EditedScene::EditedScene(EditedSceneOptions options) : scene(catalogueScene()), options_(std::move(options)) {
+    scene.trustsTextures = options_.trustsTextures;
     loaded_ = std::make_unique<LoadedScene>(scene, options_.settings);
     if (!loaded_->ok()) {
         return;

@@ -73,6 +73,7 @@ struct EditedSceneOptions {
                                 package::Tracer tracer = tracerOfDevice());
     compiler::CompileSettings settings;
     RendererOptions renderer;
+    bool trustsTextures = false;
     std::uint32_t width = 32;
     std::uint32_t height = 18;
 };

@@ -129,6 +129,17 @@ TEST_F(LiveEditErrors, Values) {
     expectError(editor().replaceTexture(edited_->textures[0].handle, {}), "scene-image");
 }
 
+// Another image might need what the package lacks.
+TEST(LiveEdit, ATrustedTextureIsNotReplaced) {
+    EditedSceneOptions options;
+    options.trustsTextures = true;
+    EditedScene edited(std::move(options));
+    ASSERT_TRUE(edited.ok());
+    EXPECT_TRUE(edited.package().trustTextures());
+    expectError(edited.editor().replaceTexture(edited.editor().texture(0), edited.textures[0].view()),
+                "texture-trusted");
+}
+
 TEST_F(LiveEditErrors, Geometry) {
     EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
     const std::uint32_t outside[] = {0, 1, 99};

@@ -66,7 +66,8 @@ Status fillScene(Document& document, Scene& scene) {
         scene.defaultMaterial = static_cast<int>(scene.materials.size());
         scene.materials.emplace_back(*document.options().materialModel).name = "default";
     }
-    if (document.options().trustTextures) {
+    scene.trustsTextures = document.options().trustTextures;
+    if (scene.trustsTextures) {
         if (Status status = readTextureContent(document.options(), scene); !status) {
             return status;
         }

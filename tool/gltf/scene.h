@@ -239,6 +239,7 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<Sampler> samplers;
     std::vector<Image> images;
+    bool trustsTextures = false;  // with ImportOptions::trustTextures: materials rely on what images hold
     std::vector<SourceFile> files;
     std::vector<std::string> variants;  // the names in KHR_materials_variants, in the file's order
     std::string variant;                // its materials are in use; empty: the default materials

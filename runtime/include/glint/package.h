@@ -78,6 +78,9 @@ public:
     bool environmentMap() const;
     // Whether shaders record which levels of textures they read (FrameCounters::textureLevels).
     bool textureLevels() const;
+    // Whether shaders rely on what the textures of the scenes hold, so that no other image may take their
+    // place.
+    bool trustTextures() const;
     // Whether shaders read the positions of hit triangles from acceleration structures. The device then needs
     // DeviceHandles::positionFetch.
     bool positionFetch() const;

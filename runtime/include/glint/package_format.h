@@ -139,7 +139,7 @@ struct PackageHeader {
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
     std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
-    std::uint32_t pad;
+    std::uint32_t trustTextures;  // 1: shaders rely on what the textures of the scenes hold
 };
 
 enum class SectionKind : std::uint32_t {

@@ -146,6 +146,7 @@ public:
     // "scene-edit-room" (SceneView::textureRoom textures are there).
     Result<TextureHandle> addTexture(const ImageView& image, bool srgb);
     // Replaces the image of a texture by another one of any size and format, for all materials that use it.
+    // Errors: "scene-image", "texture-trusted" (Package::trustTextures()).
     Status replaceTexture(TextureHandle texture, const ImageView& image);
     Status removeTexture(TextureHandle texture);
 

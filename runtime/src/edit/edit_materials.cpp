@@ -241,6 +241,10 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     if (entry == nullptr) {
         return unknownHandle("texture");
     }
+    if (state_->trustsTextures) {
+        return makeError("texture-trusted", "", "the shaders of the package rely on what its textures hold",
+                         "compile it with --trust-textures off, or with --fallback");
+    }
     Result<DeviceImage> made = makeImage(*state_, image, entry->srgb, texture.index);
     if (!made) {
         return made.error();

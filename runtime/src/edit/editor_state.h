@@ -82,9 +82,10 @@ struct SceneEditor::State {
     BlasCapacity capacity;
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
     VertexForm vertices = VertexForm::Compact;
-    bool dataAccess = false;   // BLASes let shaders read positions
-    bool passesLight = false;  // a ray meets each triangle at most once
-    bool buildsTree = false;   // the package chooses lights by a hierarchy
+    bool dataAccess = false;      // BLASes let shaders read positions
+    bool passesLight = false;     // a ray meets each triangle at most once
+    bool buildsTree = false;      // the package chooses lights by a hierarchy
+    bool trustsTextures = false;  // Package::trustTextures()
 
     Slots<EditedTexture, TextureHandle> textures;
     Slots<EditedMaterial, MaterialHandle> materialSlots;

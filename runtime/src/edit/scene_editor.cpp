@@ -27,6 +27,7 @@ SceneEditor::State::State(GpuScene::State& owner, const Package& package, const 
       dataAccess(package.positionFetch()),
       passesLight(package.shadowThrough() == package::ShadowThrough::Glass),
       buildsTree(package.lightSamples() > 0),
+      trustsTextures(package.trustTextures()),
       materials(layout.recordBytes),
       retired(owner.pool) {}
 

@@ -78,6 +78,10 @@ bool Package::textureLevels() const {
     return state_->header.textureLevels != 0;
 }
 
+bool Package::trustTextures() const {
+    return state_->header.trustTextures != 0;
+}
+
 bool Package::environmentMap() const {
     return state_->header.environmentMap != 0;
 }

@@ -126,6 +126,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.textureLevels > 1) {
         return outside("the kind of notes about textures", header.textureLevels);
     }
+    if (header.trustTextures > 1) {
+        return outside("the trust in textures", header.trustTextures);
+    }
     if (header.deforms > 1) {
         return outside("the kind of movement", header.deforms);
     }

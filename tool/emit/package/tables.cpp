@@ -343,6 +343,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.maxBounces = settings.maxBounces;
     header.fallback = settings.plan.fallback ? 1 : 0;
     header.textureLevels = settings.textureLevels ? 1 : 0;
+    header.trustTextures = std::ranges::any_of(scenes.scenes(), &gltf::Scene::trustsTextures) ? 1 : 0;
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alpha = settings.plan.keys.alpha;
     header.shadowThrough = settings.shadowThrough;

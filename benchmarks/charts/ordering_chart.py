@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes the chart and tables of the measurements of bench_ordering --json and cub_sort. Needs python3-matplotlib.
 
-    benchmarks/ordering_chart.py CHART.png CUB.jsonl ORDERING.json...      tables go to standard output, in Markdown
+    benchmarks/charts/ordering_chart.py CHART.png CUB.jsonl ORDERING.json...      tables go to standard output, in Markdown
 
 The chart shows the times of tile-sort, of CUB's sort of pairs and of a plain copy against the number of buckets, a panel
 for each number of hits.

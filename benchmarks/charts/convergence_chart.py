@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the first table of measure_convergence.py. Needs python3-matplotlib.
 
-    benchmarks/convergence_chart.py CHART.png TABLE.md      TABLE.md: what measure_convergence.py printed
+    benchmarks/charts/convergence_chart.py CHART.png TABLE.md      TABLE.md: what measure_convergence.py printed
 
 The chart shows the error of each kind of light against the number of samples, both on logarithmic axes, and a dashed
 line that falls as one over the root of the samples.
@@ -25,7 +25,7 @@ def rows_of(path):
 
 def main():
     if len(sys.argv) != 3:
-        sys.exit("usage: benchmarks/convergence_chart.py CHART.png TABLE.md")
+        sys.exit("usage: benchmarks/charts/convergence_chart.py CHART.png TABLE.md")
     samples, errors = rows_of(sys.argv[2])
     _, axes = plt.subplots(figsize=(7, 4.5))
     for kind, values in errors.items():

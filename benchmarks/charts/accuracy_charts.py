@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws error against time of benches side by side, with their Pareto fronts. Needs python3-matplotlib.
 
-    benchmarks/accuracy_charts.py OUT.png BENCH.json...     BENCH.json: what `glint bench` wrote
+    benchmarks/charts/accuracy_charts.py OUT.png BENCH.json...     BENCH.json: what `glint bench` wrote
 
 Points are medians. Points that are not on a front are small. The table that `glint bench` prints names the points of a front.
 """
@@ -51,7 +51,7 @@ def draw(axes, report):
 
 def main():
     if len(sys.argv) < 3:
-        sys.exit("usage: benchmarks/accuracy_charts.py OUT.png BENCH.json...")
+        sys.exit("usage: benchmarks/charts/accuracy_charts.py OUT.png BENCH.json...")
     reports = [json.loads(pathlib.Path(file).read_text(encoding="utf-8")) for file in sys.argv[2:]]
     figure, axes = plt.subplots(1, len(reports), figsize=(5.6 * len(reports), 4.6), squeeze=False)
     for place, report in zip(axes[0], reports):
