@@ -130,7 +130,7 @@ TEST_F(LiveEditErrors, Values) {
 }
 
 // Another image might need what the package lacks.
-TEST(LiveEdit, ATrustedTextureIsNotReplaced) {
+TEST(LiveEditTextures, ATrustedTextureIsNotReplaced) {
     EditedSceneOptions options;
     options.trustsTextures = true;
     EditedScene edited(std::move(options));
