@@ -203,7 +203,7 @@ TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
 }
 
 TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {
-    expectFits("material_feature", exampleIn("material_features.md", "## A declaration"));
+    expectFits("material_feature", exampleIn("material_features.md", "## Declarations"));
     expectFits("effect", exampleIn("effects.md", "## An effect of your own"));
     expectFits("compile", exampleIn("cli.md", "## glint compile"));
     expectFits("lint", exampleIn("lint.md", "## JSON"));
