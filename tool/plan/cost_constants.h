@@ -5,8 +5,8 @@
 // the model is off, in instructions, and in texture fetches:
 //
 //                shaders  mean error  largest      R2  fetches, most
-//     one key         29        4.3 %     27.3 %   0.969           0.0
-//     branches        10        3.9 %      6.7 %   0.988           0.0
+//     one key         29        7.2 %     44.1 %   0.881           0.0
+//     branches        10        5.4 %     10.7 %   0.961           0.0
 //
 // The mean and the largest error are relative; R2 is that of the instructions.
 #pragma once
@@ -14,12 +14,12 @@
 namespace glint::compiler::fitted {
 
 // SPIR-V instructions of the shader of one unlit key without other features, and what being lit adds.
-inline constexpr double kUnlitInstructions = 69.0;
-inline constexpr double kLitInstructions = 603.0;
+inline constexpr double kUnlitInstructions = 98.0;
+inline constexpr double kLitInstructions = 817.0;
 
 // What a shader has beyond its features' own code for each feature that it branches on.
-inline constexpr double kInputBranch = 27.0;
-inline constexpr double kLobeBranch = 163.0;
+inline constexpr double kInputBranch = 26.0;
+inline constexpr double kLobeBranch = 252.0;
 
 // What a shader has more for a feature is in the feature's declaration ("cost").
 
