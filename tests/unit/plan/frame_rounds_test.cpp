@@ -121,7 +121,7 @@ TEST(FrameRounds, ChooseWhatIsFastestByBounces) {
 // Neighbours of a mirror hit alike, so that two cases are not worth an order; those of later bounces do not.
 TEST(FrameRounds, BouncesChangeTheChoice) {
     Box mirrors(2, 0.0F);
-    mirrors.pixels = 960.0 * 540.0;
+    mirrors.pixels = 640.0 * 400.0;
     mirrors.strategies = {"uber", "sorted-uber"};
     const compiler::StrategyChoice once = mirrors.choice(1);
     EXPECT_EQ(once.strategy, "uber") << once.why;
