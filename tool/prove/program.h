@@ -21,7 +21,7 @@ inline constexpr NodeId kNoNode = 0xFFFFFFFFU;
 enum class Op : std::uint8_t {
     Constant,
     Input,
-    // Of floats.
+    // Operations on floats.
     Add,
     Subtract,
     Multiply,
@@ -43,7 +43,7 @@ enum class Op : std::uint8_t {
     Lerp,        // a + (b - a) c
     Normalized,  // a / √(a² + b), where c = fl(a² + b)
     Convert,     // to another float format
-    // Of error-free transformations: Veltkamp's split, Dekker's product and Knuth's sum
+    // Parts of error-free transformations: Veltkamp's split, Dekker's product and Knuth's sum
     // (shaders/bsdf/exact.glsl). As single operations they have the bounds of their theorems.
     SplitHigh,
     SplitLow,
@@ -60,15 +60,15 @@ enum class Op : std::uint8_t {
     Less,
     LessEqual,
     Equal,
-    // Of truth values.
+    // Operations on truth values.
     And,
     Or,
     Not,
-    // Of values of any format.
+    // Operations on values of any format.
     Select,  // a ? b : c
     Merge,   // the value of the edge whose guard is true; edges are in Program::edges
     Refine,  // a, where it is known that `a relation b` holds
-    // Of integers.
+    // Operations on integers.
     IntegerAdd,
     IntegerSubtract,
     IntegerMultiply,

@@ -17,25 +17,27 @@ namespace glint::opacity {
 
 // What is assumed about a device's arithmetic. All bounds are widened by it.
 struct ErrorModel {
-    // Of a coordinate in texels. Vulkan asks for at least 4 bits below a texel (subTexelPrecisionBits).
+    // The error of a coordinate in texels. Vulkan asks for at least 4 bits below a texel
+    // (subTexelPrecisionBits).
     double texelPosition = 1.0 / 16.0;
-    // Of a coordinate before it is scaled to texels, relative to the largest number that it is computed from.
+    // The error of a coordinate before it is scaled to texels, relative to the largest number that it is
+    // computed from.
     double coordinate = 32.0 * 0x1p-24;
     // By how much barycentrics may lie outside of their triangle.
     double outside = 0x1p-20;
     // The distance, in barycentrics, between the point that is tested and the one that chose the
     // micro-triangle.
     double microTriangle = 0x1p-14;
-    // Of a filtered value, beyond the least and the greatest texel. Nearest texels are exact but for
-    // `conversionUlps`.
+    // The error of a filtered value, beyond the least and the greatest texel. Nearest texels are exact but
+    // for `conversionUlps`.
     double filter = 0x1p-9;
-    // Of the conversion of a texel to a float, in units in the last place. 0 and 1 are exact.
+    // The error of the conversion of a texel to a float, in units in the last place. 0 and 1 are exact.
     int conversionUlps = 1;
-    // Of each product, in units in the last place. A product with 0 or 1 is exact.
+    // The error of each product, in units in the last place. A product with 0 or 1 is exact.
     int productUlps = 1;
-    // Of vertex alpha, relative to the largest of the three.
+    // The error of vertex alpha, relative to the largest of the three.
     double vertexAlpha = 0x1p-20;
-    // Of a texel, in steps of its 8 bits: for images that a device decodes or narrows by itself.
+    // The error of a texel, in steps of its 8 bits: for images that a device decodes or narrows by itself.
     int texelSteps = 0;
 };
 

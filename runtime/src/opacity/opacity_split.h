@@ -20,7 +20,8 @@ struct DecidedTriangles {
     // that let all rays through. Empty for primitives that stay as they are.
     std::vector<std::vector<std::uint32_t>> sorted;
     std::map<std::uint32_t, OpacitySplit> splits;
-    // Of the tested triangles of primitives with a split, in their order; only if micromaps were asked for.
+    // The micromaps of the tested triangles of primitives with a split, in their order; only if micromaps
+    // were asked for.
     std::map<std::uint32_t, opacity::MicromapArray> micromaps;
     std::uint64_t tested = 0;       // triangles of materials that are tested, once for each mesh
     std::uint64_t opaque = 0;       // of those: proved opaque
