@@ -45,7 +45,7 @@ struct Interval {
     double magnitude() const {
         return std::max(std::abs(low), std::abs(high));
     }
-    // Of truth values.
+    // Operations on truth values.
     bool isTrue() const {
         return low == 1.0 && high == 1.0;
     }

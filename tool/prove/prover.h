@@ -60,7 +60,7 @@ struct ProofResult {
     double undecidedShare = 1.0;  // of the domain's volume, in the scales of its inputs
     std::uint64_t boxes = 0;
     std::optional<Counterexample> counterexample;
-    // Of the largest box that is not decided: what fails there, as far as the bounds know.
+    // What fails in the largest box that is not decided, as far as the bounds know.
     std::vector<Interval> undecidedBox;
     std::string undecidedWhy;
 };

@@ -62,7 +62,7 @@ std::vector<float> joinAttributes(const Package& package, const package::Primiti
 // them, or 0.
 std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
 
-// What of a primitive is uploaded, beside the attributes of its view.
+// The parts of a primitive that are uploaded beside the attributes of its view.
 struct PrimitiveContent {
     std::span<const std::uint32_t> indices;
     std::span<const float> declared;               // the joined attributes
