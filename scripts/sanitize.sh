@@ -107,9 +107,9 @@ check_scene() {
     rm -rf "$package"
 }
 
-# explain_scene SCENE: reads the scene and plans.
+# explain_scene SCENE: reads the scene and plans. Images are decoded where scenes are rendered.
 explain_scene() {
-    check 0 "$build/bin/glint" explain "$1" --plan --merge auto
+    check 0 "$build/bin/glint" explain "$1" --plan --merge auto --trust-textures off
 }
 
 # render_scene STRATEGY:SCENE: compiles and renders for one strategy.

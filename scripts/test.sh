@@ -44,7 +44,8 @@ fi
 cmake --preset release "${werror[@]}"
 cmake --build --preset release
 status=0
-ctest --preset release -j2 --output-on-failure --no-tests=error || status=$?
+# Processes wait for files and for the end of others, so one more than there are cores keeps them busy.
+ctest --preset release -j "$(($(nproc) + 1))" --output-on-failure --no-tests=error || status=$?
 # Skipped tests give their reason in these words (tests/support/models.cpp).
 skipped=$(grep -c '^no models: ' build/release/Testing/Temporary/LastTest.log || true)
 if [[ $skipped -gt 0 ]]; then

@@ -80,11 +80,11 @@ protected:
     }
 };
 
-// Returns the calls of a run that a fault strikes: by night each of them, otherwise every third, from the
+// Returns the calls of a run that a fault strikes: by night each of them, otherwise every fifth, from the
 // last one back, because the renames come last.
 std::vector<int> struckCalls(int calls) {
     std::vector<int> struck;
-    for (int at = calls; at >= 1; at -= test::nightly() ? 1 : 3) {
+    for (int at = calls; at >= 1; at -= test::nightly() ? 1 : 5) {
         struck.push_back(at);
     }
     return struck;

@@ -2,6 +2,7 @@
 // covers every pair of values of two settings.
 #include "render/harness.h"
 #include "render/rooms.h"
+#include "render/ways.h"
 #include "support/nightly.h"
 
 #include <glint/package_modules.h>
@@ -31,24 +32,6 @@ struct Room {
     gltf::Scene (*make)();
     package::AlphaPolicy alpha;
 };
-
-// The choices of a renderer, for one strategy and tracer.
-struct Way {
-    package::Strategy strategy;
-    package::Tracer tracer;
-};
-
-std::vector<Way> waysOf(std::uint32_t tracers) {
-    std::vector<Way> ways;
-    for (const package::Strategy strategy : package::strategies()) {
-        for (const package::Tracer tracer : package::kTracers) {
-            if ((package::tracersOf(strategy, tracers) & tracer) != 0) {
-                ways.push_back({strategy, tracer});
-            }
-        }
-    }
-    return ways;
-}
 
 constexpr compiler::MergePolicy kPolicies[] = {compiler::MergePolicy::All, compiler::MergePolicy::None,
                                                compiler::MergePolicy::Family, compiler::MergePolicy::Auto,
@@ -86,7 +69,7 @@ std::vector<Combination> allCombinations() {
     for (unsigned room = 0; room < kRooms; ++room) {
         for (const compiler::MergePolicy merge : kPolicies) {
             for (const package::ShadowPlacement shadows : kPlacements) {
-                for (const Way& way : waysOf(package::kAllTracers)) {
+                for (const Way& way : waysOf(package::allStrategies(), package::kAllTracers)) {
                     addWay(room, merge, shadows, way);
                 }
             }
@@ -180,17 +163,13 @@ protected:
                          const Combination& combination) {
         RenderSetup frame = setup(scene);
         frame.frame.binning = combination.binning;
-        RendererOptions options;
-        options.strategy = combination.way.strategy;
-        options.tracer = combination.way.tracer;
+        RendererOptions options = optionsOf(combination.way);
         options.ordering = combination.ordering;
-        options.checkOrder = true;
-        const std::string what =
-            fmt::format("{}: {}, {}, merge {}, shadows {}, ordering {}, binning {}", GetParam().name,
-                        package::nameOf(combination.way.strategy), package::nameOf(combination.way.tracer),
-                        nameOf(combination.merge), package::nameOf(combination.shadows),
-                        combination.ordering ? package::nameOf(*combination.ordering) : "-",
-                        static_cast<unsigned>(combination.binning));
+        const std::string what = fmt::format(
+            "{}: {}, merge {}, shadows {}, ordering {}, binning {}", GetParam().name, nameOf(combination.way),
+            nameOf(combination.merge), package::nameOf(combination.shadows),
+            combination.ordering ? package::nameOf(*combination.ordering) : "-",
+            static_cast<unsigned>(combination.binning));
         FrameCounters counters;
         const LinearImage image = loaded.render(options, frame, &counters);
         ASSERT_FALSE(image.pixels.empty()) << what;

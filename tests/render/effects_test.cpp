@@ -2,12 +2,14 @@
 // nothing.
 #include "render/pixel_test.h"
 #include "render/rooms.h"
+#include "render/ways.h"
 #include "support/effect_bits.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,14 +35,6 @@ RenderSetup smallSetup(const gltf::Scene& scene) {
     return setup;
 }
 
-RendererOptions optionsOf(package::Strategy strategy, package::Tracer tracer) {
-    RendererOptions options;
-    options.strategy = strategy;
-    options.tracer = tracer;
-    options.checkOrder = true;
-    return options;
-}
-
 // Returns the room behind panes of glass: one thin, one thick, both partly clear.
 gltf::Scene roomBehindGlass() {
     gltf::Scene scene = roomOfMaterials();
@@ -61,21 +55,34 @@ gltf::Scene roomBehindGlass() {
     return scene;
 }
 
-struct Way {
-    package::Strategy strategy;
-    package::Tracer tracer;
-    bool batch;
-};
-
 TEST(AllEffects, EveryWayMakesTheSamePicture) {
     const gltf::Scene scene = roomBehindGlass();
-    const LoadedScene loaded(scene, allEffects());
-    ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = smallSetup(scene);
+    std::optional<LinearImage> reference;
     FrameCounters first;
-    const LinearImage reference =
-        loaded.render(optionsOf(package::kStrategyUber, package::kTracerRayQuery), setup, &first);
-    ASSERT_FALSE(reference.pixels.empty());
+    forEachWay(scene, allEffects(), [&](const LoadedScene& loaded, const Way& way) {
+        const bool isVisibility = way.strategy == package::kStrategyVisibility;
+        for (const bool batch : isVisibility ? std::vector{false, true} : std::vector{true}) {
+            RendererOptions options = optionsOf(way);
+            options.batchEffects = batch;
+            const std::string what = nameOf(way) + (batch ? ", batched" : ", one by one");
+            FrameCounters counters;
+            const LinearImage image = loaded.render(options, setup, &counters);
+            ASSERT_FALSE(image.pixels.empty()) << what;
+            if (!reference) {
+                reference = image;
+                first = counters;
+            }
+            expectSameImage(image, *reference, what);
+            EXPECT_EQ(counters.rays, first.rays) << what;
+            EXPECT_EQ(counters.orderErrors, 0U) << what;
+            for (const EffectCounters& effect : counters.effects) {
+                const EffectCounters other = first.of(effect.effect);
+                EXPECT_EQ(effect.rays, other.rays) << what << ", " << effect.name;
+                EXPECT_EQ(effect.hits, other.hits) << what << ", " << effect.name;
+            }
+        }
+    });
     for (const package::Effect effect :
          {package::kEffectReflection, package::kEffectRefraction, package::kEffectIndirectDiffuse}) {
         const EffectCounters counters = first.of(effect);
@@ -85,25 +92,6 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
     EXPECT_GT(first.of(package::kEffectRefraction).segments, 0U);
     EXPECT_GT(first.of(package::kEffectShadow).rays, 0U);
     EXPECT_GT(first.of(package::kEffectAmbientOcclusion).hits, 0U);
-    for (const Way& way : {Way{package::kStrategyVisibility, package::kTracerRayQuery, false},
-                           Way{package::kStrategyVisibility, package::kTracerRayQuery, true},
-                           Way{package::kStrategySortedUber, package::kTracerRayPipeline, true},
-                           Way{package::kStrategyHitShaders, package::kTracerRayPipeline, false}}) {
-        RendererOptions options = optionsOf(way.strategy, way.tracer);
-        options.batchEffects = way.batch;
-        const std::string what =
-            std::string(package::nameOf(way.strategy)) + (way.batch ? ", batched" : ", one by one");
-        FrameCounters counters;
-        const LinearImage image = loaded.render(options, setup, &counters);
-        expectSameImage(image, reference, what);
-        EXPECT_EQ(counters.rays, first.rays) << what;
-        EXPECT_EQ(counters.orderErrors, 0U) << what;
-        for (const EffectCounters& effect : counters.effects) {
-            const EffectCounters other = first.of(effect.effect);
-            EXPECT_EQ(effect.rays, other.rays) << what << ", " << effect.name;
-            EXPECT_EQ(effect.hits, other.hits) << what << ", " << effect.name;
-        }
-    }
 }
 
 // In bands of rows, or as a frame of its own, a sample is the same to the bit. Compact vertices change it
@@ -119,7 +107,7 @@ TEST(AllEffects, BandsAndFramesWithoutAMeanChangeNothing) {
     RenderSetup setup = smallSetup(scene);
     setup.samples = 1;
     for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
-        RendererOptions options = optionsOf(strategy, package::kTracerRayQuery);
+        RendererOptions options = optionsOf({strategy, package::kTracerRayQuery});
         FrameCounters whole;
         const LinearImage reference = loaded.render(options, setup, &whole);
         options.bands = 3;

@@ -2,6 +2,7 @@
 // so that the mean is the same, and the noise is less.
 #include "render/harness.h"
 #include "render/scene_builder.h"
+#include "render/ways.h"
 #include "support/nightly.h"
 
 #include <gtest/gtest.h>
@@ -276,35 +277,25 @@ TEST(EmissiveLights, StrategiesAgree) {
         material.alphaMode = materials::AlphaMode::Opaque;
     }
     std::optional<LinearImage> reference;
-    for (const package::ShadowPlacement shadows :
-         {package::ShadowPlacement::Inline, package::ShadowPlacement::Deferred}) {
-        const bool isInline = shadows == package::ShadowPlacement::Inline;
-        const Ways ways{EmissiveLights::On, 2, 2, true, package::allStrategies(), shadows};
-        compiler::CompileSettings settings = settingsOf(ways);
-        settings.strategies = isInline ? package::allStrategies() : std::uint32_t{package::kStrategyUber};
-        settings.tracers = package::kAllTracers;
-        settings.plan.merge = test::nightly() ? compiler::MergePolicy::None : compiler::MergePolicy::All;
+    const auto expectSame = [&](const LoadedScene& loaded, const Way& way) {
+        RendererOptions options = optionsOf(way);
+        options.bounces = 2;
+        const LinearImage image = loaded.render(options, setupOf(scene, 4, 1));
+        ASSERT_FALSE(image.pixels.empty());
+        reference = reference ? reference : image;
+        expectSameImage(image, *reference, nameOf(way));
+    };
+    Ways ways{EmissiveLights::On, 2, 2, true, package::allStrategies(), package::ShadowPlacement::Inline};
+    compiler::CompileSettings settings = settingsOf(ways);
+    settings.plan.merge = test::nightly() ? compiler::MergePolicy::None : compiler::MergePolicy::All;
+    forEachWay(scene, settings, expectSame, noLights);
+    settings.shadows = package::ShadowPlacement::Deferred;
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kTracerRayQuery;
+    for (const Way& way : waysOf(settings.strategies, settings.tracers)) {
         const LoadedScene loaded(scene, settings, noLights);
         ASSERT_TRUE(loaded.ok());
-        for (const package::Strategy strategy : package::strategies()) {
-            for (const package::Tracer tracer : package::kTracers) {
-                if ((sharedContext().handles().tracers & tracer) == 0 ||
-                    (settings.strategies & strategy) == 0 ||
-                    (package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {
-                    continue;
-                }
-                RendererOptions options;
-                options.strategy = strategy;
-                options.tracer = tracer;
-                options.bounces = ways.bounces;
-                const LinearImage image = loaded.render(options, setupOf(scene, 4, 1));
-                ASSERT_FALSE(image.pixels.empty());
-                reference = reference ? reference : image;
-                expectSameImage(
-                    image, *reference,
-                    std::string(package::nameOf(strategy)) + " with " + std::string(package::nameOf(tracer)));
-            }
-        }
+        expectSame(loaded, way);
     }
 }
 

@@ -5,6 +5,7 @@
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
+#include "render/ways.h"
 
 #include <gtest/gtest.h>
 
@@ -79,56 +80,36 @@ double meanOf(const LinearImage& image) {
     return sum / (3.0 * static_cast<double>(image.pixels.size()));
 }
 
-// Renders every strategy with every tracer that the device has, and with every ordering and binning that the
-// first strategy could disagree about.
-void expectAllWaysAgree(const gltf::Scene& scene, ShadowPlacement shadows, compiler::MergePolicy merge) {
+// Shared cases and deferred shadow rays change no picture either.
+TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
     constexpr std::uint32_t kBounces = 3;
-    compiler::CompileSettings settings = pathSettings(kBounces, package::kStrategyUber);
-    settings.strategies = package::allStrategies();
-    settings.tracers = package::kAllTracers;
-    settings.shadows = shadows;
-    settings.plan.merge = merge;
-    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-    const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
+    const gltf::Scene scene = hallScene();
     const RenderSetup setup = pathSetup(scene, 32, 24, 2);
+    compiler::CompileSettings settings = pathSettings(kBounces, package::kStrategyUber);
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     std::optional<LinearImage> reference;
-    FrameCounters expected;
-    for (const package::Strategy strategy : package::strategies()) {
-        for (const package::Tracer tracer : package::kTracers) {
-            const bool has = (sharedContext().handles().tracers & tracer) != 0;
-            if (!has || (package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {
-                continue;
-            }
-            RendererOptions options = pathOptions(kBounces, strategy);
-            options.tracer = tracer;
-            options.checkOrder = true;
+    for (const ShadowPlacement shadows : {ShadowPlacement::Inline, ShadowPlacement::Deferred}) {
+        std::optional<FrameCounters> expected;  // shadow rays that are traced inline are not counted
+        settings.shadows = shadows;
+        settings.plan.merge =
+            shadows == ShadowPlacement::Inline ? compiler::MergePolicy::None : compiler::MergePolicy::All;
+        forEachWay(scene, settings, [&](const LoadedScene& loaded, const Way& way) {
+            RendererOptions options = optionsOf(way);
+            options.bounces = kBounces;
             FrameCounters counters;
             const LinearImage image = loaded.render(options, setup, &counters);
             ASSERT_FALSE(image.pixels.empty());
-            if (!reference) {
-                reference = image;
-                expected = counters;
-                ASSERT_EQ(expected.raysOfBounces.size(), kBounces);
-                EXPECT_GT(expected.raysOfBounces[1], 200U);
-                EXPECT_GT(expected.raysOfBounces[2], 40U);
-            }
-            const std::string name =
-                std::string(package::nameOf(strategy)) + " with " + std::string(package::nameOf(tracer));
-            expectSameImage(image, *reference, name);
-            EXPECT_EQ(counters.raysOfBounces, expected.raysOfBounces) << name;
-            EXPECT_EQ(counters.shadowRays, expected.shadowRays) << name;
-            EXPECT_EQ(counters.orderErrors, 0U) << name;
-        }
+            reference = reference.value_or(image);
+            expected = expected.value_or(counters);
+            ASSERT_EQ(counters.raysOfBounces.size(), kBounces);
+            EXPECT_GT(counters.raysOfBounces[1], 200U);
+            EXPECT_GT(counters.raysOfBounces[2], 40U);
+            expectSameImage(image, *reference, nameOf(way));
+            EXPECT_EQ(counters.raysOfBounces, expected->raysOfBounces);
+            EXPECT_EQ(counters.shadowRays, expected->shadowRays);
+            EXPECT_EQ(counters.orderErrors, 0U);
+        });
     }
-}
-
-TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
-    expectAllWaysAgree(hallScene(), ShadowPlacement::Inline, compiler::MergePolicy::None);
-}
-
-TEST(Paths, DeferredShadowsAndSharedCasesToo) {
-    expectAllWaysAgree(hallScene(), ShadowPlacement::Deferred, compiler::MergePolicy::All);
 }
 
 TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {

@@ -3,6 +3,7 @@
 #include "context/context_state.h"
 #include "render/hall.h"
 #include "render/pixel_test.h"
+#include "render/ways.h"
 #include "scene/gpu_scene_state.h"
 
 #include <glint/package_modules.h>
@@ -20,34 +21,6 @@ using namespace glint::testing;
 using package::ShadowPlacement;
 using package::Strategy;
 using package::Tracer;
-
-struct Way {
-    Strategy strategy;
-    Tracer tracer;
-};
-
-std::vector<Way> allWays() {
-    std::vector<Way> ways;
-    for (const Strategy strategy : package::strategies()) {
-        for (const Tracer tracer : package::kTracers) {
-            if ((package::tracersOf(strategy, package::kAllTracers) & tracer) != 0) {
-                ways.push_back({strategy, tracer});
-            }
-        }
-    }
-    return ways;
-}
-
-std::string nameOf(const Way& way) {
-    return std::string(package::nameOf(way.strategy)) + " with " + std::string(package::nameOf(way.tracer));
-}
-
-RendererOptions optionsOf(const Way& way) {
-    RendererOptions options;
-    options.strategy = way.strategy;
-    options.tracer = way.tracer;
-    return options;
-}
 
 compiler::CompileSettings settingsFor(ShadowPlacement shadows, compiler::MergePolicy merge) {
     compiler::CompileSettings settings;
@@ -92,10 +65,7 @@ void expectAllWaysAgree(const gltf::Scene& scene, const compiler::CompileSetting
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     std::optional<LinearImage> reference;
-    for (const Way& way : allWays()) {
-        if (!deviceHas(way.tracer) || !loaded.package().supports(way.strategy)) {
-            continue;
-        }
+    for (const Way& way : waysOf(settings.strategies, settings.tracers)) {
         SCOPED_TRACE(nameOf(way));
         FrameCounters counted;
         const LinearImage image = loaded.render(optionsOf(way), setup, &counted);
@@ -242,7 +212,7 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     const scene_view::SceneViewData view = scene_view::makeSceneView(scene);
     auto uploaded = GpuScene::upload(**context, loaded.package(), view.view());
     ASSERT_TRUE(uploaded) << toString(uploaded.error());
-    for (const Way& way : allWays()) {
+    for (const Way& way : waysOf(package::allStrategies(), package::kAllTracers)) {
         SCOPED_TRACE(nameOf(way));
         RendererOptions options = optionsOf(way);
         options.width = setup.width;
