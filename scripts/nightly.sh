@@ -11,12 +11,15 @@ usage: scripts/nightly.sh [PART…]
 
 Sets up, builds, and runs all parts, or those that are named:
 
-  sweep     test_combinations with every strategy, tracer, merge policy, placement of
+  sweep     the tests that look at GLINT_NIGHTLY, with all that scripts/test.sh leaves out:
+            test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values;
-            test_strategies_agree with every merge policy for every scene; test_half and
-            test_library with the gallery; the orderings with other subgroup sizes; twice to three
-            times as many materials in test_furnace and test_sampling; a fault at every call that
-            writes. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
+            other tests of pictures with each strategy and each tracer, where scripts/test.sh
+            gives each strategy one tracer; test_strategies_agree with every merge policy for
+            every scene; test_half and test_library with the gallery; convergence with every kind
+            of light; the orderings with more numbers of buckets and other subgroup sizes; twice to
+            three times as many materials in test_furnace and test_sampling; a fault at every call
+            that writes; the runtime as a subdirectory of another project, built and run. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -61,11 +64,13 @@ for part in "${parts[@]}"; do
     case $part in
         sweep)
             whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
-                test_opacity test_ordering test_furnace test_sampling test_cli_robustness)
+                test_opacity test_ordering test_furnace test_sampling test_cli_robustness test_paths test_convergence
+                test_effects test_shadow_through test_packs)
             build "${whole[@]}" glint
             for program in "${whole[@]}"; do
                 GLINT_NIGHTLY=1 "build/release/tests/$program"
             done
+            GLINT_NIGHTLY=1 ctest --preset release -R '^Install\.' --output-on-failure
             for bits in 128 512; do
                 LP_NATIVE_VECTOR_WIDTH=$bits GLINT_NIGHTLY=1 build/release/tests/test_ordering --gtest_filter='Buckets/*'
             done

@@ -5,7 +5,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 usage() {
     cat <<'TEXT'
-usage: scripts/sanitize.sh [--all]
+usage: scripts/sanitize.sh [--all | --build]
 
 Builds the command and the replays of tests/fuzz with both sanitizers (preset sanitize, which needs Clang:
 scripts/setup.sh --sanitize) and runs
@@ -16,6 +16,7 @@ scripts/setup.sh --sanitize) and runs
   - explain over the gallery and the scenes of scripts/models.sh where they are. The other example scenes, those of
     packs with their packs, the gallery and every fourth of these scenes are also compiled and rendered, each with one
     of the strategies in turn.
+With --build it only builds.
 With --all, as in scripts/nightly.sh, every file goes through the command, and every scene through every command and
 strategy.
 Exits with 1 after a report of a sanitizer, and if a command takes 15 minutes or ends neither successfully nor with a
@@ -24,9 +25,11 @@ TEXT
 }
 
 all=false
+build_only=false
 for argument in "$@"; do
     case $argument in
         --all) all=true ;;
+        --build) build_only=true ;;
         -h | --help)
             usage
             exit 0
@@ -60,6 +63,7 @@ fail() {
 say "building"
 cmake --preset sanitize >/dev/null
 cmake --build --preset sanitize
+[[ $build_only == false ]] || exit 0
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/failed" "$work/packages"

@@ -11,7 +11,7 @@ Installs missing packages, builds Glint and runs every test. Files that scripts/
 
   --werror    treat the compiler's warnings as errors, as continuous integration does; this builds everything again
               if it was built without the option before
-  --sanitize  run scripts/sanitize.sh first, which makes a separate build with AddressSanitizer and
+  --sanitize  run scripts/sanitize.sh before the tests, which makes a separate build with AddressSanitizer and
               UndefinedBehaviorSanitizer and runs the commands with it; a finding ends the run
 TEXT
 }
@@ -39,11 +39,21 @@ done
 
 scripts/setup.sh "${setup[@]}"
 if [[ $sanitize == true ]]; then
-    scripts/sanitize.sh
+    scripts/sanitize.sh --build
+    # Some of its commands are single processes, beside which the other build goes on.
+    report=$(mktemp)
+    scripts/sanitize.sh >"$report" 2>&1 &
+    sanitizer=$!
+    trap 'kill "$sanitizer" 2>/dev/null || true; rm -f "$report"' EXIT
 fi
 cmake --preset release "${werror[@]}"
 cmake --build --preset release
 status=0
+if [[ $sanitize == true ]]; then
+    wait "$sanitizer" || status=$?
+    cat "$report"
+    [[ $status -eq 0 ]] || exit "$status"
+fi
 # Processes wait for files and for the end of others, so one more than there are cores keeps them busy.
 ctest --preset release -j "$(($(nproc) + 1))" --output-on-failure --no-tests=error || status=$?
 # Skipped tests give their reason in these words (tests/support/models.cpp).

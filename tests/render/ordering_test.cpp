@@ -2,6 +2,7 @@
 // is not so.
 #include "render/harness.h"
 #include "render/order_problems.h"
+#include "support/nightly.h"
 
 #include <algorithm>
 #include <array>
@@ -114,9 +115,12 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
 }
 
 // At 2^5, 2^8 and 2^10, ballots, scans and keys take another word, round or byte. 1024 is the most that
-// local-histogram and tile-sort hold.
+// local-histogram and tile-sort hold. By day each of these limits is met and passed.
 INSTANTIATE_TEST_SUITE_P(Buckets, Orderings,
-                         ::testing::Values(1U, 2U, 31U, 32U, 33U, 128U, 129U, 255U, 256U, 257U, 1024U, 1025U),
+                         ::testing::ValuesIn(test::nightly()
+                                                 ? std::vector{1U, 2U, 31U, 32U, 33U, 128U, 129U, 255U, 256U,
+                                                               257U, 1024U, 1025U}
+                                                 : std::vector{1U, 32U, 33U, 256U, 257U, 1024U, 1025U}),
                          ::testing::PrintToStringParamName());
 
 TEST(DefaultOrdering, HoldsAnyNumberOfBuckets) {
