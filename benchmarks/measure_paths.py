@@ -6,7 +6,8 @@
 
 All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
 package that has those bounces. Prints Markdown: the device time of all passes of a sample, as the median with its
-least and greatest value, and the ratio of each strategy to uber in the same round.
+least and greatest value, and the ratio of each strategy to uber in the same round. If it is stopped by SIGTERM, as
+timeout(1) does, it prints what it has measured until then.
 
 SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
 benchmarks/make_synthetic_scene.py, so that no path leaves it.
@@ -15,8 +16,10 @@ import argparse
 import json
 import pathlib
 import random
+import signal
 import statistics
 import subprocess
+import sys
 import tempfile
 
 from make_synthetic_scene import write_scene
@@ -54,9 +57,10 @@ def write_box(folder, keys):
 
 def compile_packages(arguments, folder):
     """Compiles the scene once for each number of bounces, for all strategies."""
+    tracer = "all" if arguments.tracer == "auto" else arguments.tracer
     for bounces in arguments.bounces:
         subprocess.run([arguments.glint, "compile", arguments.scene, "-o", folder / str(bounces), "--bounces",
-                        str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", "all", "--effects",
+                        str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", tracer, "--effects",
                         "shadow,reflection", "--max-roughness", "1", "--merge", arguments.merge],
                        check=True, capture_output=True)
 
@@ -73,6 +77,26 @@ def device_time(arguments, folder, strategy, bounces):
 
 def spread(values):
     return f"{statistics.median(values):.2f} ({min(values):.2f} to {max(values):.2f})"
+
+
+def print_table(title, arguments, times):
+    """Prints a row for each number of bounces that every strategy has rendered at least once."""
+    print(f"{title}, {arguments.size}, at most {arguments.rounds} rounds, ms of a sample\n")
+    print("| bounces | rounds | uber, ms | " +
+          " | ".join(f"{strategy} / uber" for strategy in arguments.strategies[1:]) + " |")
+    print("|---|---|---|" + "---|" * (len(arguments.strategies) - 1))
+    for count in arguments.bounces:
+        rounds = min(len(times[(strategy, count)]) for strategy in arguments.strategies)
+        if rounds == 0:
+            continue
+        uber = times[("uber", count)][:rounds]
+        ratios = [[now / then for now, then in zip(times[(strategy, count)], uber)]
+                  for strategy in arguments.strategies[1:]]
+        print(f"| {count} | {rounds} | {spread(uber)} | " + " | ".join(spread(ratio) for ratio in ratios) + " |")
+
+
+def stop(*_):
+    sys.exit("measure_paths.py: stopped before the last round")
 
 
 def main():
@@ -101,17 +125,13 @@ def main():
         compile_packages(arguments, folder)
         cases = [(strategy, count) for strategy in arguments.strategies for count in arguments.bounces]
         times = {case: [] for case in cases}
-        for _ in range(arguments.rounds):
-            for case in chance.sample(cases, len(cases)):
-                times[case].append(device_time(arguments, folder, *case))
-    print(f"{title}, {arguments.size}, {arguments.rounds} rounds, ms of a sample\n")
-    print("| bounces | uber, ms | " + " | ".join(f"{strategy} / uber" for strategy in arguments.strategies[1:]) + " |")
-    print("|---|---|" + "---|" * (len(arguments.strategies) - 1))
-    for count in arguments.bounces:
-        uber = times[("uber", count)]
-        ratios = [[now / then for now, then in zip(times[(strategy, count)], uber)]
-                  for strategy in arguments.strategies[1:]]
-        print(f"| {count} | {spread(uber)} | " + " | ".join(spread(ratio) for ratio in ratios) + " |")
+        signal.signal(signal.SIGTERM, stop)
+        try:
+            for _ in range(arguments.rounds):
+                for case in chance.sample(cases, len(cases)):
+                    times[case].append(device_time(arguments, folder, *case))
+        finally:
+            print_table(title, arguments, times)
 
 
 if __name__ == "__main__":
