@@ -20,6 +20,7 @@ struct Settings {
     std::string only;
     std::uint64_t boxes = 0;
     std::string report;
+    int describe = 0;
 };
 
 struct Row {
@@ -111,6 +112,11 @@ int run(const Settings& settings) {
     std::vector<Row> rows;
     bool refuted = false;
     for (std::size_t k = 0; k < proofs.size(); ++k) {
+        for (std::size_t output = 0; settings.describe > 0 && output < proofs[k].claim.outputs.size(); ++output) {
+            const prove::Program& program = (*programs)[k];
+            fmt::print("{} = {}\n", proofs[k].claim.outputs[output].name,
+                       prove::describe(program, program.outputs[output], settings.describe));
+        }
         prove::ProofOptions options;
         options.mostBoxes = settings.boxes;
         const std::clock_t start = std::clock();
@@ -138,6 +144,7 @@ int main(int argc, char** argv) {
     settings.boxes = 2000;
     app.add_option("--only", settings.only, "the claims whose name contains this");
     app.add_option("--boxes", settings.boxes, "the most boxes for each claim")->capture_default_str();
+    app.add_option("--describe", settings.describe, "prints what outputs are, to this depth");
     app.add_option("--report", settings.report, "Markdown file whose region `proofs` is replaced");
     CLI11_PARSE(app, argc, argv);
     return run(settings);

@@ -148,9 +148,9 @@ TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {
 TEST(Intervals, EncloseTheFloatAndTheDoubleBuild) {
     std::mt19937_64 random(5);
     std::size_t functions = 0;
-    for (std::size_t k = 0; k < floatProofs().size(); ++k) {
+    for (std::size_t k = 0; k < proofFunctions<float>().size(); ++k) {
         const auto proof = std::find_if(allProofs().begin(), allProofs().end(), [&](const Proof& candidate) {
-            return candidate.name == floatProofs()[k].name;
+            return candidate.name == proofFunctions<float>()[k].name;
         });
         if (proof == allProofs().end()) {
             continue;
@@ -174,8 +174,8 @@ TEST(Intervals, EncloseTheFloatAndTheDoubleBuild) {
             }
             float single[kMaxOutputs] = {};
             double real[kMaxOutputs] = {};
-            floatProofs()[k].call(given, single);
-            doubleProofs()[k].call(exact, real);
+            proofFunctions<float>()[k].call(given, single);
+            proofFunctions<double>()[k].call(exact, real);
             for (std::size_t output = 0; output < proof->claim.outputs.size(); ++output) {
                 const Interval& value = boxes.value(program.outputs[output]);
                 ASSERT_TRUE(value.contains(static_cast<double>(single[output])))

@@ -204,6 +204,8 @@ double evaluateNode(const Node& node, double a, double b, double c) {
             return b;
         case Op::Bounded:
         case Op::UnitSum:
+        case Op::WeightedUnit:
+        case Op::UnitQuotient:
         case Op::PartOfUnit:
             return a;
         case Op::Less:

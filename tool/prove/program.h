@@ -55,6 +55,9 @@ enum class Op : std::uint8_t {
     Bounded,       // a, where |a| <= √b: a dot product and the product of the squared lengths
     UnitSum,       // a, the sum of squares of a normalised vector, which is 1; b is its squared length before
     PartOfUnit,    // a, the sum of some of these squares, which is at most 1
+    WeightedUnit,  // a, the sum of squares of such components times weights; between b and c, the least and
+                   // the greatest weight squared
+    UnitQuotient,  // a = x / max(√c, `value`), a component of a normalised vector: c = x² + b
     SphereSum,     // b = (a s cos t)² + (a s sin t)² + (a z)², where s² = (1 - z)(1 + z): it is a²
     // Comparisons, which give truth values.
     Less,
@@ -102,7 +105,9 @@ struct Node {
     NodeId c = kNoNode;
     // The operation takes place where this truth value is true. kNoNode: always.
     NodeId guard = kNoNode;
-    double value = 0.0;       // of Constant; of Input its number
+    // Of Constant; of Input its number; of UnitQuotient, UnitSum and PartOfUnit the length below which vectors
+    // are divided by this instead.
+    double value = 0.0;
     std::uint32_t first = 0;  // of Merge: its edges
     std::uint32_t count = 0;
 };
@@ -136,6 +141,8 @@ public:
     // operation count.
     NodeId make(Node given);
     NodeId make(Op op, Format format, NodeId a, NodeId b = kNoNode, NodeId c = kNoNode);
+    // Makes a node of another program, whose operands are of this one. What is known of it is kept.
+    NodeId remake(const Node& node);
     NodeId apply(Function function, Format format, NodeId a);
     NodeId refine(NodeId a, Relation relation, NodeId b);
     // A dot product, which is no larger than the product of the lengths: `sum`, or what is known to be the
@@ -186,8 +193,21 @@ private:
     NodeId interpolation(const Node& node);
     NodeId shifted(const Node& node);
     NodeId dotProduct(const Node& node);
+    // A component of a normalised vector, times a weight.
+    struct UnitComponent {
+        NodeId of = kNoNode;  // the vector's component before
+        NodeId length2 = kNoNode;
+        NodeId weight = kNoNode;  // kNoNode: 1
+        double leastLength = 0.0;
+    };
+    UnitComponent unitComponentOf(NodeId id);
+    bool squaresIn(NodeId sum, std::vector<NodeId>& squares) const;
     NodeId sumOfNormalized(const Node& node);
+    NodeId weightedSum(const Node& sum, NodeId one, std::vector<NodeId> weights);
+    NodeId unitQuotient(const Node& node);
     NodeId squaredRadius(const Node& node);
+    // Whether `product` is `part` times a factor.
+    bool factorOf(NodeId product, NodeId part, NodeId& factor);
     // √((1 - z)(1 + z)) times a factor.
     bool isSineOf(NodeId id, NodeId& cosine, NodeId& factor);
     NodeId folded(const Node& node);
