@@ -206,6 +206,7 @@ double evaluateNode(const Node& node, double a, double b, double c) {
         case Op::UnitSum:
         case Op::WeightedUnit:
         case Op::UnitQuotient:
+        case Op::Share:
         case Op::PartOfUnit:
             return a;
         case Op::Less:

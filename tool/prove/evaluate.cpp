@@ -202,7 +202,7 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::Add:
             return arithmetic.add(a, b, hazard);
         case Op::Subtract:
-            return arithmetic.subtract(a, b, hazard);
+            return difference(node, arithmetic.subtract(a, b, hazard));
         case Op::Multiply:
             return arithmetic.multiply(a, b, hazard);
         case Op::Square:
@@ -306,6 +306,21 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
                                                c.high * (1.0 + error) + 0x1p-140},
                                               ignored));
         }
+        case Op::Share: {
+            if (b.low < 0.0 || c.low < 0.0 || !b.isFinite()) {
+                return a;
+            }
+            // Each term and the sum are rounded some ten times, all in the same direction at worst.
+            const double error = 48.0 * unitRoundoff(node.format);
+            const double least = b.low > 0.0 && std::isfinite(c.high) ? b.low / (b.low + c.high) : 0.0;
+            const double greatest = b.high > 0.0 ? b.high / (b.high + c.low) : 0.0;
+            Hazard ignored = Hazard::None;
+            // Small terms may have lost digits below the smallest normal number.
+            const double lost = b.low + c.low >= 0x1p-100 ? 0x1p-40 : 1.0;
+            return meet(a, arithmetic.convert({std::max(least * (1.0 - error) - lost, 0.0),
+                                               std::min(greatest + lost, 1.0) * (1.0 + error)},
+                                              ignored));
+        }
         case Op::UnitQuotient:
             return c.low >= leastSquaredLength(node.value) && c.isFinite()
                        ? meet(a, arithmetic.normalized(of(program_.nodes[node.a].a), b))
@@ -336,6 +351,21 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         default:
             return integer(node, hazard);
     }
+}
+
+// (x + y) - x is not negative if y is not: rounding is monotone.
+Interval BoxEvaluator::difference(const Node& node, const Interval& plain) const {
+    NodeId sum = node.a;
+    while (program_.nodes[sum].op == Op::Bounded || program_.nodes[sum].op == Op::Refine) {
+        sum = program_.nodes[sum].a;
+    }
+    const Node& from = program_.nodes[sum];
+    if (from.op != Op::Add || (from.a != node.b && from.b != node.b)) {
+        return plain;
+    }
+    const Interval& added = of(from.a == node.b ? from.b : from.a);
+    return {added.low >= 0.0 ? std::max(plain.low, 0.0) : plain.low,
+            added.high <= 0.0 ? std::min(plain.high, 0.0) : plain.high};
 }
 
 // Inputs that the claim does not have are 0.

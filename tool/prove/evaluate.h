@@ -46,6 +46,7 @@ private:
     void evaluateForm(NodeId id);
     Interval valueOf(const Node& node, Hazard& hazard);
     Interval inputOf(const Node& node) const;
+    Interval difference(const Node& node, const Interval& plain) const;
     Interval compared(const Node& node);
     Interval merged(const Node& node) const;
     Interval refined(const Node& node) const;

@@ -229,6 +229,7 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
         case Op::UnitSum:
         case Op::WeightedUnit:
         case Op::UnitQuotient:
+        case Op::Share:
         case Op::PartOfUnit:
             give(node.a, adjoint, kOne);
             return true;

@@ -100,6 +100,7 @@ const char* nameOf(Op op) {
                                              "unitSum",
                                              "partOfUnit",
                                              "weightedUnit",
+                                             "share",
                                              "unitQuotient",
                                              "sphereSum",
                                              "<",
@@ -263,7 +264,7 @@ NodeId ProgramBuilder::remake(const Node& node) {
     const NodeId known = node.op == Op::CircleSum                                ? node.c
                          : node.op == Op::SquareOfRoot || node.op == Op::SphereSum ? node.b
                          : node.op == Op::Bounded || node.op == Op::UnitSum || node.op == Op::PartOfUnit ||
-                                 node.op == Op::WeightedUnit || node.op == Op::UnitQuotient
+                                 node.op == Op::WeightedUnit || node.op == Op::UnitQuotient || node.op == Op::Share
                              ? node.a
                              : kNoNode;
     if (known != kNoNode && (isConstant(known) || this->node(known).op == node.op)) {
@@ -307,13 +308,29 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (isConstant(node.a, 1.0)) {
                 return node.b;
             }
-            return isConstant(node.b, 1.0) ? node.a : kNoNode;
+            if (isConstant(node.b, 1.0)) {
+                return node.a;
+            }
+            // Factors are finite, or the operation that made them fails.
+            if (isConstant(node.a, 0.0) || isConstant(node.b, 0.0)) {
+                return constant(0.0, node.format);
+            }
+            if (const NodeId choice = intoChoice(node); choice != kNoNode) {
+                return choice;
+            }
+            return share(node);
         case Op::Add:
             if (isConstant(node.a, 0.0)) {
                 return node.b;
             }
             if (isConstant(node.b, 0.0)) {
                 return node.a;
+            }
+            if (const NodeId choice = intoChoice(node); choice != kNoNode) {
+                return choice;
+            }
+            if (const NodeId sum = sumOfShares(node); sum != kNoNode) {
+                return sum;
             }
             if (const NodeId between = interpolation(node); between != kNoNode) {
                 return between;
@@ -348,7 +365,13 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             }
             return isConstant(node.b, 0.0) ? node.a : errorFree(node);
         case Op::Divide:
-            return isConstant(node.b, 1.0) ? node.a : unitQuotient(node);
+            if (isConstant(node.b, 1.0)) {
+                return node.a;
+            }
+            if (const NodeId part = unitQuotient(node); part != kNoNode) {
+                return part;
+            }
+            return share(node);
         case Op::Minimum:
         case Op::Maximum:
             return node.a == node.b ? node.a : kNoNode;
@@ -374,7 +397,17 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (isConstant(node.a)) {
                 return isConstant(node.a, 0.0) ? node.c : node.b;
             }
-            return node.b == node.c ? node.b : kNoNode;
+            if (node.b == node.c) {
+                return node.b;
+            }
+            // A choice within a choice by the same condition.
+            if (const Node& no = this->node(node.c); no.op == Op::Select && no.a == node.a) {
+                return make(Op::Select, node.format, node.a, node.b, no.c);
+            }
+            if (const Node& yes = this->node(node.b); yes.op == Op::Select && yes.a == node.a) {
+                return make(Op::Select, node.format, node.a, yes.b, node.c);
+            }
+            return kNoNode;
         case Op::Convert:
             return this->node(node.a).format == node.format ? node.a : kNoNode;
         case Op::ShiftRight:

@@ -57,6 +57,7 @@ enum class Op : std::uint8_t {
     PartOfUnit,    // a, the sum of some of these squares, which is at most 1
     WeightedUnit,  // a, the sum of squares of such components times weights; between b and c, the least and
                    // the greatest weight squared
+    Share,         // a, which is b / (b + c)
     UnitQuotient,  // a = x / max(√c, `value`), a component of a normalised vector: c = x² + b
     SphereSum,     // b = (a s cos t)² + (a s sin t)² + (a z)², where s² = (1 - z)(1 + z): it is a²
     // Comparisons, which give truth values.
@@ -203,6 +204,18 @@ private:
     UnitComponent unitComponentOf(NodeId id);
     bool squaresIn(NodeId sum, std::vector<NodeId>& squares) const;
     NodeId sumOfNormalized(const Node& node);
+    using Factors = std::vector<NodeId>;
+    // Shares of a sum; program_shares.cpp.
+    NodeId withoutRefinement(NodeId id) const;
+    void factorsOf(NodeId id, NodeId divisor, Factors& factors) const;
+    void divisorsOf(NodeId id, std::vector<NodeId>& divisors) const;
+    bool isSumWith(NodeId id, const std::vector<NodeId>& parts, int depth) const;
+    bool termsOf(NodeId id, const std::vector<NodeId>& parts, std::vector<Factors>& terms, int depth) const;
+    NodeId sumOfTerms(const std::vector<Factors>& terms, Format format);
+    NodeId shareOf(NodeId value, std::vector<Factors> own, NodeId divisor);
+    NodeId share(const Node& node);
+    NodeId sumOfShares(const Node& node);
+    NodeId intoChoice(const Node& node);
     NodeId weightedSum(const Node& sum, NodeId one, std::vector<NodeId> weights);
     NodeId unitQuotient(const Node& node);
     NodeId squaredRadius(const Node& node);
@@ -222,6 +235,11 @@ private:
 
     Program program_;
     std::map<Key, std::vector<NodeId>> known_;
+    struct KnownShare {
+        std::vector<Factors> terms;
+        NodeId divisor = kNoNode;
+    };
+    std::map<NodeId, KnownShare> shares_;
     NodeId guard_ = kNoNode;
     bool makesAuxiliary_ = false;
 };

@@ -18,7 +18,7 @@ NodeId ProgramBuilder::plainOf(NodeId id) const {
         if (known.op == Op::SphereSum) {
             id = known.b;
         } else if (known.op == Op::Bounded || known.op == Op::UnitSum || known.op == Op::PartOfUnit ||
-                   known.op == Op::WeightedUnit || known.op == Op::UnitQuotient) {
+                   known.op == Op::WeightedUnit || known.op == Op::UnitQuotient || known.op == Op::Share) {
             id = known.a;
         } else if (known.op == Op::CircleSum) {
             id = known.c;
