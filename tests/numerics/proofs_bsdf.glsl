@@ -62,16 +62,20 @@ PROOF(SchlickRest) {
     o[1] = o[0] + schlickWeight(i[0]);
 }
 
-// f90 is at least f0: the share of what is left.
+// f90 is at least f0, and at most 1: f0 and a share of what is left.
+float claimedF90(float f0, float share) {
+    return min(mix(f0, 1.0, share), 1.0);
+}
+
 PROOF(FresnelSchlick) {
-    float f90 = mix(i[0], 1.0, i[1]);
+    float f90 = claimedF90(i[0], i[1]);
     o[0] = fresnelSchlick(vec3(i[0]), f90, i[2]).x;
     o[1] = schlickPassed(vec3(i[0]), f90, i[2]);
     o[2] = o[0] + o[1];
 }
 
 PROOF(FresnelInterface) {
-    float f90 = mix(i[0], 1.0, i[1]);
+    float f90 = claimedF90(i[0], i[1]);
     vec2 cosine2 = exactSquare(vec2(i[2], 0.0));
     o[0] = fresnelInterface(vec3(i[0]), f90, cosine2, i[3]).x;
     o[1] = interfacePassed(vec3(i[0]), f90, cosine2, i[3]);
@@ -289,18 +293,18 @@ Bsdf claimedBsdf(float f0, float f90, float loss, float meanLoss) {
 #define CLAIMED_FEATURES(lobes) Features(lobes, 0u, 0u, 0u, lobes, 0u)
 
 PROOF(MultiScatterOf) {
-    o[0] = multiScatterOf(vec3(i[0]), mix(i[0], 1.0, i[1]), i[2]).x;
+    o[0] = multiScatterOf(vec3(i[0]), claimedF90(i[0], i[1]), i[2]).x;
 }
 
 PROOF(PassedAgain) {
-    Bsdf b = claimedBsdf(i[0], mix(i[0], 1.0, i[1]), 0.0, i[2]);
+    Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), 0.0, i[2]);
     o[0] = passedAgain(b).x;
     o[1] = o[0] + multiScatterOf(b.f0, b.f90, b.meanLoss).x;
 }
 
 // i[3]: the bias as a share of E.
 PROOF(SpecularShares) {
-    Bsdf b = claimedBsdf(i[0], mix(i[0], 1.0, i[1]), i[2], i[4]);
+    Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), i[2], i[4]);
     float bias = i[3] * (1.0 - i[2]);
     o[0] = specularAlbedo(b, CLAIMED_FEATURES(0u), i[2], bias).x;
     o[1] = specularPassed(b, i[2], bias).x;

@@ -109,7 +109,8 @@ const char* nameOf(Hazard hazard) {
     return "several hazards";
 }
 
-BoxEvaluator::BoxEvaluator(const Program& program) : program_(program), values_(program.nodes.size()) {}
+BoxEvaluator::BoxEvaluator(const Program& program)
+    : program_(program), identities_(program), values_(program.nodes.size()) {}
 
 void BoxEvaluator::know(NodeId node, const Interval& range) {
     known_.emplace_back(node, range);
@@ -119,6 +120,7 @@ void BoxEvaluator::know(NodeId node, const Interval& range) {
 void BoxEvaluator::run(std::span<const Interval> box, bool withAffineForms) {
     box_ = box;
     findings_.clear();
+    identities_.forgetBox();
     withForms_ = withAffineForms;
     if (withForms_) {
         symbols_.clear();
@@ -172,6 +174,10 @@ void BoxEvaluator::evaluate(NodeId id) {
     }
     Hazard hazard = Hazard::None;
     values_[id] = valueOf(node, hazard);
+    if (node.format == Format::Single) {
+        const Interval bound = identities_.bound(id, values_);
+        values_[id] = meet(values_[id], {roundDown(bound.low, node.format), roundUp(bound.high, node.format)});
+    }
     if (withForms_ && node.format != Format::Integer) {
         evaluateForm(id);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "prove/affine.h"
+#include "prove/identities.h"
 #include "prove/program.h"
 
 #include <span>
@@ -63,6 +64,7 @@ private:
     }
 
     const Program& program_;
+    Identities identities_;
     std::vector<Interval> values_;
     std::vector<Affine> forms_;
     std::vector<double> slopes_;
