@@ -7,6 +7,7 @@
 #include "prove/evaluate.h"
 #include "prove/interval.h"
 #include "prove/prover.h"
+#include "prove/specialise.h"
 
 #include <gtest/gtest.h>
 
@@ -109,8 +110,13 @@ TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {
     std::mt19937_64 random(3);
     std::uint64_t compared = 0;
     for (std::size_t k = 0; k < programs().size(); ++k) {
-        const prove::Program& program = programs()[k];
         const prove::Claim& claim = allProofs()[k].claim;
+        std::vector<Interval> domain;
+        for (const prove::InputRange& input : claim.inputs) {
+            domain.push_back({input.low, input.high});
+        }
+        // What proofs evaluate has more patterns than what it was made from.
+        const prove::Program program = k % 4 == 0 ? programs()[k] : prove::specialise(programs()[k], domain);
         prove::BoxEvaluator boxes(program);
         prove::PointEvaluator points(program);
         for (int turn = 0; turn < 12; ++turn) {

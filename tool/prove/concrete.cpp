@@ -206,6 +206,8 @@ double evaluateNode(const Node& node, double a, double b, double c) {
         case Op::UnitSum:
         case Op::WeightedUnit:
         case Op::UnitQuotient:
+        case Op::TriangleSum:
+        case Op::MirroredSum:
         case Op::Share:
         case Op::PartOfUnit:
             return a;
@@ -269,7 +271,9 @@ PointResult PointEvaluator::run(std::span<const double> inputs) {
         const double b = operand(node.b);
         const double c = operand(node.c);
         const bool joins = node.op == Op::Select || node.op == Op::And || node.op == Op::Or;
-        if (!joins && (std::isnan(a) || std::isnan(b) || std::isnan(c))) {
+        // A choice whose condition has no value belongs to a branch that is not taken.
+        const bool isUndecided = node.op == Op::Select && std::isnan(a);
+        if (isUndecided || (!joins && (std::isnan(a) || std::isnan(b) || std::isnan(c)))) {
             values_[id] = std::nan("");
             continue;
         }

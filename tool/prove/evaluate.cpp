@@ -176,7 +176,8 @@ void BoxEvaluator::evaluate(NodeId id) {
     values_[id] = valueOf(node, hazard);
     if (node.format == Format::Single) {
         const Interval bound = identities_.bound(id, values_);
-        values_[id] = meet(values_[id], {roundDown(bound.low, node.format), roundUp(bound.high, node.format)});
+        values_[id] =
+            meet(values_[id], {roundDown(bound.low, node.format), roundUp(bound.high, node.format)});
     }
     if (withForms_ && node.format != Format::Integer) {
         evaluateForm(id);
@@ -308,13 +309,20 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
             // Each weight and each square is rounded a few times, and the sum twice.
             const double error = 40.0 * unitRoundoff(node.format);
             Hazard ignored = Hazard::None;
-            return meet(a, arithmetic.convert({b.low * (1.0 - error) - 0x1p-140,
-                                               c.high * (1.0 + error) + 0x1p-140},
-                                              ignored));
+            return meet(
+                a, arithmetic.convert({b.low * (1.0 - error) - 0x1p-140, c.high * (1.0 + error) + 0x1p-140},
+                                      ignored));
         }
         case Op::Share: {
             if (b.low < 0.0 || c.low < 0.0 || !b.isFinite()) {
                 return a;
+            }
+            // A quotient by a sum that is not 0 does not overflow.
+            if (const Node& quotient = program_.nodes[node.a];
+                quotient.op == Op::Divide && of(quotient.b).low > 0.0) {
+                std::erase_if(findings_, [&](const Finding& finding) {
+                    return finding.node == node.a && finding.hazard == Hazard::Overflow;
+                });
             }
             // Each term and the sum are rounded some ten times, all in the same direction at worst.
             const double error = 48.0 * unitRoundoff(node.format);
@@ -327,10 +335,21 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
                                                std::min(greatest + lost, 1.0) * (1.0 + error)},
                                               ignored));
         }
+        case Op::MirroredSum: {
+            // |v|² + 4 (v·h)² (|h|² - 1), where (v·h)² <= |v|² |h|²; rounding is relative to the terms.
+            const double most = b.high * (1.0 + 2.0 * c.high) * (1.0 + 2.0 * c.high);
+            const double error =
+                4.0 * b.high * c.high * std::max(std::abs(c.low - 1.0), std::abs(c.high - 1.0)) +
+                64.0 * unitRoundoff(node.format) * most;
+            if (!std::isfinite(error) || b.low < 0.0 || c.low < 0.0) {
+                return a;
+            }
+            return meet(a, {roundDown(b.low - error, node.format), roundUp(b.high + error, node.format)});
+        }
+        case Op::TriangleSum:
+            return meet(a, {a.low, roundUp(b.high * (1.0 + 40.0 * unitRoundoff(node.format)), node.format)});
         case Op::UnitQuotient:
-            return c.low >= leastSquaredLength(node.value) && c.isFinite()
-                       ? meet(a, arithmetic.normalized(of(program_.nodes[node.a].a), b))
-                       : a;
+            return unitQuotient(node);
         case Op::Less:
         case Op::LessEqual:
         case Op::Equal:
@@ -357,6 +376,27 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         default:
             return integer(node, hazard);
     }
+}
+
+Interval BoxEvaluator::unitQuotient(const Node& node) {
+    const Interval& plain = of(node.a);
+    const Interval& length2 = of(node.c);
+    const Node& quotient = program_.nodes[node.a];
+    const bool isPositive = length2.low > 0.0 || (quotient.op == Op::Divide && of(quotient.b).low > 0.0);
+    if (!isPositive || !length2.isFinite()) {
+        return plain;
+    }
+    // The square of the component may have lost the smallest number, which the others need not make good.
+    Interval result = meet(plain, {-1.5, 1.5});
+    if (length2.low >= leastSquaredLength(node.value)) {
+        const bool isFirst = quotient.op == Op::Divide || program_.nodes[quotient.b].op == Op::Apply;
+        result = meet(result,
+                      Arithmetic(node.format).normalized(of(isFirst ? quotient.a : quotient.b), of(node.b)));
+    }
+    std::erase_if(findings_, [&](const Finding& finding) {
+        return finding.node == node.a && finding.hazard == Hazard::Overflow;
+    });
+    return result;
 }
 
 // (x + y) - x is not negative if y is not: rounding is monotone.

@@ -47,6 +47,7 @@ private:
     void evaluateForm(NodeId id);
     Interval valueOf(const Node& node, Hazard& hazard);
     Interval inputOf(const Node& node) const;
+    Interval unitQuotient(const Node& node);
     Interval difference(const Node& node, const Interval& plain) const;
     Interval compared(const Node& node);
     Interval merged(const Node& node) const;

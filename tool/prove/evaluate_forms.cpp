@@ -198,6 +198,8 @@ bool BoxEvaluator::formOf(const Node& node, Affine& result) {
         case Op::UnitSum:
         case Op::WeightedUnit:
         case Op::UnitQuotient:
+        case Op::TriangleSum:
+        case Op::MirroredSum:
         case Op::Share:
         case Op::PartOfUnit:
             copyAffine(form(node.a), result);

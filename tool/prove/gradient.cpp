@@ -229,6 +229,8 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
         case Op::UnitSum:
         case Op::WeightedUnit:
         case Op::UnitQuotient:
+        case Op::TriangleSum:
+        case Op::MirroredSum:
         case Op::Share:
         case Op::PartOfUnit:
             give(node.a, adjoint, kOne);

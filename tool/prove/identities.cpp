@@ -30,6 +30,10 @@ Interval timesReal(const Interval& a, const Interval& b) {
 Identities::Identities(const Program& program)
     : program_(program), expansions_(program.nodes.size()), errors_(program.nodes.size(), -1.0) {
     for (NodeId id = 0; id < program.nodes.size(); ++id) {
+        const NodeId bare = bareOf(id);
+        if (bare != id && program.nodes[bare].guard == program.nodes[id].guard) {
+            refined_[bare] = id;
+        }
         if (program.nodes[id].format == Format::Single) {
             expand(id);
         }
@@ -48,6 +52,8 @@ NodeId Identities::bareOf(NodeId id) const {
             case Op::WeightedUnit:
             case Op::UnitQuotient:
             case Op::Share:
+            case Op::TriangleSum:
+            case Op::MirroredSum:
                 id = node.a;
                 break;
             case Op::SquareOfRoot:
@@ -121,6 +127,10 @@ std::optional<Identities::Polynomial> Identities::expansionOf(const Node& node) 
             return Polynomial{{{}, {node.value, std::abs(node.value)}}};
         case Op::Add:
         case Op::Subtract:
+            if (node.op == Op::Subtract && program_.nodes[node.b].op == Op::Floor &&
+                program_.nodes[node.b].a == node.a) {
+                return std::nullopt;  // more is known of it than of its terms
+            }
             addTo(result, of(node.a), 1.0);
             addTo(result, of(node.b), node.op == Op::Add ? 1.0 : -1.0);
             return result;
@@ -218,12 +228,14 @@ void Identities::expand(NodeId id) {
         const Polynomial* const b = termsOf(node.b);
         const Polynomial itself{{{bareOf(node.a)}, {1.0, 1.0}}};
         const Polynomial other{{{bareOf(node.b)}, {1.0, 1.0}}};
-        expansion.isIdentity = cancels(expansion.terms, a != nullptr ? *a : itself, b != nullptr ? *b : other);
+        expansion.isIdentity =
+            cancels(expansion.terms, a != nullptr ? *a : itself, b != nullptr ? *b : other);
     }
     for (int turn = 0; turn < 4 && reduce(expansion); ++turn) {
         expansion.isIdentity = true;
     }
-    if (node.op == Op::Add || node.op == Op::Subtract || node.op == Op::Lerp || node.op == Op::Mix) {
+    if (node.op == Op::Add || node.op == Op::Subtract || node.op == Op::Lerp || node.op == Op::Mix ||
+        node.op == Op::Multiply) {
         expansion.variables = variablesOf(expansion.terms);
         expansion.isIdentity = expansion.isIdentity || !expansion.variables.empty();
     }
@@ -237,7 +249,8 @@ void Identities::forgetBox() {
     computed_.clear();
 }
 
-Interval Identities::valueOf(const Monomial& monomial, std::span<const Interval> values) const {
+Interval Identities::valueOf(const Monomial& monomial, NodeId before,
+                             std::span<const Interval> values) const {
     Interval result{1.0, 1.0};
     for (std::size_t k = 0; k < monomial.size();) {
         const NodeId factor = monomial[k];
@@ -245,7 +258,10 @@ Interval Identities::valueOf(const Monomial& monomial, std::span<const Interval>
         while (end < monomial.size() && monomial[end] == factor) {
             ++end;
         }
-        Interval value = values[factor & ~kReciprocal];
+        const NodeId bare = factor & ~kReciprocal;
+        const auto refined = refined_.find(bare);
+        Interval value =
+            values[refined != refined_.end() && refined->second < before ? refined->second : bare];
         if ((factor & kReciprocal) != 0) {
             value = value.low > 0.0 || value.high < 0.0 ? Interval{1.0 / value.high, 1.0 / value.low}
                                                         : Interval{};
@@ -312,17 +328,18 @@ double Identities::errorOf(NodeId id, std::span<const Interval> values) {
     for (const Cancelled& part : expansions_[id]->cancelled) {
         const Interval& divisor = values[part.divisor];
         const double least = std::min(std::abs(divisor.low), std::abs(divisor.high));
-        error += divisor.contains(0.0) ? kInfinity
-                                       : std::abs(part.factor) * valueOf(part.monomial, values).magnitude() *
-                                             errorOf(part.divisor, values) / least;
+        error += divisor.contains(0.0)
+                     ? kInfinity
+                     : std::abs(part.factor) * valueOf(part.monomial, id, values).magnitude() *
+                           errorOf(part.divisor, values) / least;
     }
     errors_[id] = std::isnan(error) ? kInfinity : error * (1.0 + 0x1p-30);
     computed_.push_back(id);
     return errors_[id];
 }
 
-// The variables of a polynomial that the Bernstein form is made of: few, none of them a reciprocal, and one that
-// is in several terms. Empty for others.
+// The variables of a polynomial that the Bernstein form is made of: few, none of them a reciprocal, and one
+// that is in several terms. Empty for others.
 std::vector<Identities::Variable> Identities::variablesOf(const Polynomial& terms) {
     std::map<NodeId, std::pair<std::size_t, std::size_t>> found;  // degree, terms
     for (const auto& [monomial, coefficient] : terms) {
@@ -342,7 +359,8 @@ std::vector<Identities::Variable> Identities::variablesOf(const Polynomial& term
         variables.push_back({node, use.first});
         coefficients *= use.first + 1;
         isRepeated = isRepeated || use.second > 1;
-        if ((node & kReciprocal) != 0 || variables.size() > kMostVariables || coefficients > kMostCoefficients) {
+        if ((node & kReciprocal) != 0 || variables.size() > kMostVariables ||
+            coefficients > kMostCoefficients) {
             return {};
         }
     }
@@ -350,36 +368,39 @@ std::vector<Identities::Variable> Identities::variablesOf(const Polynomial& term
 }
 
 // The hull of the Bernstein coefficients over the box of the variables.
-Interval Identities::bernstein(const Expansion& expansion, std::span<const Interval> values,
-                               double& slack) const {
+Interval Identities::bernstein(const Expansion& expansion, NodeId before,
+                               std::span<const Interval> values) const {
     std::array<long double, kMostCoefficients> tensor{};
+    std::array<Interval, kMostVariables> box;
     std::size_t count = 1;
-    for (const Variable& variable : expansion.variables) {
-        if (values[variable.node].isEmpty() || !values[variable.node].isFinite()) {
+    for (std::size_t k = 0; k < expansion.variables.size(); ++k) {
+        box[k] = valueOf({expansion.variables[k].node}, before, values);
+        if (box[k].isEmpty() || !box[k].isFinite()) {
             return {};
         }
-        count *= variable.degree + 1;
+        count *= expansion.variables[k].degree + 1;
     }
     long double size = 0.0L;
     for (const auto& [monomial, coefficient] : expansion.terms) {
         std::size_t place = 0;
         long double weight = coefficient.weight;
-        for (const Variable& variable : expansion.variables) {
+        for (std::size_t k = 0; k < expansion.variables.size(); ++k) {
+            const Variable& variable = expansion.variables[k];
             const auto [first, last] = std::equal_range(monomial.begin(), monomial.end(), variable.node);
             place = place * (variable.degree + 1) + static_cast<std::size_t>(last - first);
-            const Interval& value = values[variable.node];
+            const Interval& value = box[k];
             weight *= std::pow(std::abs(value.low) + value.width(), static_cast<double>(last - first));
         }
         tensor[place] = coefficient.value;
         size += weight;
     }
     std::size_t stride = count;
-    for (const Variable& variable : expansion.variables) {
-        const std::size_t degree = variable.degree;
+    for (std::size_t variable = 0; variable < expansion.variables.size(); ++variable) {
+        const std::size_t degree = expansion.variables[variable].degree;
         const std::size_t block = stride;
         stride /= degree + 1;
-        const long double low = values[variable.node].low;
-        const long double width = static_cast<long double>(values[variable.node].high) - low;
+        const long double low = box[variable].low;
+        const long double width = static_cast<long double>(box[variable].high) - low;
         for (std::size_t start = 0; start < count; start += block) {
             for (std::size_t within = 0; within < stride; ++within) {
                 const auto at = [&](std::size_t k) -> long double& {
@@ -407,7 +428,7 @@ Interval Identities::bernstein(const Expansion& expansion, std::span<const Inter
     }
     const auto [least, greatest] =
         std::minmax_element(tensor.begin(), tensor.begin() + static_cast<std::ptrdiff_t>(count));
-    slack = static_cast<double>(size) * 0x1p-48;
+    const double slack = static_cast<double>(size) * 0x1p-48;
     return {static_cast<double>(*least) - slack, static_cast<double>(*greatest) + slack};
 }
 
@@ -415,13 +436,12 @@ Interval Identities::bound(NodeId id, std::span<const Interval> values) {
     if (!expansions_[id] || !expansions_[id]->isIdentity) {
         return {};
     }
-    double slackOfForm = 0.0;
     const bool hasForm = !expansions_[id]->variables.empty();
-    const Interval form = hasForm ? bernstein(*expansions_[id], values, slackOfForm) : Interval{};
+    const Interval form = hasForm ? bernstein(*expansions_[id], id, values) : Interval{};
     Interval sum{0.0, 0.0};
     double slack = 0.0;
     for (const auto& [monomial, coefficient] : expansions_[id]->terms) {
-        const Interval value = valueOf(monomial, values);
+        const Interval value = valueOf(monomial, id, values);
         if (value.isEmpty() || !value.isFinite()) {
             return {};
         }

@@ -1,7 +1,8 @@
-// Sums whose terms cancel: x + (1 - x). A program's values are expanded as polynomials of those values that are
-// no sums or products; where terms cancel, the polynomial bounds the value better than its operands do. The
-// polynomials are about real numbers. Those of few variables are bounded by their Bernstein coefficients (Cargo
-// and Shisha 1966, "The Bernstein form of a polynomial"). What rounding adds is bounded operation by operation for each box.
+// Sums whose terms cancel: x + (1 - x). A program's values are expanded as polynomials of those values that
+// are no sums or products; where terms cancel, the polynomial bounds the value better than its operands do.
+// The polynomials are about real numbers. Those of few variables are bounded by their Bernstein coefficients
+// (Cargo and Shisha 1966, "The Bernstein form of a polynomial"). What rounding adds is bounded operation by
+// operation for each box.
 #pragma once
 
 #include "prove/interval.h"
@@ -56,15 +57,18 @@ private:
     static void addTo(Polynomial& sum, const Polynomial& terms, double factor);
     std::optional<Polynomial> product(const Polynomial& a, const Polynomial& b) const;
     static std::vector<Variable> variablesOf(const Polynomial& terms);
-    Interval bernstein(const Expansion& expansion, std::span<const Interval> values, double& slack) const;
+    Interval bernstein(const Expansion& expansion, NodeId before, std::span<const Interval> values) const;
     static bool cancels(const Polynomial& sum, const Polynomial& a, const Polynomial& b);
 
     double errorOf(NodeId id, std::span<const Interval> values);
-    Interval valueOf(const Monomial& monomial, std::span<const Interval> values) const;
+    // `before` is the node that is being bounded; later ones have no value yet.
+    Interval valueOf(const Monomial& monomial, NodeId before, std::span<const Interval> values) const;
 
     const Program& program_;
     std::vector<std::optional<Expansion>> expansions_;  // nothing for what stays one factor
-    std::vector<double> errors_;                        // of the box; negative: not computed yet
+    // The last node that has a node's value and knows more of it.
+    std::map<NodeId, NodeId> refined_;
+    std::vector<double> errors_;  // of the box; negative: not computed yet
     std::vector<NodeId> computed_;
 };
 

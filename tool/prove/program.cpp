@@ -101,6 +101,8 @@ const char* nameOf(Op op) {
                                              "partOfUnit",
                                              "weightedUnit",
                                              "share",
+                                             "mirroredSum",
+                                             "triangleSum",
                                              "unitQuotient",
                                              "sphereSum",
                                              "<",
@@ -261,10 +263,11 @@ NodeId ProgramBuilder::make(Node node) {
 
 NodeId ProgramBuilder::remake(const Node& node) {
     // The builder knows as much of the operation as the other one did, or more.
-    const NodeId known = node.op == Op::CircleSum                                ? node.c
+    const NodeId known = node.op == Op::CircleSum                                  ? node.c
                          : node.op == Op::SquareOfRoot || node.op == Op::SphereSum ? node.b
                          : node.op == Op::Bounded || node.op == Op::UnitSum || node.op == Op::PartOfUnit ||
-                                 node.op == Op::WeightedUnit || node.op == Op::UnitQuotient || node.op == Op::Share
+                                 node.op == Op::WeightedUnit || node.op == Op::UnitQuotient ||
+                                 node.op == Op::Share || node.op == Op::TriangleSum
                              ? node.a
                              : kNoNode;
     if (known != kNoNode && (isConstant(known) || this->node(known).op == node.op)) {
@@ -318,6 +321,9 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (const NodeId choice = intoChoice(node); choice != kNoNode) {
                 return choice;
             }
+            if (const NodeId part = unitQuotient(node); part != kNoNode) {
+                return part;
+            }
             return share(node);
         case Op::Add:
             if (isConstant(node.a, 0.0)) {
@@ -344,11 +350,18 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (const NodeId sum = sumOfNormalized(node); sum != kNoNode) {
                 return sum;
             }
-            if (const NodeId sum = squaredRadius(node); sum != kNoNode) {
-                return sum;
+            for (const auto pattern : {&ProgramBuilder::squaredRadius, &ProgramBuilder::sumOfScaled,
+                                       &ProgramBuilder::mirroredSum, &ProgramBuilder::triangleSum}) {
+                if (const NodeId sum = (this->*pattern)(node); sum != kNoNode) {
+                    return sum;
+                }
             }
             return dotProduct(node);
         case Op::Square:
+            if (const Node choice = this->node(node.a); choice.op == Op::Select) {
+                const NodeId yes = make(Op::Square, node.format, choice.b);
+                return make(Op::Select, node.format, choice.a, yes, make(Op::Square, node.format, choice.c));
+            }
             if (this->node(node.a).op == Op::Negate) {
                 return make(Op::Square, node.format, this->node(node.a).a);
             }
@@ -371,10 +384,13 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (const NodeId part = unitQuotient(node); part != kNoNode) {
                 return part;
             }
+            if (const NodeId less = quotientOfLess(node); less != kNoNode) {
+                return less;
+            }
             return share(node);
         case Op::Minimum:
         case Op::Maximum:
-            return node.a == node.b ? node.a : kNoNode;
+            return node.a == node.b ? node.a : limited(node);
         case Op::And:
             if (isConstant(node.a)) {
                 return isConstant(node.a, 0.0) ? node.a : node.b;
@@ -421,8 +437,8 @@ NodeId ProgramBuilder::simplified(const Node& node) {
 
 // Appends a node that simplified() has been asked about, unless it is there already.
 NodeId ProgramBuilder::appendOnce(const Node& node) {
-    const Key key{node.op, node.format, node.function, node.relation, node.isSigned, node.a, node.b,
-                  node.c,  node.value};
+    const Key key{node.op, node.format, node.function, node.relation, node.isSigned,
+                  node.a,  node.b,      node.c,        node.value};
     std::vector<NodeId>& found = known_[key];
     for (const NodeId id : found) {
         if (covers(this->node(id).guard)) {

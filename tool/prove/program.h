@@ -58,6 +58,8 @@ enum class Op : std::uint8_t {
     WeightedUnit,  // a, the sum of squares of such components times weights; between b and c, the least and
                    // the greatest weight squared
     Share,         // a, which is b / (b + c)
+    MirroredSum,   // a, the squared length of 2 (v·h) h - v; b is that of v, c that of h
+    TriangleSum,   // a, the sum of squares of (x + y), which is at most b: (|x| + |y|)²
     UnitQuotient,  // a = x / max(√c, `value`), a component of a normalised vector: c = x² + b
     SphereSum,     // b = (a s cos t)² + (a s sin t)² + (a z)², where s² = (1 - z)(1 + z): it is a²
     // Comparisons, which give truth values.
@@ -106,8 +108,8 @@ struct Node {
     NodeId c = kNoNode;
     // The operation takes place where this truth value is true. kNoNode: always.
     NodeId guard = kNoNode;
-    // Of Constant; of Input its number; of UnitQuotient, UnitSum and PartOfUnit the length below which vectors
-    // are divided by this instead.
+    // Of Constant; of Input its number; of UnitQuotient, UnitSum and PartOfUnit the length below which
+    // vectors are divided by this instead.
     double value = 0.0;
     std::uint32_t first = 0;  // of Merge: its edges
     std::uint32_t count = 0;
@@ -215,8 +217,16 @@ private:
     NodeId shareOf(NodeId value, std::vector<Factors> own, NodeId divisor);
     NodeId share(const Node& node);
     NodeId sumOfShares(const Node& node);
+    NodeId limited(const Node& node);
+    NodeId sumOfScaled(const Node& node);
+    NodeId mirroredSum(const Node& node);
+    NodeId quotientOfLess(const Node& node);
+    NodeId triangleSum(const Node& node);
     NodeId intoChoice(const Node& node);
     NodeId weightedSum(const Node& sum, NodeId one, std::vector<NodeId> weights);
+    NodeId bareOf(NodeId id) const;  // without refinements
+    void operandsOf(Op op, NodeId id, std::vector<NodeId>& operands) const;
+    NodeId unitPart(const Node& node, NodeId part, NodeId length2, double leastLength);
     NodeId unitQuotient(const Node& node);
     NodeId squaredRadius(const Node& node);
     // Whether `product` is `part` times a factor.

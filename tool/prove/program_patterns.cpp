@@ -18,7 +18,8 @@ NodeId ProgramBuilder::plainOf(NodeId id) const {
         if (known.op == Op::SphereSum) {
             id = known.b;
         } else if (known.op == Op::Bounded || known.op == Op::UnitSum || known.op == Op::PartOfUnit ||
-                   known.op == Op::WeightedUnit || known.op == Op::UnitQuotient || known.op == Op::Share) {
+                   known.op == Op::WeightedUnit || known.op == Op::UnitQuotient || known.op == Op::Share ||
+                   known.op == Op::TriangleSum || known.op == Op::MirroredSum) {
             id = known.a;
         } else if (known.op == Op::CircleSum) {
             id = known.c;
@@ -272,23 +273,70 @@ bool ProgramBuilder::squaresIn(NodeId sum, std::vector<NodeId>& squares) const {
     return at.op == Op::Square;
 }
 
-// x / √(x² + …), or x / max(√(x² + …), constant).
+// x / √(x² + …), x / max(√(x² + …), constant), or x times the inverse square root; and x / max(|x|, …).
 NodeId ProgramBuilder::unitQuotient(const Node& given) {
-    Node root = node(given.b);
+    if (given.format != Format::Single) {
+        return kNoNode;
+    }
+    if (given.op == Op::Multiply) {
+        for (const auto& [part, inverse] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
+            const Node root = node(inverse);
+            if (root.op == Op::Apply && root.function == Function::InverseSqrt) {
+                return unitPart(given, part, root.a, 0.0);
+            }
+        }
+        return kNoNode;
+    }
+    const NodeId divisor = bareOf(given.b);
+    Node root = node(divisor);
     double leastLength = 0.0;
-    if (root.op == Op::Maximum && (isConstant(root.a) || isConstant(root.b))) {
-        const NodeId constant = isConstant(root.a) ? root.a : root.b;
-        leastLength = node(constant).value;
-        root = node(constant == root.a ? root.b : root.a);
+    if (root.op == Op::Maximum) {
+        std::vector<NodeId> largest;
+        operandsOf(Op::Maximum, divisor, largest);
+        const bool isScaled = std::any_of(largest.begin(), largest.end(), [&](NodeId id) {
+            return node(id).op == Op::Absolute && node(id).a == given.a;
+        });
+        if (isScaled) {
+            return refine(refine(appendOnce(given), Relation::LessEqual, constant(1.0, given.format)),
+                          Relation::GreaterEqual, constant(-1.0, given.format));
+        }
+        if (!isConstant(root.a) && !isConstant(root.b)) {
+            return kNoNode;
+        }
+        const NodeId least = isConstant(root.a) ? root.a : root.b;
+        leastLength = node(least).value;
+        root = node(least == root.a ? root.b : root.a);
     }
-    if (root.op != Op::Apply || root.function != Function::Sqrt || given.format != Format::Single) {
+    if (root.op != Op::Apply || root.function != Function::Sqrt) {
         return kNoNode;
     }
+    return unitPart(given, given.a, root.a, leastLength);
+}
+
+NodeId ProgramBuilder::bareOf(NodeId id) const {
+    while (node(id).op == Op::Refine) {
+        id = node(id).a;
+    }
+    return id;
+}
+
+void ProgramBuilder::operandsOf(Op op, NodeId id, std::vector<NodeId>& operands) const {
+    const Node& at = node(id);
+    if (at.op == op) {
+        operandsOf(op, at.a, operands);
+        operandsOf(op, at.b, operands);
+    } else {
+        operands.push_back(id);
+    }
+}
+
+// `given` divides `part` by the root of `length2`, if that has its square.
+NodeId ProgramBuilder::unitPart(const Node& given, NodeId part, NodeId length2, double leastLength) {
     std::vector<NodeId> squares;
-    if (!squaresIn(root.a, squares) || squares.size() < 2) {
+    if (!squaresIn(length2, squares) || squares.size() < 2) {
         return kNoNode;
     }
-    const auto own = std::find(squares.begin(), squares.end(), given.a);
+    const auto own = std::find(squares.begin(), squares.end(), part);
     if (own == squares.end()) {
         return kNoNode;
     }
@@ -297,7 +345,7 @@ NodeId ProgramBuilder::unitQuotient(const Node& given) {
     known.op = Op::UnitQuotient;
     known.format = given.format;
     known.a = appendOnce(given);
-    known.c = root.a;
+    known.c = length2;
     known.value = leastLength;
     const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
     for (const NodeId other : squares) {
@@ -308,13 +356,189 @@ NodeId ProgramBuilder::unitQuotient(const Node& given) {
     return make(known);
 }
 
+// The sum of the squares of x / max(|x|, |y|, …), …: one of them is 1.
+NodeId ProgramBuilder::sumOfScaled(const Node& given) {
+    std::vector<NodeId> parts;
+    if (!squaresIn(given.a, parts) || !squaresIn(given.b, parts)) {
+        return kNoNode;
+    }
+    std::vector<NodeId> scaled;
+    NodeId divisor = kNoNode;
+    for (NodeId part : parts) {
+        while (node(part).op == Op::Refine) {
+            part = node(part).a;
+        }
+        const Node& quotient = node(part);
+        if (quotient.op != Op::Divide || (divisor != kNoNode && quotient.b != divisor)) {
+            return kNoNode;
+        }
+        divisor = quotient.b;
+        scaled.push_back(quotient.a);
+    }
+    std::vector<NodeId> largest;
+    operandsOf(Op::Maximum, divisor, largest);
+    const bool isWhole = std::all_of(largest.begin(), largest.end(), [&](NodeId id) {
+        return node(id).op == Op::Absolute &&
+               std::find(scaled.begin(), scaled.end(), node(id).a) != scaled.end();
+    });
+    // Squares are not negative, so that rounded sums with the 1 are no less.
+    return isWhole ? refine(appendOnce(given), Relation::GreaterEqual, constant(1.0, given.format)) : kNoNode;
+}
+
+// The squared length of a vector v that was mirrored about h.
+NodeId ProgramBuilder::mirroredSum(const Node& given) {
+    std::vector<NodeId> parts;
+    if (given.format != Format::Single || !squaresIn(given.a, parts) || !squaresIn(given.b, parts) ||
+        parts.size() != 3) {
+        return kNoNode;
+    }
+    std::vector<NodeId> v;
+    std::vector<std::pair<NodeId, NodeId>> products;
+    for (const NodeId part : parts) {
+        const Node& difference = node(part);
+        if (difference.op != Op::Subtract || node(difference.a).op != Op::Multiply) {
+            return kNoNode;
+        }
+        products.emplace_back(node(difference.a).a, node(difference.a).b);
+        v.push_back(difference.b);
+    }
+    // The factor that all three have is 2 (v·h).
+    for (const NodeId twice : {products[0].first, products[0].second}) {
+        std::vector<NodeId> h;
+        for (const auto& [first, second] : products) {
+            if (first == twice || second == twice) {
+                h.push_back(first == twice ? second : first);
+            }
+        }
+        const Node& doubled = node(twice);
+        if (h.size() != 3 || doubled.op != Op::Multiply ||
+            (!isConstant(doubled.a, 2.0) && !isConstant(doubled.b, 2.0))) {
+            continue;
+        }
+        std::vector<std::pair<NodeId, NodeId>> wanted;
+        for (std::size_t k = 0; k < 3; ++k) {
+            wanted.emplace_back(std::minmax(h[k], v[k]));
+        }
+        std::vector<std::pair<NodeId, NodeId>> found;
+        std::vector<NodeId> terms;
+        operandsOf(Op::Add, plainOf(isConstant(doubled.a, 2.0) ? doubled.b : doubled.a), terms);
+        for (const NodeId term : terms) {
+            if (node(term).op == Op::Multiply) {
+                found.emplace_back(std::minmax(node(term).a, node(term).b));
+            }
+        }
+        std::sort(wanted.begin(), wanted.end());
+        std::sort(found.begin(), found.end());
+        if (found != wanted) {
+            continue;
+        }
+        const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
+        const auto length2 = [&](const std::vector<NodeId>& of) {
+            NodeId sum = kNoNode;
+            for (const NodeId component : of) {
+                const NodeId square = make(Op::Square, given.format, component);
+                sum = sum == kNoNode ? square : make(Op::Add, given.format, sum, square);
+            }
+            return sum;
+        };
+        const NodeId ofV = length2(v);
+        const NodeId ofH = length2(h);
+        makesAuxiliary_ = wasAuxiliary;
+        return make(Op::MirroredSum, given.format, appendOnce(given), ofV, ofH);
+    }
+    return kNoNode;
+}
+
+// x / y where a branch has found x < y.
+NodeId ProgramBuilder::quotientOfLess(const Node& given) {
+    std::vector<NodeId> known;
+    if (guard_ != kNoNode) {
+        operandsOf(Op::And, guard_, known);
+    }
+    const bool isLess = std::any_of(known.begin(), known.end(), [&](NodeId id) {
+        const Node& condition = node(id);
+        return condition.op == Op::Less && bareOf(condition.a) == bareOf(given.a) &&
+               bareOf(condition.b) == bareOf(given.b);
+    });
+    if (!isLess) {
+        return kNoNode;
+    }
+    const NodeId quotient = appendOnce(given);
+    const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
+    const NodeId rest = refine(make(Op::Subtract, given.format, given.b, given.a), Relation::GreaterEqual,
+                               constant(0.0, given.format));
+    makesAuxiliary_ = wasAuxiliary;
+    return make(Op::Share, given.format, quotient, given.a, rest);
+}
+
+// Minkowski's inequality. Any pairs of terms give a true bound.
+NodeId ProgramBuilder::triangleSum(const Node& given) {
+    std::vector<NodeId> parts;
+    if (given.format != Format::Single || !squaresIn(given.a, parts) || !squaresIn(given.b, parts) ||
+        parts.size() != 3) {
+        return kNoNode;
+    }
+    const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
+    NodeId length2[2] = {kNoNode, kNoNode};
+    bool areSums = true;
+    for (const NodeId part : parts) {
+        const Node sum = node(plainOf(part));
+        areSums = areSums && (sum.op == Op::Add || sum.op == Op::Subtract);
+        for (const bool second : {false, true}) {
+            if (areSums) {
+                const NodeId square = make(Op::Square, given.format, second ? sum.b : sum.a);
+                NodeId& total = length2[second ? 1 : 0];
+                total = total == kNoNode ? square : make(Op::Add, given.format, total, square);
+            }
+        }
+    }
+    NodeId bound = kNoNode;
+    if (areSums) {
+        const NodeId both = make(Op::Add, given.format, apply(Function::Sqrt, given.format, length2[0]),
+                                 apply(Function::Sqrt, given.format, length2[1]));
+        bound = make(Op::Square, given.format, both);
+    }
+    makesAuxiliary_ = wasAuxiliary;
+    return areSums ? make(Op::TriangleSum, given.format, appendOnce(given), bound) : kNoNode;
+}
+
+// max(1 - x, 0) is 1 - min(x, 1), and min(1 - x, 1) is 1 - max(x, 0), to the bit; and min comes after max.
+NodeId ProgramBuilder::limited(const Node& given) {
+    if (given.format != Format::Single) {
+        return kNoNode;
+    }
+    const bool isMaximum = given.op == Op::Maximum;
+    const Op other = isMaximum ? Op::Minimum : Op::Maximum;
+    for (const auto& [value, limit] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
+        if (!isConstant(limit)) {
+            continue;
+        }
+        const Node within = node(value);
+        const NodeId one = constant(1.0, given.format);
+        if (within.op == Op::Subtract && within.a == one && isConstant(limit, isMaximum ? 0.0 : 1.0)) {
+            const NodeId opposite =
+                make(other, given.format, within.b, constant(isMaximum ? 1.0 : 0.0, given.format));
+            return make(Op::Subtract, given.format, one, opposite);
+        }
+        if (isMaximum && within.op == Op::Minimum && isConstant(within.b) &&
+            node(limit).value <= node(within.b).value) {
+            return make(Op::Minimum, given.format, make(Op::Maximum, given.format, within.a, limit),
+                        within.b);
+        }
+    }
+    return kNoNode;
+}
+
 ProgramBuilder::UnitComponent ProgramBuilder::unitComponentOf(NodeId id) {
     const Node at = node(id);
     switch (at.op) {
         case Op::Normalized:
             return {at.a, at.c, kNoNode, 0.0};
-        case Op::UnitQuotient:
-            return {node(at.a).a, at.c, kNoNode, at.value};
+        case Op::UnitQuotient: {
+            const Node& quotient = node(at.a);
+            const bool isFirst = quotient.op == Op::Divide || node(quotient.b).op == Op::Apply;
+            return {isFirst ? quotient.a : quotient.b, at.c, kNoNode, at.value};
+        }
         case Op::Negate:
         case Op::Refine:
             return unitComponentOf(at.a);

@@ -163,7 +163,8 @@ NodeId ProgramBuilder::share(const Node& given) {
 NodeId ProgramBuilder::sumOfShares(const Node& given) {
     const auto first = shares_.find(given.a);
     const auto second = shares_.find(given.b);
-    if (first == shares_.end() || second == shares_.end() || first->second.divisor != second->second.divisor) {
+    if (first == shares_.end() || second == shares_.end() ||
+        first->second.divisor != second->second.divisor) {
         return kNoNode;
     }
     std::vector<Factors> own = first->second.terms;
@@ -171,15 +172,27 @@ NodeId ProgramBuilder::sumOfShares(const Node& given) {
     return shareOf(appendOnce(given), std::move(own), first->second.divisor);
 }
 
-// Moves an operation into the two sides of a choice of which one is a constant: c ? 0 : x, times y; or the sum
-// of two choices by the same condition.
+// Moves an operation into the two sides of a choice of which one is a constant: c ? 0 : x, times y; or the
+// sum of two choices by the same condition.
 NodeId ProgramBuilder::intoChoice(const Node& given) {
     for (const auto& [choice, other] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
         const Node chosen = node(choice);
+        const Node with = node(other);
+        if (chosen.op == Op::Select && with.op == Op::Select && with.a == chosen.a && given.op == Op::Add) {
+            // Conditions are known where both sides are.
+            const NodeId outside = guard_;
+            const NodeId ifYes = both(outside, chosen.a);
+            const NodeId ifNo = both(outside, opposite(chosen.a));
+            guard_ = ifYes;
+            const NodeId yes = make(Op::Add, given.format, chosen.b, with.b);
+            guard_ = ifNo;
+            const NodeId no = make(Op::Add, given.format, chosen.c, with.c);
+            guard_ = outside;
+            return make(Op::Select, given.format, chosen.a, yes, no);
+        }
         if (chosen.op != Op::Select || !isConstant(chosen.b)) {
             continue;
         }
-        const Node with = node(other);
         const bool isSame = with.op == Op::Select && with.a == chosen.a && isConstant(with.b);
         const bool isZero = given.op == Op::Multiply && isConstant(chosen.b, 0.0);
         if (!isSame && !isConstant(other) && !isZero) {

@@ -280,8 +280,8 @@ std::vector<bool> Search::inputsOf(NodeId target) const {
 std::optional<std::size_t> Search::sideToCut(const Box& box) {
     const NodeId target = blamed_;
     const double width = target == kNoNode ? kInfinity : boxes_.value(target).width();
-    const std::vector<bool> matters = target == kNoNode ? std::vector<bool>(box.sides.size(), true)
-                                                        : inputsOf(target);
+    const std::vector<bool> matters =
+        target == kNoNode ? std::vector<bool>(box.sides.size(), true) : inputsOf(target);
     std::optional<std::size_t> best;
     double bestScore = -kInfinity;
     for (std::size_t k = 0; k < box.sides.size(); ++k) {
