@@ -265,7 +265,7 @@ NodeId ProgramBuilder::dotProduct(const Node& node) {
 
 // The squared numbers of a sum of squares, whatever else is known of the sum. Returns whether it is one.
 bool ProgramBuilder::squaresIn(NodeId sum, std::vector<NodeId>& squares) const {
-    const Node& at = node(plainOf(sum));
+    const Node& at = node(plainOf(bareOf(sum)));
     if (at.op == Op::Add) {
         return squaresIn(at.a, squares) && squaresIn(at.b, squares);
     }
