@@ -138,6 +138,10 @@ bool isProvedQuickly(const Proof& proof) {
         "SheenHorizon",        "SheenAlbedo",
         "CosineOfCycles",      "FilmSensitivity",
         "DispersedIor",        "VolumeTransmittance",
+        "FresnelSchlick",      "ClearcoatFresnel",
+        "SheenShares",         "PassedAgain",
+        "SpecularShares",      "SampleLight",
+        "EvaluateBase",        "ChancesTranslucent",
     };
     return std::find(std::begin(kNames), std::end(kNames), proof.name) != std::end(kNames);
 }
