@@ -107,7 +107,7 @@ std::vector<Proof> hitProofs() {
          "valueNoise",
          "in [0, 1], but for rounding",
          {{rangeInput("x", -1e6, 1e6), rangeInput("y", -1e6, 1e6), rangeInput("z", -1e6, 1e6)},
-          {{"noise", -1e-6, kOne}}}},
+          {{"noise", -1e-4, 1.0 + 1e-4}}}},
         {"LeavesAt",
          "leavesAt",
          "not negative, at most `far`",
