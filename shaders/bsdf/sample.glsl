@@ -33,9 +33,10 @@ LobeChances lobeChances(Bsdf b, Features features) {
     }
     float base = layerChances(b.layers, features, b.view, chances.layers);
     float total = base * (chances.microfacets + chances.diffuse + chances.passed) + sumOfChances(chances.layers);
-    // A black surface samples its microfacets; the weight of these samples is 0.
-    float scale = total > 0.0 ? 1.0 / total : 0.0;
-    chances.microfacets = total > 0.0 ? chances.microfacets * base * scale : 1.0;
+    // A surface that is black, or so dark that the quotient would overflow, samples its microfacets.
+    bool isBlack = total < 1e-30;
+    float scale = isBlack ? 0.0 : 1.0 / total;
+    chances.microfacets = !isBlack ? chances.microfacets * base * scale : 1.0;
     chances.diffuse *= base * scale;
     chances.passed *= base * scale;
     scaleChances(chances.layers, scale);

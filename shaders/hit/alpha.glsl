@@ -12,6 +12,14 @@ uint rayKey(vec3 origin, vec3 direction) {
 }
 #endif
 
+void countAlphaTest() {
+#ifdef GLINT_FRAME
+    if (GLINT_FRAME.countsLight != 0u) {
+        atomicAdd(GLINT_FRAME.counters.data[kCounterAlphaTests], 1u);
+    }
+#endif
+}
+
 // Returns the alpha at a point of a triangle, and the cutoff. It reads mip 0, because traversal knows no footprint. The
 // module's own cases do not matter here: a ray of any case meets masks of all cases.
 vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
@@ -40,11 +48,7 @@ bool passesAlphaTest(vec3 origin, vec3 direction, uint geometryIndex, uint primi
         return true;  // Glass without alpha is a candidate for the sake of shadow rays.
     }
 #endif
-#ifdef GLINT_FRAME
-    if (GLINT_FRAME.countsLight != 0u) {
-        atomicAdd(GLINT_FRAME.counters.data[kCounterAlphaTests], 1u);
-    }
-#endif
+    countAlphaTest();
     vec2 alpha = alphaAndCutoff(geometry, primitive, barycentrics);
 #if GLINT_BLENDED
     if ((geometry.flags & kGeometryBlended) != 0u) {

@@ -47,6 +47,7 @@ vec4 pointColor(HostGeometry geometry, SurfacePoint point, PassageCandidate cand
 float coverageOf(HostGeometry geometry, SurfacePoint point, Features features, float alpha) {
 #if GLINT_ALPHA_TESTED
     if ((geometry.flags & kGeometryAlphaTested) != 0u) {
+        countAlphaTest();
         runMaskOpacity(point, features, alpha);
 #if GLINT_BLENDED
         if ((geometry.flags & kGeometryBlended) != 0u) {

@@ -22,7 +22,7 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     precise float squared = dot(toLight, toLight);
     precise float distance = sqrt(squared);
     // A light at the point itself lights neither side.
-    precise vec3 direction = squared > 0.0 ? toLight / distance : vec3(0.0);
+    precise vec3 direction = distance > 0.0 ? toLight / distance : vec3(0.0);
     // The inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
     float attenuation = 1.0 / max(squared, kMinSquaredDistance);
     if (light.range > 0.0) {

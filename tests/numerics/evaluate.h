@@ -16,8 +16,12 @@ struct ProbeFunction {
     void (*call)(const Real* inputs, Real* outputs) = nullptr;
 };
 
-// Return every probe, in the order of the text.
-std::span<const ProbeFunction<float>> floatProbes();
-std::span<const ProbeFunction<double>> doubleProbes();
+// Returns every probe, in the order of the text. For float and double; evaluate.cpp is compiled for each.
+template <typename Real>
+std::span<const ProbeFunction<Real>> probeFunctions();
+template <>
+std::span<const ProbeFunction<float>> probeFunctions<float>();
+template <>
+std::span<const ProbeFunction<double>> probeFunctions<double>();
 
 }  // namespace glint::numerics

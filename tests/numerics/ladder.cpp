@@ -139,7 +139,7 @@ Status Climber::addRow(const Probe& probe) {
             return status;
         }
     }
-    const std::span<const ProbeFunction<double>> functions = doubleProbes();
+    const std::span<const ProbeFunction<double>> functions = probeFunctions<double>();
     const auto found = std::ranges::find(functions, probe.name, &ProbeFunction<double>::name);
     Rung twice;
     twice.kind = RungKind::Double;

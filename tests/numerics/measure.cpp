@@ -32,7 +32,7 @@ struct Calls {
 };
 
 Result<Calls> findCalls(std::string_view name) {
-    const Calls calls{findCall(floatProbes(), name), findCall(doubleProbes(), name)};
+    const Calls calls{findCall(probeFunctions<float>(), name), findCall(probeFunctions<double>(), name)};
     if (calls.single == nullptr) {
         return makeError("probe-name", std::string(name),
                          "no probe of that name in probes_*.glsl or textbook.glsl",

@@ -56,7 +56,7 @@ TEST(Probes, EveryOneOfTheTextIsMeasured) {
         EXPECT_LE(probe.inputs, kMaxInputs) << probe.name;
         EXPECT_LE(probe.allOutputs(), kMaxOutputs) << probe.name;
     }
-    for (const ProbeFunction<double>& probe : doubleProbes()) {
+    for (const ProbeFunction<double>& probe : probeFunctions<double>()) {
         EXPECT_TRUE(measured.contains(probe.name)) << probe.name;
     }
 }

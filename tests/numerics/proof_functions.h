@@ -5,7 +5,12 @@
 
 namespace glint::numerics {
 
-std::span<const ProbeFunction<float>> floatProofs();
-std::span<const ProbeFunction<double>> doubleProofs();
+// For float and double; proof_functions.cpp is compiled for each.
+template <typename Real>
+std::span<const ProbeFunction<Real>> proofFunctions();
+template <>
+std::span<const ProbeFunction<float>> proofFunctions<float>();
+template <>
+std::span<const ProbeFunction<double>> proofFunctions<double>();
 
 }  // namespace glint::numerics

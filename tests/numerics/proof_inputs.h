@@ -13,6 +13,9 @@ inline constexpr double kAny = prove::kLargestSingle;
 // What rounding adds to a share of 1.
 inline constexpr double kOne = 1.0 + 1e-5;
 
+// For claims about few numbers that so many boxes decide in a second.
+inline constexpr std::uint64_t kManyBoxes = 20'000;
+
 std::vector<Proof> bsdfProofs();
 std::vector<Proof> hitProofs();
 

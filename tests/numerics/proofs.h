@@ -18,7 +18,7 @@ struct Proof {
     std::string_view function;  // for people
     std::string_view bound;     // what is claimed, for people
     prove::Claim claim;
-    std::uint64_t boxes = 2'000;  // in continuous integration; the nightly run takes more
+    std::uint64_t boxes = 2'000;  // at least; the nightly run takes more
 };
 
 // A function about which nothing is claimed, and why.

@@ -1,6 +1,8 @@
 // Domains and ranges of the claims in proofs_bsdf.glsl. Domains are those that the shaders' comments state.
 #include "proof_inputs.h"
 
+#include <deque>
+
 namespace glint::numerics {
 namespace {
 
@@ -8,6 +10,11 @@ using prove::OutputRange;
 
 std::vector<OutputRange> components(const std::string& name, double size) {
     return {{name + ".x", -size, size}, {name + ".y", -size, size}, {name + ".z", -size, size}};
+}
+
+// None is negative, so that none is above the sum.
+std::vector<OutputRange> sharesOfOne(double least = 0.0) {
+    return {{"reflected", least, kAny}, {"passed", least, kAny}, {"sum", 1.0 - 1e-5, 1.0 + 1e-5}};
 }
 
 prove::InputRange etaInput() {
@@ -42,7 +49,8 @@ std::vector<Proof> exactProofs() {
         {"RefractedCosine2",
          "refractedCosine2",
          "at most 1; finite beyond the critical angle",
-         {{cosineInput("cosine"), etaInput()}, {{"squared", -16.0, kOne}}}},
+         {{cosineInput("cosine"), etaInput()}, {{"squared", -16.0, kOne}}},
+         kManyBoxes},
         {"AccurateCrossOfSum",
          "accurateCrossOfSum",
          "finite, at most the length of the sum",
@@ -56,7 +64,8 @@ std::vector<Proof> fresnelProofs() {
         {"DielectricF0",
          "dielectricF0",
          "in [0, 1]",
-         {{{"ior", 0.0, 1e6, prove::Scale::Logarithmic}}, {{"f0", 0.0, kOne}}}},
+         {{{"ior", 0.0, 1e6, prove::Scale::Logarithmic}}, {{"f0", 0.0, kOne}}},
+         kManyBoxes},
         {"SchlickWeight",
          "schlickWeight",
          "in [0, 1]",
@@ -67,14 +76,14 @@ std::vector<Proof> fresnelProofs() {
          {{rangeInput("cosine", 0.0, 1.0000002F)}, {{"rest", 0.0, kOne}, {"sum", 1.0 - 1e-4, 1.0 + 1e-4}}}},
         {"FresnelSchlick",
          "fresnelSchlick, schlickPassed",
-         "shares; together at most 1",
+         "shares, together 1",
          {{shareInput("f0"), shareInput("f90 between f0 and 1"), rangeInput("cosine", 0.0, 1.0)},
-          {{"reflected", 0.0, kOne}, {"passed", 0.0, kOne}, {"sum", 1.0 - 1e-4, 1.0 + 1e-4}}}},
+          sharesOfOne()}},
         {"FresnelInterface",
          "fresnelInterface, interfacePassed",
-         "shares",
+         "shares, together 1",
          {{shareInput("f0"), shareInput("f90 between f0 and 1"), cosineInput("cosine"), etaInput()},
-          {{"reflected", 0.0, kOne}, {"passed", 0.0, kOne}}}},
+          sharesOfOne()}},
         {"SchlickF0",
          "schlickF0",
          "in [0, 1]",
@@ -210,14 +219,12 @@ std::vector<Proof> layerProofs() {
          {{cosineInput("nDotV"), sheenAlphaInput("alpha")}, {{"albedo", 0.0, 1000.0}}}},
         {"SheenShares",
          "sheenShares",
-         "shares; what is reflected and what passes are 1 together",
-         {{shareInput("color"), sheenAlphaInput("alpha"), cosineInput("nDotV")},
-          {{"reflected", 0.0, 1.0}, {"passed", 0.0, 1.0}, {"sum", 0.0, kOne}}}},
+         "shares, together 1",
+         {{shareInput("color"), sheenAlphaInput("alpha"), cosineInput("nDotV")}, sharesOfOne()}},
         {"ClearcoatFresnel",
          "clearcoatFresnel, clearcoatPassed",
          "shares, together 1",
-         {{shareInput("factor"), rangeInput("nDotV", 0.0, 1.0)},
-          {{"reflected", 0.0, kOne}, {"passed", 0.0, kOne}, {"sum", 1.0 - 1e-4, 1.0 + 1e-4}}}},
+         {{shareInput("factor"), rangeInput("nDotV", 0.0, 1.0)}, sharesOfOne()}},
         {"ClearcoatProjection",
          "clearcoatProjection",
          "positive, at most 1",
@@ -268,37 +275,70 @@ std::vector<Proof> layerProofs() {
     };
 }
 
-// The four claims about a surface with some lobes, of proofs_bsdf.glsl's CLAIMS_OF_SURFACE.
-struct SurfaceNames {
-    std::string_view lobes;
-    std::string_view prepare;
-    std::string_view evaluate;
-    std::string_view density;
-    std::string_view chances;
-    std::string_view titles[4];
+// A view that prepareBsdf() takes as it is: no rounding makes its cosine less than kMinViewCosine.
+std::vector<prove::InputRange> viewInput() {
+    std::vector<prove::InputRange> view = unitInput("view", Hemisphere::Upper);
+    view[0].low = 1.00001e-7F;
+    return view;
+}
+
+// A surface with some lobes, about which CLAIMS_OF_SURFACE of proofs_bsdf.glsl makes claims.
+struct ClaimedSurface {
+    std::string name;
+    std::string lobes;   // for people
+    bool samplesFacets;  // in a way that other surfaces don't
+    std::vector<prove::InputRange> own;
 };
 
-std::vector<Proof> surfaceProofs(const SurfaceNames& names) {
-    const std::vector<prove::InputRange> surface = inputs(
-        {{shareInput("f0"), alphaInput("alpha"), shareInput("color")}, unitInput("view", Hemisphere::Upper)});
-    const std::vector<prove::InputRange> lit = inputs({surface, unitInput("l", Hemisphere::Upper)});
-    return {
-        {names.prepare,
-         names.titles[0],
+std::vector<Proof> surfaceProofs(const ClaimedSurface& of) {
+    const std::vector<prove::InputRange> surface =
+        inputs({{shareInput("f0"), alphaInput("alpha"), shareInput("color")}, viewInput()});
+    const std::vector<prove::InputRange> lit = inputs({surface, unitInput("l", Hemisphere::Upper), of.own});
+    const std::vector<prove::InputRange> drawn =
+        inputs({surface, {randomInput("u.x"), randomInput("u.y"), randomInput("u.z")}, of.own});
+    // Claims that read no direction leave its place out.
+    const std::vector<prove::InputRange> alone =
+        of.own.empty()
+            ? surface
+            : inputs({surface,
+                      {rangeInput("azimuth (unused)", 0.0, 0.0), rangeInput("azimuth (unused)", 0.0, 0.0),
+                       rangeInput("azimuth (unused)", 0.0, 0.0)},
+                      of.own});
+    // Proofs keep views of these.
+    static std::deque<std::string> texts;
+    const auto text = [&](const std::string& front, const std::string& back) -> std::string_view {
+        return texts.emplace_back(front + back);
+    };
+    const std::string title = of.lobes.empty() ? std::string() : " (" + of.lobes + ")";
+    std::vector<Proof> all{
+        {text("Prepare", of.name),
+         text("prepareBsdf", title),
          "shares",
-         {surface,
-          {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"mean loss", 0.0, 1.0}, {"mean bias", 0.0, 1.0}}}},
-        {names.evaluate, names.titles[1], "finite, not negative", {lit, {{"light", -1e-3, kAny}}}},
-        {names.density, names.titles[2], "finite, not negative", {lit, {{"density", -1e-3, kAny}}}},
-        {names.chances,
-         names.titles[3],
+         {alone, {{"loss", 0.0, 1.0}, {"bias", 0.0, 1.0}, {"mean loss", 0.0, 1.0}, {"mean bias", 0.0, 1.0}}}},
+        {text("Evaluate", of.name),
+         text("evaluateBsdf", title),
+         "finite, not negative",
+         {lit, {{"light", -1e-3, kAny}}}},
+        {text("Density", of.name),
+         text("bsdfPdf", title),
+         "finite, not negative",
+         {lit, {{"density", -1e-3, kAny}}}},
+        {text("Chances", of.name),
+         text("lobeChances", title),
          "chances, together 1",
-         {surface,
+         {alone,
           {{"microfacets", 0.0, kOne},
            {"diffuse", -1e-5, kOne},
            {"passed", -1e-5, kOne},
            {"sum", 0.999, 1.001}}}},
     };
+    if (of.samplesFacets) {
+        all.push_back({text("Sample", of.name),
+                       text("sampleMicrofacet", title),
+                       "a vector of length 1 or 0: no longer than 1",
+                       {drawn, {{"squared length", 0.0, 1.0 + 1e-4}}}});
+    }
+    return all;
 }
 
 std::vector<Proof> energyProofs() {
@@ -315,53 +355,35 @@ std::vector<Proof> energyProofs() {
         {"MultiScatterOf",
          "multiScatterOf, meanFresnel",
          "a share",
-         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, kOne}}}},
+         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, kOne}}},
+         kManyBoxes},
         {"PassedAgain",
          "passedAgain",
          "a share; 1 with multiScatterOf()",
-         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, 1.001}, {"sum", 0.99, 1.01}}}},
+         {inputs({reflectances, {meanLoss}}), {{"share", 0.0, kAny}, {"sum", 1.0 - 1e-5, 1.0 + 1e-5}}}},
+        {"FacetChances",
+         "facetChances",
+         "chances, together at most 1",
+         {inputs({reflectances, {shareInput("transmitted"), cosineInput("cosine"), etaInput()}}),
+          {{"reflects", 0.0, kOne}, {"passes", 0.0, kOne}, {"sum", 0.0, kOne}}},
+         kManyBoxes},
         {"SpecularShares",
          "specularAlbedo, specularPassed",
          "shares, together 1",
          {inputs({reflectances, {shareInput("loss"), shareInput("bias over E"), meanLoss}}),
-          {{"reflected", 0.0, 1.001}, {"passed", 0.0, 1.001}, {"sum", 0.99, 1.01}}}},
+          sharesOfOne(-1e-6)}},
     };
-    static constexpr SurfaceNames kSurfaces[] = {
-        {"base",
-         "PrepareBase",
-         "EvaluateBase",
-         "DensityBase",
-         "ChancesBase",
-         {"prepareBsdf", "evaluateBsdf", "bsdfPdf", "lobeChances"}},
-        {"clearcoat",
-         "PrepareCoated",
-         "EvaluateCoated",
-         "DensityCoated",
-         "ChancesCoated",
-         {"prepareBsdf (clearcoat)", "evaluateBsdf (clearcoat)", "bsdfPdf (clearcoat)",
-          "lobeChances (clearcoat)"}},
-        {"sheen",
-         "PrepareSheen",
-         "EvaluateSheen",
-         "DensitySheen",
-         "ChancesSheen",
-         {"prepareBsdf (sheen)", "evaluateBsdf (sheen)", "bsdfPdf (sheen)", "lobeChances (sheen)"}},
-        {"transmission",
-         "PrepareThin",
-         "EvaluateThin",
-         "DensityThin",
-         "ChancesThin",
-         {"prepareBsdf (transmission)", "evaluateBsdf (transmission)", "bsdfPdf (transmission)",
-          "lobeChances (transmission)"}},
-        {"diffuse transmission",
-         "PrepareTranslucent",
-         "EvaluateTranslucent",
-         "DensityTranslucent",
-         "ChancesTranslucent",
-         {"prepareBsdf (diffuse transmission)", "evaluateBsdf (diffuse transmission)",
-          "bsdfPdf (diffuse transmission)", "lobeChances (diffuse transmission)"}}};
-    for (const SurfaceNames& names : kSurfaces) {
-        const std::vector<Proof> proofs = surfaceProofs(names);
+    const ClaimedSurface surfaces[] = {
+        {"Base", "", true, {}},
+        {"Coated", "clearcoat", false, {}},
+        {"Sheen", "sheen", false, {}},
+        {"Thin", "transmission", true, {}},
+        {"Translucent", "diffuse transmission", false, {}},
+        {"Volume", "volume", true, {etaInput()}},
+        {"Anisotropic", "anisotropy", false, {alphaInput("alpha.y / alpha.x")}},
+    };
+    for (const ClaimedSurface& surface : surfaces) {
+        const std::vector<Proof> proofs = surfaceProofs(surface);
         all.insert(all.end(), proofs.begin(), proofs.end());
     }
     return all;

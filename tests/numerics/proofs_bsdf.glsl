@@ -62,19 +62,24 @@ PROOF(SchlickRest) {
     o[1] = o[0] + schlickWeight(i[0]);
 }
 
-// f90 is at least f0: the share of what is left.
+// f90 is at least f0, and at most 1: f0 and a share of what is left.
+float claimedF90(float f0, float share) {
+    return min(mix(f0, 1.0, share), 1.0);
+}
+
 PROOF(FresnelSchlick) {
-    float f90 = mix(i[0], 1.0, i[1]);
+    float f90 = claimedF90(i[0], i[1]);
     o[0] = fresnelSchlick(vec3(i[0]), f90, i[2]).x;
     o[1] = schlickPassed(vec3(i[0]), f90, i[2]);
     o[2] = o[0] + o[1];
 }
 
 PROOF(FresnelInterface) {
-    float f90 = mix(i[0], 1.0, i[1]);
+    float f90 = claimedF90(i[0], i[1]);
     vec2 cosine2 = exactSquare(vec2(i[2], 0.0));
     o[0] = fresnelInterface(vec3(i[0]), f90, cosine2, i[3]).x;
     o[1] = interfacePassed(vec3(i[0]), f90, cosine2, i[3]);
+    o[2] = o[0] + o[1];
 }
 
 PROOF(SchlickF0) {
@@ -289,25 +294,37 @@ Bsdf claimedBsdf(float f0, float f90, float loss, float meanLoss) {
 #define CLAIMED_FEATURES(lobes) Features(lobes, 0u, 0u, 0u, lobes, 0u)
 
 PROOF(MultiScatterOf) {
-    o[0] = multiScatterOf(vec3(i[0]), mix(i[0], 1.0, i[1]), i[2]).x;
+    o[0] = multiScatterOf(vec3(i[0]), claimedF90(i[0], i[1]), i[2]).x;
 }
 
 PROOF(PassedAgain) {
-    Bsdf b = claimedBsdf(i[0], mix(i[0], 1.0, i[1]), 0.0, i[2]);
+    Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), 0.0, i[2]);
     o[0] = passedAgain(b).x;
     o[1] = o[0] + multiScatterOf(b.f0, b.f90, b.meanLoss).x;
 }
 
 // i[3]: the bias as a share of E.
 PROOF(SpecularShares) {
-    Bsdf b = claimedBsdf(i[0], mix(i[0], 1.0, i[1]), i[2], i[4]);
+    Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), i[2], i[4]);
     float bias = i[3] * (1.0 - i[2]);
     o[0] = specularAlbedo(b, CLAIMED_FEATURES(0u), i[2], bias).x;
     o[1] = specularPassed(b, i[2], bias).x;
     o[2] = o[0] + o[1];
 }
 
-#define CLAIMED_SURFACE(lobes)                                                                  \
+// The chances of reflection and passage of an interface with an index: i[3] is the cosine, i[4] the index.
+PROOF(FacetChances) {
+    Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), 0.0, 0.0);
+    b.transmitted = vec3(i[2]);
+    vec2 chances = facetChances(b, CLAIMED_FEATURES(GLINT_TRANSMISSION | GLINT_VOLUME), exactSquare(vec2(i[3], 0.0)),
+                                i[4]);
+    o[0] = chances.x;
+    o[1] = chances.y;
+    o[2] = chances.x + chances.y;
+}
+
+// `more` is what a surface has besides; i[9] is its own input.
+#define CLAIMED_SURFACE(lobes, more)                                                            \
     Bsdf b = claimedBsdf(i[0], 1.0, 0.0, 0.0);                                                  \
     b.alpha = vec2(i[1]);                                                                       \
     b.diffuse = vec3(i[2]);                                                                     \
@@ -315,27 +332,28 @@ PROOF(SpecularShares) {
     b.diffuseTransmitted = vec3(i[2]);                                                          \
     b.layers.clearcoat = Clearcoat(i[2], i[1], vec3(0.0, 0.0, 1.0));                            \
     b.layers.sheen = Sheen(vec3(i[2]), max(i[1], kMinSheenAlpha), 0.0);                         \
+    more;                                                                                       \
     vec3 view = UNIT(3);                                                                        \
     prepareBsdf(b, CLAIMED_FEATURES(lobes), vec3(view.xy, max(view.z, kMinViewCosine)))
 
-#define CLAIMS_OF_SURFACE(name, lobes, side)                                                    \
+#define CLAIMS_OF_SURFACE(name, lobes, side, more)                                              \
     PROOF(Prepare##name) {                                                                      \
-        CLAIMED_SURFACE(lobes);                                                                 \
+        CLAIMED_SURFACE(lobes, more);                                                           \
         o[0] = b.viewLoss;                                                                      \
         o[1] = b.viewBias;                                                                      \
         o[2] = b.meanLoss;                                                                      \
         o[3] = b.meanBias;                                                                      \
     }                                                                                           \
     PROOF(Evaluate##name) {                                                                     \
-        CLAIMED_SURFACE(lobes);                                                                 \
+        CLAIMED_SURFACE(lobes, more);                                                           \
         o[0] = evaluateBsdf(b, CLAIMED_FEATURES(lobes), side * UNIT(6)).x;                      \
     }                                                                                           \
     PROOF(Density##name) {                                                                      \
-        CLAIMED_SURFACE(lobes);                                                                 \
+        CLAIMED_SURFACE(lobes, more);                                                           \
         o[0] = bsdfPdf(b, CLAIMED_FEATURES(lobes), side * UNIT(6));                             \
     }                                                                                           \
     PROOF(Chances##name) {                                                                      \
-        CLAIMED_SURFACE(lobes);                                                                 \
+        CLAIMED_SURFACE(lobes, more);                                                           \
         LobeChances chances = lobeChances(b, CLAIMED_FEATURES(lobes));                          \
         o[0] = chances.microfacets;                                                             \
         o[1] = chances.diffuse;                                                                 \
@@ -343,8 +361,21 @@ PROOF(SpecularShares) {
         o[3] = chances.microfacets + chances.diffuse + chances.passed + sumOfChances(chances.layers); \
     }
 
-CLAIMS_OF_SURFACE(Base, 0u, 1.0)
-CLAIMS_OF_SURFACE(Coated, GLINT_CLEARCOAT, 1.0)
-CLAIMS_OF_SURFACE(Sheen, GLINT_SHEEN, 1.0)
-CLAIMS_OF_SURFACE(Thin, GLINT_TRANSMISSION, -1.0)
-CLAIMS_OF_SURFACE(Translucent, GLINT_DIFFUSE_TRANSMISSION, -1.0)
+#define CLAIM_OF_SAMPLES(name, lobes, more)                                                     \
+    PROOF(Sample##name) {                                                                       \
+        CLAIMED_SURFACE(lobes, more);                                                           \
+        vec3 l = sampleMicrofacet(b, CLAIMED_FEATURES(lobes), vec3(i[6], i[7], i[8]));          \
+        o[0] = dot(l, l);                                                                       \
+    }
+
+CLAIMS_OF_SURFACE(Base, 0u, 1.0, )
+CLAIMS_OF_SURFACE(Coated, GLINT_CLEARCOAT, 1.0, )
+CLAIMS_OF_SURFACE(Sheen, GLINT_SHEEN, 1.0, )
+CLAIMS_OF_SURFACE(Thin, GLINT_TRANSMISSION, -1.0, )
+CLAIMS_OF_SURFACE(Translucent, GLINT_DIFFUSE_TRANSMISSION, -1.0, )
+CLAIMS_OF_SURFACE(Volume, GLINT_TRANSMISSION | GLINT_VOLUME, -1.0, b.eta = vec3(i[9]))
+CLAIMS_OF_SURFACE(Anisotropic, GLINT_ANISOTROPY, 1.0, b.alpha.y = max(i[1] * i[9], kMinAlpha))
+
+CLAIM_OF_SAMPLES(Base, 0u, )
+CLAIM_OF_SAMPLES(Thin, GLINT_TRANSMISSION, )
+CLAIM_OF_SAMPLES(Volume, GLINT_TRANSMISSION | GLINT_VOLUME, b.eta = vec3(i[9]))

@@ -56,7 +56,7 @@ PROOF(OnSide) {
 PROOF(ConeAxes) {
     vec3 across;
     vec3 along;
-    coneAxes(i[6], UNIT(0), UNIT(3), across, along);
+    coneAxes(i[5], UNIT(0), directionAt(i[3], i[4], 0.0), across, along);
     WRITE3(0, across);
     WRITE3(3, along);
 }

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <string>
@@ -20,6 +21,7 @@ struct Settings {
     std::string only;
     std::uint64_t boxes = 0;
     std::string report;
+    int describe = 0;
 };
 
 struct Row {
@@ -72,7 +74,10 @@ void printRow(const Row& row) {
 }
 
 std::string tableOf(const std::vector<Row>& rows, std::uint64_t boxes) {
-    std::string text = fmt::format("At most {} boxes a claim; seconds of processor time.\n\n", boxes);
+    std::string text = fmt::format(
+        "At most {} boxes a claim, or 20000 where these decide a claim about few numbers; seconds of "
+        "processor time.\n\n",
+        boxes);
     text += "| function | domain | claim | result | boxes | s |\n|---|---|---|---|---|---|\n";
     for (const Row& row : rows) {
         text += fmt::format("| `{}` | {} | {} | {} | {} | {:.2f} |\n", row.proof->function,
@@ -111,8 +116,14 @@ int run(const Settings& settings) {
     std::vector<Row> rows;
     bool refuted = false;
     for (std::size_t k = 0; k < proofs.size(); ++k) {
+        for (std::size_t output = 0; settings.describe > 0 && output < proofs[k].claim.outputs.size();
+             ++output) {
+            const prove::Program& program = (*programs)[k];
+            fmt::print("{} = {}\n", proofs[k].claim.outputs[output].name,
+                       prove::describe(program, program.outputs[output], settings.describe));
+        }
         prove::ProofOptions options;
-        options.mostBoxes = settings.boxes;
+        options.mostBoxes = std::max(settings.boxes, proofs[k].boxes);
         const std::clock_t start = std::clock();
         Row row{&proofs[k], prove::prove((*programs)[k], proofs[k].claim, options), 0.0};
         row.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
@@ -138,6 +149,7 @@ int main(int argc, char** argv) {
     settings.boxes = 2000;
     app.add_option("--only", settings.only, "the claims whose name contains this");
     app.add_option("--boxes", settings.boxes, "the most boxes for each claim")->capture_default_str();
+    app.add_option("--describe", settings.describe, "prints what outputs are, to this depth");
     app.add_option("--report", settings.report, "Markdown file whose region `proofs` is replaced");
     CLI11_PARSE(app, argc, argv);
     return run(settings);

@@ -201,6 +201,45 @@ TEST(CheckMaterials, ProofsHoldForWaxAndFindAMissingCheck) {
     }
 }
 
+// Code that decides about alpha and coordinates has no values and lobes, and is proved all the same.
+TEST(CheckMaterials, ProofsCoverOpacityAndCoordinates) {
+    const test::TemporaryFolder folder;
+    const auto write =
+        [&](const std::string& name, const std::string& stage, const std::string& body) {
+            ASSERT_TRUE(base::writeFile(folder.path() / (name + ".json"),
+                                        R"({"name": ")" + name + R"(", "stage": ")" + stage +
+                                            R"(", "extension": "TEST_)" + name + R"(", "needs": "texCoord0",
+            "glsl": { ")" + stage + R"(": ")" +
+                                            name + R"(.glsl" },
+            "parameters": [{ "name": ")" + name +
+                                            R"(Amount", "type": "float", "default": 0, "range": [0, null] }],
+            "neutral": [{ "when": ")" + name +
+                                            R"(Amount == 0", "because": "there is none" }]})"));
+            ASSERT_TRUE(base::writeFile(folder.path() / (name + ".glsl"), body));
+        };
+    const std::string opacity = "Opacity(SurfacePoint point, Features features, inout float alpha) {\n    ";
+    const std::string coordinates = "Coordinates(inout SurfacePoint point, Features features) {\n    ";
+    const std::string include = "#include \"hit/surface_point.glsl\"\nvoid ";
+    write("holes", "opacity",
+          include + "holes" + opacity +
+              "alpha *= fract(point.texCoords[0].x * GLINT_MATERIAL_HOLES_AMOUNT(point));\n}\n");
+    write("rust", "opacity", include + "rust" + opacity + "alpha = sqrt(alpha - 0.25);\n}\n");
+    write("sway", "coordinates",
+          include + "sway" + coordinates +
+              "point.texCoords[0] += GLINT_MATERIAL_SWAY_AMOUNT(point) * sin(frameTime());\n}\n");
+    write("pinch", "coordinates",
+          include + "pinch" + coordinates + "point.texCoords[0] /= max(point.texCoords[0].x, 0.0);\n}\n");
+    const Result<std::vector<measure::FeatureProofOutcome>> outcomes =
+        measure::proveMaterials({{folder.path().string()}, 500}, Silent());
+    ASSERT_TRUE(outcomes) << toString(outcomes.error());
+    ASSERT_EQ(outcomes->size(), 4U);
+    for (const measure::FeatureProofOutcome& outcome : *outcomes) {
+        const bool isSound = outcome.feature == "holes" || outcome.feature == "sway";
+        EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted")
+            << outcome.feature << ": " << outcome.message << outcome.place;
+    }
+}
+
 TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {
     const test::TemporaryFolder folder;
     ASSERT_TRUE(base::writeFile(folder.path() / "mud.json", R"({

@@ -1,10 +1,16 @@
-// Alpha tests that were decided at upload: pictures do not show it, rays test less, and what may change is
-// not decided.
+// Alpha tests that were decided at upload: pictures do not show it, whether meshes are deformed or not, rays
+// test less, and what may change is not decided.
 #include "render/harness.h"
 #include "render/scene_builder.h"
 
+#include <glint/scene_view/scene_view.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace glint::testing {
 namespace {
@@ -42,9 +48,8 @@ gltf::Primitive leaves(int material, float z) {
     return all;
 }
 
-// Masked and blended leaves over a mirror, lit by the sun, before a wall.
-gltf::Scene foliage(float cutoff = 0.5F) {
-    gltf::Scene scene = emptyScene();
+// A masked material whose texture is opaque on the left, transparent on the right, and has an edge between.
+materials::Material leafMaterial(gltf::Scene& scene, float cutoff) {
     std::vector<std::uint8_t> texels;
     for (int y = 0; y < 12; ++y) {
         for (int x = 0; x < 36; ++x) {
@@ -54,18 +59,32 @@ gltf::Scene foliage(float cutoff = 0.5F) {
                            static_cast<std::uint8_t>(std::clamp(128 + 60 * (edge - x), 0, 255))});
         }
     }
-    materials::Material leaf = unlitMaterial({1, 1, 1});
-    leaf = materials::Material();
+    materials::Material leaf;
     leaf.alphaMode = materials::AlphaMode::Mask;
     leaf["alphaCutoff"] = cutoff;
     leaf.doubleSided = true;
     leaf.texture("baseColorTexture").texture = addTexture(scene, 36, 12, texels);
+    return leaf;
+}
+
+// A mirror below, a wall behind, a sun and a camera.
+void addSurroundings(gltf::Scene& scene) {
+    const int mirror = addMaterial(scene, mirrorMaterial());
+    const int wall = addMaterial(scene, unlitMaterial({0.2F, 0.3F, 0.7F}));
+    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1.2F, 0}, {8, 0, 0}, {0, 0, -8})));
+    addInstance(scene, addMesh(scene, makeQuad(wall, {-6, -3, -6}, {12, 0, 0}, {0, 8, 0})));
+    addDirectionalLight(scene, {0.3F, -1.0F, -0.4F}, 3.0F);
+    addCamera(scene);
+}
+
+// Masked and blended leaves over a mirror, lit by the sun, before a wall.
+gltf::Scene foliage(float cutoff = 0.5F) {
+    gltf::Scene scene = emptyScene();
+    const materials::Material leaf = leafMaterial(scene, cutoff);
     materials::Material veil = leaf;
     veil.alphaMode = materials::AlphaMode::Blend;
     const int mask = addMaterial(scene, leaf);
     const int blend = addMaterial(scene, veil);
-    const int mirror = addMaterial(scene, mirrorMaterial());
-    const int wall = addMaterial(scene, unlitMaterial({0.2F, 0.3F, 0.7F}));
     const int mesh = addMesh(scene, leaves(mask, -2.5F));
     for (int i = 0; i < 3; ++i) {
         gltf::Matrix4 world = scaling(1, 1, 1);
@@ -74,10 +93,7 @@ gltf::Scene foliage(float cutoff = 0.5F) {
         addInstance(scene, mesh, world);
     }
     addInstance(scene, addMesh(scene, leaves(blend, -2.2F)));
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1.2F, 0}, {8, 0, 0}, {0, 0, -8})));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {-6, -3, -6}, {12, 0, 0}, {0, 8, 0})));
-    addDirectionalLight(scene, {0.3F, -1.0F, -0.4F}, 3.0F);
-    addCamera(scene);
+    addSurroundings(scene);
     return scene;
 }
 
@@ -130,6 +146,164 @@ TEST(Opacity, PicturesDoNotShowWhatWasDecided) {
         EXPECT_GT(few.alphaTests, 0U);
         EXPECT_LT(few.alphaTests, many.alphaTests);
     }
+    expectNoValidationMessages();
+}
+
+constexpr int kFrames = 3;
+constexpr std::size_t kJoint = 2;  // the node that bends the leaves of node 0
+
+// Masked leaves that two joints carry, and ones with a morph target, in a frame of their animation.
+gltf::Scene swayingFoliage(int frame) {
+    gltf::Scene scene = emptyScene();
+    const int mask = addMaterial(scene, leafMaterial(scene, 0.5F));
+    gltf::Primitive bent = leaves(mask, 0.0F);
+    bent.influences.count = 2;
+    for (const gltf::Float3& position : bent.positions) {
+        const float up = std::clamp(0.5F + 0.5F * position[1], 0.0F, 1.0F);
+        bent.influences.joints.insert(bent.influences.joints.end(), {0, 1});
+        bent.influences.weights.insert(bent.influences.weights.end(), {1.0F - up, up});
+    }
+    gltf::Primitive morphed = leaves(mask, 0.0F);
+    morphed.targets.resize(1);
+    for (const gltf::Float3& position : morphed.positions) {
+        morphed.targets[0].positions.push_back({0.3F * position[1], 0, 0.4F * position[0] * position[1]});
+    }
+    addInstance(scene, addMesh(scene, std::move(bent)));
+    gltf::Matrix4 world = scaling(1, 1, 1);
+    world[12] = 0.3;
+    world[14] = -3.1;
+    addInstance(scene, addMesh(scene, std::move(morphed)), world);
+    scene.meshes[1].weights = {0.0};
+    scene.nodes[1].weights = {0.45 * frame};
+    const double angle = 0.35 * frame;
+    gltf::Node joint;
+    joint.world = {std::cos(angle),
+                   std::sin(angle),
+                   0,
+                   0,
+                   -std::sin(angle),
+                   std::cos(angle),
+                   0,
+                   0,
+                   0,
+                   0,
+                   1,
+                   0,
+                   0.1 * frame,
+                   0,
+                   -2.5,
+                   1};
+    scene.nodes.push_back(joint);
+    joint.world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -2.5, 1};
+    scene.nodes.push_back(joint);
+    gltf::Skin skin;
+    skin.joints = {static_cast<int>(kJoint) + 1, static_cast<int>(kJoint)};
+    skin.inverseBinds.assign(2, scaling(1, 1, 1));
+    scene.skins.push_back(skin);
+    scene.nodes[0].skin = 0;
+    addSurroundings(scene);
+    return scene;
+}
+
+// An uploaded scene that moves, whose alpha tests are decided or not.
+struct Swaying {
+    Swaying(const Package& package, OpacityUse use) : data(scene_view::makeSceneView(scene)) {
+        data.moves = true;
+        data.opacity = use;
+        scene_view::useLayoutOf(package, scene, data);
+        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package, data.view());
+        EXPECT_TRUE(uploaded) << (uploaded ? "" : toString(uploaded.error()));
+        gpuScene = uploaded ? std::move(*uploaded) : nullptr;
+    }
+    void moveTo(int frame) {
+        const gltf::Scene posed = swayingFoliage(frame);
+        scene.nodes = posed.nodes;
+        scene_view::poseSceneView(scene, data);
+        const Status moved = gpuScene->updateAndWait(data.motion());
+        EXPECT_TRUE(moved) << (moved ? "" : toString(moved.error()));
+    }
+
+    gltf::Scene scene = swayingFoliage(0);
+    scene_view::SceneViewData data;
+    std::unique_ptr<GpuScene> gpuScene;
+};
+
+// States depend on UVs, so that triangles which were decided at rest stay decided wherever skins and morph
+// targets take them.
+TEST(Opacity, PicturesOfDeformedMeshesDoNotShowWhatWasDecided) {
+    const gltf::Scene still = swayingFoliage(0);
+    const LoadedScene compiled(still, settingsOf(package::kStrategyUber | package::kStrategyHitShaders));
+    ASSERT_TRUE(compiled.ok());
+    std::vector<RendererOptions> choices{
+        {.strategy = package::kStrategyUber, .tracer = package::kTracerRayQuery}};
+    if ((sharedContext().handles().tracers & package::kTracerRayPipeline) != 0) {
+        choices.push_back({.strategy = package::kStrategyHitShaders, .tracer = package::kTracerRayPipeline});
+    }
+    RenderSetup setup = defaultSetup(still, 64, 36);
+    setup.frame.countsLight = true;
+    Swaying proved(compiled.package(), OpacityUse::Proved);
+    Swaying tested(compiled.package(), OpacityUse::Tested);
+    ASSERT_TRUE(proved.gpuScene != nullptr && tested.gpuScene != nullptr);
+    EXPECT_EQ(proved.gpuScene->statistics().maskedTriangles, 400U);
+    EXPECT_GT(proved.gpuScene->statistics().provedOpaque, 80U);
+    EXPECT_GT(proved.gpuScene->statistics().provedTransparent, 80U);
+    EXPECT_EQ(tested.gpuScene->statistics().provedOpaque, 0U);
+    for (RendererOptions& options : choices) {
+        options.width = setup.width;
+        options.height = setup.height;
+        const auto make = [&](Swaying& swaying) {
+            Result<std::unique_ptr<Renderer>> made =
+                Renderer::create(sharedContext(), compiled.package(), *swaying.gpuScene, options);
+            EXPECT_TRUE(made) << (made ? "" : toString(made.error()));
+            return made ? std::move(*made) : nullptr;
+        };
+        const std::unique_ptr<Renderer> few = make(proved);
+        const std::unique_ptr<Renderer> many = make(tested);
+        ASSERT_TRUE(few != nullptr && many != nullptr);
+        LinearImage before;
+        for (int frame = 0; frame < kFrames; ++frame) {
+            proved.moveTo(frame);
+            tested.moveTo(frame);
+            const Result<LinearImage> image = few->render(setup.frame, 1);
+            const Result<LinearImage> reference = many->render(setup.frame, 1);
+            ASSERT_TRUE(image && reference);
+            const std::string what =
+                "strategy " + std::to_string(options.strategy) + ", frame " + std::to_string(frame);
+            EXPECT_EQ(image->pixels, reference->pixels) << what;
+            EXPECT_NE(image->pixels, before.pixels) << what << ": nothing has moved";
+            EXPECT_LT(few->counters()->alphaTests, many->counters()->alphaTests) << what;
+            EXPECT_GT(few->counters()->alphaTests, 0U) << what;
+            before = *image;
+        }
+    }
+    expectNoValidationMessages();
+}
+
+// Rays to lights that keep a share of it test alpha too.
+TEST(Opacity, TestsOfRaysThroughGlassAreCounted) {
+    gltf::Scene scene = foliage();
+    materials::Material pane;
+    pane["metallicFactor"] = 0.0F;
+    pane["transmissionFactor"] = 1.0F;
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-4, 3, 0}, {8, 0, 0}, {0, 0, -8})));
+    RenderSetup setup = defaultSetup(scene, 64, 36);
+    setup.frame.countsLight = true;
+    const auto testsWith = [&](package::ShadowThrough through) {
+        compiler::CompileSettings settings = settingsOf(package::kStrategyUber);
+        settings.tracers = package::kTracerRayQuery;
+        settings.shadowThrough = through;
+        settings.effects = {false, compiler::builtinEffects({"shadow"})};
+        const LoadedScene loaded(scene, settings, use(OpacityUse::Tested));
+        FrameCounters counters;
+        if (loaded.ok()) {
+            loaded.render(package::kStrategyUber, setup, &counters);
+        }
+        return counters.alphaTests;
+    };
+    const std::uint32_t alone = testsWith(package::ShadowThrough::Alpha);
+    EXPECT_GT(alone, 0U);
+    // A ray whose light ends at a leaf may have met other leaves before that, in an order of the driver's.
+    EXPECT_GT(testsWith(package::ShadowThrough::Glass), alone / 2);
     expectNoValidationMessages();
 }
 

@@ -521,6 +521,85 @@ TEST_F(ReplacePackage, ErrorsKeepThePackageBefore) {
     expectNoValidationMessages();
 }
 
+// A masked leaf whose left half is opaque, above a mirror: without rays nothing is tested. UVs keep clear of
+// the border, so that the states of all triangles are known.
+gltf::Scene maskedRoom() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
+    materials::Material leaf = glossyMaterial(kGreen);
+    leaf.alphaMode = materials::AlphaMode::Mask;
+    leaf.texture("baseColorTexture").texture =
+        addTexture(scene, 2, 1, {255, 255, 255, 255, 255, 255, 255, 100});
+    const int mask = addMaterial(scene, leaf);
+    for (const float left : {0.1F, 0.6F}) {
+        gltf::Primitive quad = makeQuad(mask, {left - 0.8F, -0.5F, -2}, {0.4F, 0, 0}, {0, 1, 0});
+        for (gltf::Float2& uv : quad.texCoords0) {
+            uv[0] = left + 0.3F * uv[0];
+        }
+        addInstance(scene, addMesh(scene, quad));
+    }
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
+                                               {0, 0, -8})));
+    return scene;
+}
+
+// What the upload has proved about triangles holds for a package with the same alpha only.
+TEST_F(ReplacePackage, TheAlphaOfDecidedTrianglesStays) {
+    compiler::CompileSettings uber = settingsFor(package::kStrategyUber);
+    uber.plan.keys.alpha = package::AlphaPolicy::Stochastic;
+    const std::shared_ptr<const Package> original = packageOf(maskedRoom(), uber);
+    ASSERT_NE(original, nullptr);
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = setup_.width;
+    options.height = setup_.height;
+    struct Edit {
+        const char* what;
+        bool isRefused;
+        void (*change)(materials::Material& leaf);
+    };
+    const Edit edits[] = {
+        {"nothing", false, [](materials::Material&) {}},
+        {"the colour", false, [](materials::Material& leaf) { leaf["baseColorFactor"][0] = 0.7F; }},
+        {"the cutoff", true, [](materials::Material& leaf) { leaf["alphaCutoff"] = 0.3F; }},
+        {"the factor", true, [](materials::Material& leaf) { leaf["baseColorFactor"][3] = 0.9F; }},
+        {"the transform", true,
+         [](materials::Material& leaf) {
+             leaf.texture("baseColorTexture").transform.offset = {0.5F, 0.0F};
+         }},
+    };
+    const gltf::Scene still = maskedRoom();
+    for (const OpacityUse use : {OpacityUse::Proved, OpacityUse::Tested}) {
+        scene_view::SceneViewData data = scene_view::makeSceneView(still);
+        data.opacity = use;
+        scene_view::useLayoutOf(*original, still, data);
+        const Result<std::unique_ptr<GpuScene>> scene =
+            GpuScene::upload(sharedContext(), *original, data.view());
+        ASSERT_TRUE(scene) << toString(scene.error());
+        const bool isDecided = use == OpacityUse::Proved;
+        EXPECT_EQ((*scene)->statistics().provedOpaque, isDecided ? 2U : 0U);
+        EXPECT_EQ((*scene)->statistics().provedTransparent, isDecided ? 2U : 0U);
+        for (const Edit& edit : edits) {
+            gltf::Scene edited = maskedRoom();
+            edit.change(edited.materials[0]);
+            const std::shared_ptr<const Package> package = packageOf(edited, uber);
+            const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+            ASSERT_TRUE(package != nullptr && renderer != nullptr);
+            const Result<PackageReplacement> replaced = renderer->replacePackage(package);
+            if (!isDecided || !edit.isRefused) {
+                EXPECT_TRUE(replaced) << edit.what << ": " << toString(replaced.error());
+                continue;
+            }
+            ASSERT_FALSE(replaced) << edit.what;
+            EXPECT_EQ(replaced.error().id, "scene-package") << edit.what;
+            EXPECT_NE(replaced.error().message.find("proved"), std::string::npos)
+                << edit.what << ": " << toString(replaced.error());
+        }
+    }
+    expectNoValidationMessages();
+}
+
 TEST_F(ReplacePackage, AnEditableSceneKeepsItsPackage) {
     const std::shared_ptr<const Package> original = packageOf(*before_, settingsFor(package::kStrategyUber));
     scene_view::SceneViewData data = scene_view::makeSceneView(*before_);

@@ -24,11 +24,13 @@ constexpr const char* kProofTemplate = "prove_feature.comp.mustache";
 constexpr const char* kProofName = "prove_feature.comp";
 
 // The inputs of the template: directions, random numbers, the place; then parameters; then four for each
-// texture slot.
+// texture slot; then the time and alpha before the feature.
 constexpr std::uint32_t kFirstParameter = 11;
 constexpr std::uint32_t kFirstTexel = 64;
-constexpr std::uint32_t kProofInputs = 192;
-constexpr std::uint32_t kProofOutputs = 27;
+constexpr std::uint32_t kTimeInput = 192;
+constexpr std::uint32_t kAlphaInput = 193;
+constexpr std::uint32_t kProofInputs = 194;
+constexpr std::uint32_t kProofOutputs = 35;
 // What stands for a range without an end.
 constexpr double kFarValue = 1000.0;
 // What the ranges of shares and lengths allow, as for the check "range" on the device.
@@ -47,8 +49,8 @@ std::string macroOf(const std::string& name) {
 }
 
 double endOf(double value, double fallback) {
-    return std::isfinite(value) ? value
-                                : std::copysign(std::max(kFarValue, kFarValue * std::abs(fallback)), value);
+    const bool isEnd = std::abs(value) < prove::kLargestSingle;
+    return isEnd ? value : std::copysign(std::max(kFarValue, kFarValue * std::abs(fallback)), value);
 }
 
 prove::InputRange inputOf(std::string name, double low, double high) {
@@ -97,10 +99,22 @@ std::string claimTexels(std::string text, const materials::MaterialModel& model,
         const materials::Feature& bit = model.features[static_cast<std::size_t>(texture.feature)];
         mask |= feature >= 0 && bit.lobe == feature ? bit.mask() : materials::FeatureMask{0};
     }
-    for (std::uint32_t texel = kFirstTexel; texel < kProofInputs; ++texel) {
+    for (std::uint32_t texel = kFirstTexel; texel < kTimeInput; ++texel) {
         claim.inputs[texel] =
             inputOf(fmt::format("texel {} of slot {}", texel % 4, (texel - kFirstTexel) / 4), 0.0, 1.0);
     }
+    return text;
+}
+
+// hit/surface_point.glsl with the same texels.
+std::string claimPointTexels(std::string text) {
+    const std::size_t begin = text.find("vec4 samplePoint(");
+    text.replace(
+        begin, std::string::npos,
+        fmt::format("vec4 samplePoint(SurfacePoint point, uint slot, Features features) {{\n    uint first "
+                    "= {}u + 4u * slot;\n    return vec4(glintGiven[first], glintGiven[first + 1u], "
+                    "glintGiven[first + 2u], glintGiven[first + 3u]);\n}}\n",
+                    kFirstTexel));
     return text;
 }
 
@@ -126,6 +140,13 @@ std::vector<prove::OutputRange> claimedRanges() {
     ranges[20] = {"Density()", 0.0, kAny};
     vector(21, "Sample()", -1.0 - kShareSlack, 1.0 + kShareSlack);
     vector(24, "emission", -kAny, kAny);
+    const char* const coordinates[] = {"texCoords[0].x", "texCoords[0].y", "texCoords[1].x",
+                                       "texCoords[1].y"};
+    for (std::size_t k = 0; k < 4; ++k) {
+        ranges[27 + k] = {coordinates[k], -kAny, kAny};
+    }
+    ranges[31] = {"alpha", -kAny, kAny};
+    vector(32, "Diffuse()", 0.0, kAny);
     return ranges;
 }
 
@@ -144,6 +165,8 @@ prove::Claim startClaim() {
     }
     claim.inputs[9] = inputOf("uv[0]", -16.0, 16.0);
     claim.inputs[10] = inputOf("uv[1]", -16.0, 16.0);
+    claim.inputs[kTimeInput] = inputOf("time", 0.0, kFarValue);
+    claim.inputs[kAlphaInput] = inputOf("alpha", 0.0, 1.0);
     claim.outputs = claimedRanges();
     return claim;
 }
@@ -193,6 +216,12 @@ Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const Plan& p
         code.feature < 0 ? 0 : plan.model->features[static_cast<std::size_t>(code.feature)].mask();
     sources->add("hit/texture.glsl", claimTexels(std::string(sources->find("hit/texture.glsl").value_or("")),
                                                  *plan.model, code.feature, proof.claim, mask));
+    sources->add("hit/surface_point.glsl",
+                 claimPointTexels(std::string(sources->find("hit/surface_point.glsl").value_or(""))));
+    sources->add("hit/frame_time.glsl",
+                 fmt::format("#include \"host/material.glsl\"\n\nfloat frameTime() {{\n    return "
+                             "glintGiven[{}];\n}}\n",
+                             kTimeInput));
     const std::string record(sources->find("generated/material_record.glsl").value_or(""));
     sources->add("generated/material_record.glsl",
                  record + claimParameters(*plan.model, code.feature, proof.claim));
@@ -207,6 +236,12 @@ Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const Plan& p
     section("bsdf", code.bsdf);
     section("layer", code.layer);
     section("emission", code.emission);
+    section("diffuse", code.diffuse);
+    section("coordinates", code.coordinates);
+    section("opacity", code.opacity);
+    context.set("coordinatesFile", code.coordinates);
+    context.set("opacityFile", code.opacity);
+    context.set("alphaInput", std::to_string(kAlphaInput));
     std::string type = code.name;
     type.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(type.front())));
     context.set("name", code.name);

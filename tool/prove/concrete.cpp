@@ -204,6 +204,11 @@ double evaluateNode(const Node& node, double a, double b, double c) {
             return b;
         case Op::Bounded:
         case Op::UnitSum:
+        case Op::WeightedUnit:
+        case Op::UnitQuotient:
+        case Op::TriangleSum:
+        case Op::MirroredSum:
+        case Op::Share:
         case Op::PartOfUnit:
             return a;
         case Op::Less:
@@ -266,7 +271,9 @@ PointResult PointEvaluator::run(std::span<const double> inputs) {
         const double b = operand(node.b);
         const double c = operand(node.c);
         const bool joins = node.op == Op::Select || node.op == Op::And || node.op == Op::Or;
-        if (!joins && (std::isnan(a) || std::isnan(b) || std::isnan(c))) {
+        // A choice whose condition has no value belongs to a branch that is not taken.
+        const bool isUndecided = node.op == Op::Select && std::isnan(a);
+        if (isUndecided || (!joins && (std::isnan(a) || std::isnan(b) || std::isnan(c)))) {
             values_[id] = std::nan("");
             continue;
         }

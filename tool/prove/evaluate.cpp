@@ -49,6 +49,12 @@ Interval roundingError(double magnitude) {
     return Arithmetic(Format::Single).convert({-error, error}, ignored);
 }
 
+// The squared length from which on vectors are divided by their length, which neither underflows nor is below
+// the least length that the shader divides by.
+double leastSquaredLength(double leastLength) {
+    return std::max(4.0 * kSmallestNormalSingle, leastLength * leastLength * (1.0 + 0x1p-10));
+}
+
 Interval lessThan(const Interval& a, const Interval& b) {
     return a.high < b.low ? kTrue : a.low >= b.high ? kFalse : kUndecided;
 }
@@ -103,7 +109,8 @@ const char* nameOf(Hazard hazard) {
     return "several hazards";
 }
 
-BoxEvaluator::BoxEvaluator(const Program& program) : program_(program), values_(program.nodes.size()) {}
+BoxEvaluator::BoxEvaluator(const Program& program)
+    : program_(program), identities_(program), values_(program.nodes.size()) {}
 
 void BoxEvaluator::know(NodeId node, const Interval& range) {
     known_.emplace_back(node, range);
@@ -113,6 +120,7 @@ void BoxEvaluator::know(NodeId node, const Interval& range) {
 void BoxEvaluator::run(std::span<const Interval> box, bool withAffineForms) {
     box_ = box;
     findings_.clear();
+    identities_.forgetBox();
     withForms_ = withAffineForms;
     if (withForms_) {
         symbols_.clear();
@@ -166,6 +174,11 @@ void BoxEvaluator::evaluate(NodeId id) {
     }
     Hazard hazard = Hazard::None;
     values_[id] = valueOf(node, hazard);
+    if (node.format == Format::Single) {
+        const Interval bound = identities_.bound(id, values_);
+        values_[id] =
+            meet(values_[id], {roundDown(bound.low, node.format), roundUp(bound.high, node.format)});
+    }
     if (withForms_ && node.format != Format::Integer) {
         evaluateForm(id);
     }
@@ -183,24 +196,6 @@ void BoxEvaluator::evaluate(NodeId id) {
     }
 }
 
-void BoxEvaluator::evaluateForm(NodeId id) {
-    const Node& node = program_.nodes[id];
-    Affine& form = forms_[id];
-    if (formOf(node, form) && form.isValid) {
-        const Interval range = form.range();
-        values_[id] =
-            meet(values_[id], {roundDown(range.low, node.format), roundUp(range.high, node.format)});
-    }
-    if (values_[id].isEmpty()) {
-        form.isValid = false;
-        return;
-    }
-    // A form that knows less than the interval is a burden for what follows.
-    if (!form.isValid || form.error > 0.5 * values_[id].width()) {
-        form.set(values_[id]);
-    }
-}
-
 Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
     const Arithmetic arithmetic(node.format == Format::Half ? Format::Half : Format::Single);
     const Interval& a = node.a == kNoNode ? kFalse : of(node.a);
@@ -214,7 +209,7 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::Add:
             return arithmetic.add(a, b, hazard);
         case Op::Subtract:
-            return arithmetic.subtract(a, b, hazard);
+            return difference(node, arithmetic.subtract(a, b, hazard));
         case Op::Multiply:
             return arithmetic.multiply(a, b, hazard);
         case Op::Square:
@@ -305,11 +300,56 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::PartOfUnit: {
             // As for normalized(), the squared length must not underflow or overflow.
             const double error = 32.0 * unitRoundoff(node.format);
-            if (b.low < 4.0 * kSmallestNormalSingle || !b.isFinite() || node.format == Format::Half) {
+            if (b.low < leastSquaredLength(node.value) || !b.isFinite() || node.format == Format::Half) {
                 return a;
             }
             return meet(a, {node.op == Op::UnitSum ? 1.0 - error : 0.0, 1.0 + error});
         }
+        case Op::WeightedUnit: {
+            // Each weight and each square is rounded a few times, and the sum twice.
+            const double error = 40.0 * unitRoundoff(node.format);
+            Hazard ignored = Hazard::None;
+            return meet(
+                a, arithmetic.convert({b.low * (1.0 - error) - 0x1p-140, c.high * (1.0 + error) + 0x1p-140},
+                                      ignored));
+        }
+        case Op::Share: {
+            if (b.low < 0.0 || c.low < 0.0 || !b.isFinite()) {
+                return a;
+            }
+            // A quotient by a sum that is not 0 does not overflow.
+            if (const Node& quotient = program_.nodes[node.a];
+                quotient.op == Op::Divide && of(quotient.b).low > 0.0) {
+                std::erase_if(findings_, [&](const Finding& finding) {
+                    return finding.node == node.a && finding.hazard == Hazard::Overflow;
+                });
+            }
+            // Each term and the sum are rounded some ten times, all in the same direction at worst.
+            const double error = 48.0 * unitRoundoff(node.format);
+            const double least = b.low > 0.0 && std::isfinite(c.high) ? b.low / (b.low + c.high) : 0.0;
+            const double greatest = b.high > 0.0 ? b.high / (b.high + c.low) : 0.0;
+            Hazard ignored = Hazard::None;
+            // Small terms may have lost digits below the smallest normal number.
+            const double lost = b.low + c.low >= 0x1p-100 ? 0x1p-40 : 1.0;
+            return meet(a, arithmetic.convert({std::max(least * (1.0 - error) - lost, 0.0),
+                                               std::min(greatest + lost, 1.0) * (1.0 + error)},
+                                              ignored));
+        }
+        case Op::MirroredSum: {
+            // |v|² + 4 (v·h)² (|h|² - 1), where (v·h)² <= |v|² |h|²; rounding is relative to the terms.
+            const double most = b.high * (1.0 + 2.0 * c.high) * (1.0 + 2.0 * c.high);
+            const double error =
+                4.0 * b.high * c.high * std::max(std::abs(c.low - 1.0), std::abs(c.high - 1.0)) +
+                64.0 * unitRoundoff(node.format) * most;
+            if (!std::isfinite(error) || b.low < 0.0 || c.low < 0.0) {
+                return a;
+            }
+            return meet(a, {roundDown(b.low - error, node.format), roundUp(b.high + error, node.format)});
+        }
+        case Op::TriangleSum:
+            return meet(a, {a.low, roundUp(b.high * (1.0 + 40.0 * unitRoundoff(node.format)), node.format)});
+        case Op::UnitQuotient:
+            return unitQuotient(node);
         case Op::Less:
         case Op::LessEqual:
         case Op::Equal:
@@ -336,6 +376,42 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         default:
             return integer(node, hazard);
     }
+}
+
+Interval BoxEvaluator::unitQuotient(const Node& node) {
+    const Interval& plain = of(node.a);
+    const Interval& length2 = of(node.c);
+    const Node& quotient = program_.nodes[node.a];
+    const bool isPositive = length2.low > 0.0 || (quotient.op == Op::Divide && of(quotient.b).low > 0.0);
+    if (!isPositive || !length2.isFinite()) {
+        return plain;
+    }
+    // The square of the component may have lost the smallest number, which the others need not make good.
+    Interval result = meet(plain, {-1.5, 1.5});
+    if (length2.low >= leastSquaredLength(node.value)) {
+        const bool isFirst = quotient.op == Op::Divide || program_.nodes[quotient.b].op == Op::Apply;
+        result = meet(result,
+                      Arithmetic(node.format).normalized(of(isFirst ? quotient.a : quotient.b), of(node.b)));
+    }
+    std::erase_if(findings_, [&](const Finding& finding) {
+        return finding.node == node.a && finding.hazard == Hazard::Overflow;
+    });
+    return result;
+}
+
+// (x + y) - x is not negative if y is not: rounding is monotone.
+Interval BoxEvaluator::difference(const Node& node, const Interval& plain) const {
+    NodeId sum = node.a;
+    while (program_.nodes[sum].op == Op::Bounded || program_.nodes[sum].op == Op::Refine) {
+        sum = program_.nodes[sum].a;
+    }
+    const Node& from = program_.nodes[sum];
+    if (from.op != Op::Add || (from.a != node.b && from.b != node.b)) {
+        return plain;
+    }
+    const Interval& added = of(from.a == node.b ? from.b : from.a);
+    return {added.low >= 0.0 ? std::max(plain.low, 0.0) : plain.low,
+            added.high <= 0.0 ? std::min(plain.high, 0.0) : plain.high};
 }
 
 // Inputs that the claim does not have are 0.
@@ -501,215 +577,6 @@ Interval BoxEvaluator::integer(const Node& node, Hazard& hazard) const {
             break;
     }
     return result.isWithin(all) ? result : all;
-}
-
-void BoxEvaluator::joinForm(const Affine& other, bool isFirst, Affine& result) {
-    if (isFirst) {
-        copyAffine(other, result);
-        return;
-    }
-    if (!result.isValid || !other.isValid) {
-        result.isValid = false;
-        return;
-    }
-    // The mean of both, and half of what lies between them.
-    double between = std::abs(result.center - other.center);
-    for (std::size_t d = 0; d < result.slopes.size(); ++d) {
-        between += std::abs(result.slopes[d] - other.slopes[d]);
-        result.slopes[d] = 0.5 * (result.slopes[d] + other.slopes[d]);
-    }
-    result.center = 0.5 * (result.center + other.center);
-    result.error = (std::max(result.error, other.error) + 0.5 * between) * (1.0 + 0x1p-46);
-}
-
-void BoxEvaluator::formOfMerge(const Node& node, Affine& result) {
-    bool isFirst = true;
-    const auto join = [&](NodeId id) {
-        if (!of(id).isEmpty()) {
-            joinForm(forms_[id], isFirst, result);
-            isFirst = false;
-        }
-    };
-    if (node.op == Op::Select) {
-        if (!of(node.a).isFalse()) {
-            join(node.b);
-        }
-        if (!of(node.a).isTrue()) {
-            join(node.c);
-        }
-        return;
-    }
-    for (std::uint32_t k = 0; k < node.count; ++k) {
-        const Edge& edge = program_.edges[node.first + k];
-        const Interval guard = edge.guard == kNoNode ? kTrue : of(edge.guard);
-        if (!guard.isFalse() && !guard.isEmpty()) {
-            join(edge.value);
-        }
-    }
-}
-
-void BoxEvaluator::formOfFunction(const Node& node, Affine& result) {
-    const Affine& a = forms_[node.a];
-    const Interval& x = of(node.a);
-    const bool isSine = node.function == Function::Sin;
-    if (!isSine && node.function != Function::Cos) {
-        applyAffine(node.function, a, x, result);
-        return;
-    }
-    if (!a.isValid || x.width() > 2.0 || x.magnitude() > 1e6) {
-        return;
-    }
-    // Taylor's theorem about the centre: the second derivative is at most 1.
-    const double middle = 0.5 * (x.low + x.high);
-    const double half = 0.5 * x.width() * (1.0 + 0x1p-50);
-    const double value = isSine ? std::sin(middle) : std::cos(middle);
-    const double slope = isSine ? std::cos(middle) : -std::sin(middle);
-    scaleAffine(a, slope, result);
-    result.center += value - slope * middle;
-    result.error += 0.5 * half * half + 0x1p-45 * (1.0 + x.magnitude());
-}
-
-void BoxEvaluator::formOfPower(const Node& node, Affine& result) {
-    const Interval& x = of(node.a);
-    const Interval& y = of(node.b);
-    if (y.isPoint()) {
-        powerAffine(forms_[node.a], x, y.low, result);
-        return;
-    }
-    if (x.low <= 0.0 || !forms_[node.b].isValid) {
-        return;
-    }
-    Affine log;
-    log.slopes = scratch_[0];
-    applyAffine(Function::Log, forms_[node.a], x, log);
-    Affine exponent;
-    exponent.slopes = scratch_[1];
-    if (!log.isValid) {
-        return;
-    }
-    multiplyAffine(log, forms_[node.b], exponent);
-    if (exponent.isValid) {
-        applyAffine(Function::Exp, exponent, exponent.range(), result);
-    }
-}
-
-// Returns whether there is a rule for the operation.
-bool BoxEvaluator::formOf(const Node& node, Affine& result) {
-    const auto form = [this](NodeId id) -> const Affine& { return forms_[id]; };
-    result.isValid = false;
-    double furtherUnits = 0.0;
-    switch (node.op) {
-        case Op::Input: {
-            const auto found =
-                std::find(symbols_.begin(), symbols_.end(), static_cast<std::size_t>(node.value));
-            const Interval range = inputOf(node);
-            result.set(range);
-            if (found != symbols_.end()) {
-                result.slopes[static_cast<std::size_t>(found - symbols_.begin())] = result.error;
-                result.error = 0.0;
-            }
-            return true;
-        }
-        case Op::Add:
-        case Op::Subtract:
-            addAffine(form(node.a), form(node.b), node.op == Op::Add ? 1.0 : -1.0, result);
-            break;
-        case Op::Multiply:
-            multiplyAffine(form(node.a), form(node.b), result);
-            break;
-        case Op::Square:
-            squareAffine(form(node.a), result);
-            break;
-        case Op::Divide:
-            divideAffine(form(node.a), form(node.b), of(node.b), scratch_[0], result);
-            break;
-        case Op::Negate:
-            scaleAffine(form(node.a), -1.0, result);
-            return true;
-        case Op::Absolute: {
-            Affine opposite;
-            opposite.slopes = scratch_[1];
-            scaleAffine(form(node.a), -1.0, opposite);
-            maximumAffine(form(node.a), opposite, 1.0, scratch_[0], result);
-            return true;
-        }
-        case Op::Minimum:
-        case Op::Maximum:
-            maximumAffine(form(node.a), form(node.b), node.op == Op::Maximum ? 1.0 : -1.0, scratch_[0],
-                          result);
-            return true;
-        case Op::Mix: {
-            // a + c (b - a), with some more roundings.
-            Affine difference;
-            difference.slopes = scratch_[0];
-            addAffine(form(node.b), form(node.a), -1.0, difference);
-            Affine product;
-            product.slopes = scratch_[1];
-            multiplyAffine(difference, form(node.c), product);
-            addAffine(form(node.a), product, 1.0, result);
-            if (result.isValid) {
-                result.error += 0x1p-21 * (node.format == Format::Half ? 0x1p13 : 1.0) *
-                                (of(node.a).magnitude() + of(node.b).magnitude()) *
-                                (1.0 + of(node.c).magnitude());
-            }
-            break;
-        }
-        case Op::Normalized: {
-            Affine scale;
-            scale.slopes = scratch_[0];
-            applyAffine(Function::InverseSqrt, form(node.c), of(node.c), scale);
-            if (scale.isValid) {
-                multiplyAffine(form(node.a), scale, result);
-            }
-            furtherUnits = 3.0;
-            break;
-        }
-        case Op::Apply:
-            formOfFunction(node, result);
-            furtherUnits = node.function == Function::Sqrt ? 0.0 : 2.0;
-            break;
-        case Op::Power:
-            formOfPower(node, result);
-            furtherUnits = 2.0;
-            break;
-        case Op::Refine:
-        case Op::Bounded:
-        case Op::UnitSum:
-        case Op::PartOfUnit:
-            copyAffine(form(node.a), result);
-            return true;
-        case Op::CircleSum:
-            if (node.a == node.b) {
-                squareAffine(form(node.a), result);
-                furtherUnits = 16.0;
-                break;
-            }
-            copyAffine(form(node.c), result);
-            return true;
-        case Op::SphereSum:
-            squareAffine(form(node.a), result);
-            furtherUnits = 20.0;
-            break;
-        case Op::SquareOfRoot:
-            copyAffine(form(node.a), result);
-            furtherUnits = 4.0;
-            break;
-        case Op::Select:
-        case Op::Merge:
-            formOfMerge(node, result);
-            return true;
-        case Op::Convert:
-        case Op::SplitHigh:
-            copyAffine(form(node.a), result);
-            if (node.op == Op::SplitHigh && result.isValid) {
-                result.error += of(node.a).magnitude() * 0x1p-12;
-            }
-            break;
-        default:
-            return false;
-    }
-    roundAffine(result, node.format, furtherUnits);
-    return true;
 }
 
 }  // namespace glint::prove

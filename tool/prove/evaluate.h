@@ -2,6 +2,7 @@
 #pragma once
 
 #include "prove/affine.h"
+#include "prove/identities.h"
 #include "prove/program.h"
 
 #include <span>
@@ -46,6 +47,8 @@ private:
     void evaluateForm(NodeId id);
     Interval valueOf(const Node& node, Hazard& hazard);
     Interval inputOf(const Node& node) const;
+    Interval unitQuotient(const Node& node);
+    Interval difference(const Node& node, const Interval& plain) const;
     Interval compared(const Node& node);
     Interval merged(const Node& node) const;
     Interval refined(const Node& node) const;
@@ -62,6 +65,7 @@ private:
     }
 
     const Program& program_;
+    Identities identities_;
     std::vector<Interval> values_;
     std::vector<Affine> forms_;
     std::vector<double> slopes_;

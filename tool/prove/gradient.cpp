@@ -227,6 +227,11 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
         case Op::Refine:
         case Op::Bounded:
         case Op::UnitSum:
+        case Op::WeightedUnit:
+        case Op::UnitQuotient:
+        case Op::TriangleSum:
+        case Op::MirroredSum:
+        case Op::Share:
         case Op::PartOfUnit:
             give(node.a, adjoint, kOne);
             return true;

@@ -11,8 +11,6 @@
 namespace glint::prove {
 namespace {
 
-constexpr double kSplitFactor = 4097.0;  // Veltkamp's, in shaders/bsdf/exact.glsl
-
 bool isCommutative(Op op) {
     switch (op) {
         case Op::Add:
@@ -101,6 +99,11 @@ const char* nameOf(Op op) {
                                              "dot",
                                              "unitSum",
                                              "partOfUnit",
+                                             "weightedUnit",
+                                             "share",
+                                             "mirroredSum",
+                                             "triangleSum",
+                                             "unitQuotient",
                                              "sphereSum",
                                              "<",
                                              "<=",
@@ -258,6 +261,24 @@ NodeId ProgramBuilder::make(Node node) {
     return appendOnce(node);
 }
 
+NodeId ProgramBuilder::remake(const Node& node) {
+    // The builder knows as much of the operation as the other one did, or more.
+    const NodeId known = node.op == Op::CircleSum                                  ? node.c
+                         : node.op == Op::SquareOfRoot || node.op == Op::SphereSum ? node.b
+                         : node.op == Op::Bounded || node.op == Op::UnitSum || node.op == Op::PartOfUnit ||
+                                 node.op == Op::WeightedUnit || node.op == Op::UnitQuotient ||
+                                 node.op == Op::Share || node.op == Op::TriangleSum
+                             ? node.a
+                             : kNoNode;
+    if (known != kNoNode && (isConstant(known) || this->node(known).op == node.op)) {
+        return known;
+    }
+    const bool wasAuxiliary = std::exchange(makesAuxiliary_, node.isAuxiliary);
+    const NodeId made = make(node);
+    makesAuxiliary_ = wasAuxiliary;
+    return made;
+}
+
 NodeId ProgramBuilder::folded(const Node& node) {
     if (node.op == Op::Refine || node.op == Op::Input || node.op == Op::Merge) {
         return kNoNode;
@@ -290,13 +311,32 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (isConstant(node.a, 1.0)) {
                 return node.b;
             }
-            return isConstant(node.b, 1.0) ? node.a : kNoNode;
+            if (isConstant(node.b, 1.0)) {
+                return node.a;
+            }
+            // Factors are finite, or the operation that made them fails.
+            if (isConstant(node.a, 0.0) || isConstant(node.b, 0.0)) {
+                return constant(0.0, node.format);
+            }
+            if (const NodeId choice = intoChoice(node); choice != kNoNode) {
+                return choice;
+            }
+            if (const NodeId part = unitQuotient(node); part != kNoNode) {
+                return part;
+            }
+            return share(node);
         case Op::Add:
             if (isConstant(node.a, 0.0)) {
                 return node.b;
             }
             if (isConstant(node.b, 0.0)) {
                 return node.a;
+            }
+            if (const NodeId choice = intoChoice(node); choice != kNoNode) {
+                return choice;
+            }
+            if (const NodeId sum = sumOfShares(node); sum != kNoNode) {
+                return sum;
             }
             if (const NodeId between = interpolation(node); between != kNoNode) {
                 return between;
@@ -310,11 +350,18 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (const NodeId sum = sumOfNormalized(node); sum != kNoNode) {
                 return sum;
             }
-            if (const NodeId sum = squaredRadius(node); sum != kNoNode) {
-                return sum;
+            for (const auto pattern : {&ProgramBuilder::squaredRadius, &ProgramBuilder::sumOfScaled,
+                                       &ProgramBuilder::mirroredSum, &ProgramBuilder::triangleSum}) {
+                if (const NodeId sum = (this->*pattern)(node); sum != kNoNode) {
+                    return sum;
+                }
             }
             return dotProduct(node);
         case Op::Square:
+            if (const Node choice = this->node(node.a); choice.op == Op::Select) {
+                const NodeId yes = make(Op::Square, node.format, choice.b);
+                return make(Op::Select, node.format, choice.a, yes, make(Op::Square, node.format, choice.c));
+            }
             if (this->node(node.a).op == Op::Negate) {
                 return make(Op::Square, node.format, this->node(node.a).a);
             }
@@ -331,10 +378,19 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             }
             return isConstant(node.b, 0.0) ? node.a : errorFree(node);
         case Op::Divide:
-            return isConstant(node.b, 1.0) ? node.a : kNoNode;
+            if (isConstant(node.b, 1.0)) {
+                return node.a;
+            }
+            if (const NodeId part = unitQuotient(node); part != kNoNode) {
+                return part;
+            }
+            if (const NodeId less = quotientOfLess(node); less != kNoNode) {
+                return less;
+            }
+            return share(node);
         case Op::Minimum:
         case Op::Maximum:
-            return node.a == node.b ? node.a : kNoNode;
+            return node.a == node.b ? node.a : limited(node);
         case Op::And:
             if (isConstant(node.a)) {
                 return isConstant(node.a, 0.0) ? node.a : node.b;
@@ -357,7 +413,17 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             if (isConstant(node.a)) {
                 return isConstant(node.a, 0.0) ? node.c : node.b;
             }
-            return node.b == node.c ? node.b : kNoNode;
+            if (node.b == node.c) {
+                return node.b;
+            }
+            // A choice within a choice by the same condition.
+            if (const Node& no = this->node(node.c); no.op == Op::Select && no.a == node.a) {
+                return make(Op::Select, node.format, node.a, node.b, no.c);
+            }
+            if (const Node& yes = this->node(node.b); yes.op == Op::Select && yes.a == node.a) {
+                return make(Op::Select, node.format, node.a, yes.b, node.c);
+            }
+            return kNoNode;
         case Op::Convert:
             return this->node(node.a).format == node.format ? node.a : kNoNode;
         case Op::ShiftRight:
@@ -369,171 +435,10 @@ NodeId ProgramBuilder::simplified(const Node& node) {
     }
 }
 
-NodeId ProgramBuilder::plainOf(NodeId id) const {
-    for (;;) {
-        const Node& known = node(id);
-        if (known.op == Op::SphereSum) {
-            id = known.b;
-        } else if (known.op == Op::Bounded || known.op == Op::UnitSum || known.op == Op::PartOfUnit) {
-            id = known.a;
-        } else if (known.op == Op::CircleSum) {
-            id = known.c;
-        } else if (known.op == Op::SquareOfRoot) {
-            id = known.b;
-        } else {
-            return id;
-        }
-    }
-}
-
-bool ProgramBuilder::isHighOf(NodeId high, NodeId of) const {
-    if (isConstant(of)) {
-        const Node split{.op = Op::SplitHigh};
-        return isConstant(high, evaluateNode(split, node(of).value, 0.0, 0.0));
-    }
-    return node(high).op == Op::SplitHigh && node(high).a == of;
-}
-
-bool ProgramBuilder::isLowOf(NodeId low, NodeId of) const {
-    if (isConstant(of)) {
-        const Node split{.op = Op::SplitLow};
-        return isConstant(low, evaluateNode(split, node(of).value, 0.0, 0.0));
-    }
-    return node(low).op == Op::SplitLow && node(low).a == of;
-}
-
-bool ProgramBuilder::isProductOf(NodeId product, NodeId a, NodeId b) const {
-    const Node& found = node(plainOf(product));
-    if (a == b) {
-        return found.op == Op::Square && found.a == a;
-    }
-    return found.op == Op::Multiply && ((found.a == a && found.b == b) || (found.a == b && found.b == a));
-}
-
-bool ProgramBuilder::isSumOf(NodeId sum, NodeId a, NodeId b) const {
-    const Node& found = node(plainOf(sum));
-    return found.op == Op::Add && ((found.a == a && found.b == b) || (found.a == b && found.b == a));
-}
-
-// Finds the sequences of shaders/bsdf/exact.glsl; a hit is sound whatever it was written for, because the
-// operations are the same.
-NodeId ProgramBuilder::errorFree(const Node& node) {
-    if (node.format != Format::Single) {
-        return kNoNode;
-    }
-    const auto at = [this](NodeId id) -> const Node& { return this->node(id); };
-    if (node.op == Op::Subtract) {
-        // big - (big - x), where big = 4097 x
-        const Node& big = at(node.a);
-        const Node& rest = at(node.b);
-        if (big.op == Op::Multiply && rest.op == Op::Subtract && rest.a == node.a &&
-            ((isConstant(big.a, kSplitFactor) && big.b == rest.b) ||
-             (isConstant(big.b, kSplitFactor) && big.a == rest.b))) {
-            return make(Op::SplitHigh, node.format, rest.b);
-        }
-        if (rest.op == Op::SplitHigh && rest.a == node.a) {
-            return make(Op::SplitLow, node.format, node.a);
-        }
-        return kNoNode;
-    }
-    // Both orders of a sum, because operands are sorted.
-    for (const auto& [left, right] : {std::pair(node.a, node.b), std::pair(node.b, node.a)}) {
-        // (a - (sum - part)) + (b - part), where part = sum - a
-        const Node& first = at(left);
-        const Node& second = at(right);
-        if (first.op == Op::Subtract && second.op == Op::Subtract) {
-            const Node& part = at(second.b);
-            const Node& kept = at(first.b);
-            if (part.op == Op::Subtract && part.b == first.a && kept.op == Op::Subtract && kept.a == part.a &&
-                kept.b == second.b && isSumOf(part.a, first.a, second.a)) {
-                return make(Op::SumError, node.format, first.a, second.a);
-            }
-        }
-        // (((hh - product) + hl) + lh) + ll
-        if (first.op != Op::Add || (second.op != Op::Multiply && second.op != Op::Square)) {
-            continue;
-        }
-        const auto factors = [&](NodeId id) {
-            return at(id).op == Op::Square ? std::pair(at(id).a, at(id).a) : std::pair(at(id).a, at(id).b);
-        };
-        const auto [low1, low2] = factors(right);
-        if (at(low1).op != Op::SplitLow || at(low2).op != Op::SplitLow) {
-            continue;
-        }
-        const NodeId a = at(low1).a;
-        const NodeId b = at(low2).a;
-        const auto isCross = [&](NodeId id) {
-            if (at(id).op != Op::Multiply) {
-                return false;
-            }
-            const auto [x, y] = factors(id);
-            return (isHighOf(x, a) && isLowOf(y, b)) || (isHighOf(y, a) && isLowOf(x, b)) ||
-                   (isHighOf(x, b) && isLowOf(y, a)) || (isHighOf(y, b) && isLowOf(x, a));
-        };
-        for (const auto& [inner, cross2] : {std::pair(first.a, first.b), std::pair(first.b, first.a)}) {
-            if (!isCross(cross2) || at(inner).op != Op::Add) {
-                continue;
-            }
-            for (const auto& [start, cross1] :
-                 {std::pair(at(inner).a, at(inner).b), std::pair(at(inner).b, at(inner).a)}) {
-                if (!isCross(cross1) || at(start).op != Op::Subtract) {
-                    continue;
-                }
-                const NodeId highs = at(start).a;
-                const auto [x, y] = factors(highs);
-                const bool areHighs =
-                    (isHighOf(x, a) && isHighOf(y, b)) || (isHighOf(x, b) && isHighOf(y, a));
-                if (areHighs && isProductOf(at(start).b, a, b)) {
-                    return make(Op::ProductError, node.format, std::min(a, b), std::max(a, b));
-                }
-            }
-        }
-    }
-    return kNoNode;
-}
-
-// a + (b - a) c
-NodeId ProgramBuilder::interpolation(const Node& given) {
-    for (const auto& [start, product] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
-        const Node times = node(product);
-        if (times.op != Op::Multiply) {
-            continue;
-        }
-        for (const auto& [difference, share] : {std::pair(times.a, times.b), std::pair(times.b, times.a)}) {
-            const Node between = node(difference);
-            if (between.op == Op::Subtract && between.b == start && given.format == Format::Single) {
-                return make(Op::Lerp, given.format, start, between.a, share);
-            }
-        }
-    }
-    return kNoNode;
-}
-
-// (x >> a) >> b, which is 0 if nothing is left.
-NodeId ProgramBuilder::shifted(const Node& given) {
-    NodeId shiftedBefore = given.a;
-    while (node(shiftedBefore).op == Op::Refine) {
-        shiftedBefore = node(shiftedBefore).a;
-    }
-    const Node before = node(shiftedBefore);
-    if (before.op != Op::ShiftRight || !isConstant(before.b) || !isConstant(given.b) || given.isSigned ||
-        before.isSigned) {
-        return kNoNode;
-    }
-    const double places = node(before.b).value + node(given.b).value;
-    if (places > 31.0) {
-        return constant(0.0, Format::Integer);
-    }
-    Node all = given;
-    all.a = before.a;
-    all.b = constant(places, Format::Integer);
-    return make(all);
-}
-
 // Appends a node that simplified() has been asked about, unless it is there already.
 NodeId ProgramBuilder::appendOnce(const Node& node) {
-    const Key key{node.op, node.format, node.function, node.relation, node.isSigned, node.a, node.b,
-                  node.c,  0.0};
+    const Key key{node.op, node.format, node.function, node.relation, node.isSigned,
+                  node.a,  node.b,      node.c,        node.value};
     std::vector<NodeId>& found = known_[key];
     for (const NodeId id : found) {
         if (covers(this->node(id).guard)) {
@@ -544,179 +449,6 @@ NodeId ProgramBuilder::appendOnce(const Node& node) {
     const NodeId id = append(node);
     known_[key].push_back(id);
     return id;
-}
-
-ProgramBuilder::Angular ProgramBuilder::angularOf(NodeId id) {
-    const Node node = this->node(id);
-    switch (node.op) {
-        case Op::Apply:
-            if (node.function == Function::Sin || node.function == Function::Cos) {
-                return {node.a, node.function == Function::Sin, constant(1.0, node.format)};
-            }
-            return {};
-        case Op::Negate:
-        case Op::Refine:
-            return angularOf(node.a);
-        case Op::Multiply:
-            for (const auto& [angular, factor] : {std::pair(node.a, node.b), std::pair(node.b, node.a)}) {
-                Angular found = angularOf(angular);
-                if (found.angle != kNoNode) {
-                    found.rest = make(Op::Multiply, node.format, found.rest, factor);
-                    return found;
-                }
-            }
-            return {};
-        case Op::Divide: {
-            Angular found = angularOf(node.a);
-            if (found.angle != kNoNode) {
-                found.rest = make(Op::Divide, node.format, found.rest, node.b);
-            }
-            return found;
-        }
-        default:
-            return {};
-    }
-}
-
-NodeId ProgramBuilder::sumOfSquares(const Node& node) {
-    const Node& first = this->node(node.a);
-    const Node& second = this->node(node.b);
-    if (first.op != Op::Square || second.op != Op::Square) {
-        return kNoNode;
-    }
-    const NodeId x = first.a;
-    const NodeId y = second.a;
-    const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
-    const Angular ofX = angularOf(x);
-    const Angular ofY = angularOf(y);
-    makesAuxiliary_ = wasAuxiliary;
-    if (ofX.angle == kNoNode || ofX.angle != ofY.angle || ofX.isSine == ofY.isSine) {
-        return kNoNode;
-    }
-    return make(Op::CircleSum, node.format, ofX.rest, ofY.rest, appendOnce(node));
-}
-
-NodeId ProgramBuilder::boundedDot(NodeId sum, const std::vector<NodeId>& a, const std::vector<NodeId>& b) {
-    if (a == b || isConstant(sum)) {
-        return sum;
-    }
-    const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
-    NodeId squares[2] = {kNoNode, kNoNode};
-    for (const bool second : {false, true}) {
-        NodeId& total = squares[second ? 1 : 0];
-        for (const NodeId part : second ? b : a) {
-            const NodeId square = make(Op::Square, node(sum).format, part);
-            total = total == kNoNode ? square : make(Op::Add, node(sum).format, total, square);
-        }
-    }
-    const NodeId both = make(Op::Multiply, node(sum).format, squares[0], squares[1]);
-    makesAuxiliary_ = wasAuxiliary;
-    return make(Op::Bounded, node(sum).format, sum, both);
-}
-
-// Finds the sum of three products, (a.x b.x + a.y b.y) + a.z b.z. Any pairing of factors gives a true bound.
-NodeId ProgramBuilder::dotProduct(const Node& node) {
-    for (const auto& [pair, last] : {std::pair(node.a, node.b), std::pair(node.b, node.a)}) {
-        const Node two = this->node(pair);
-        const Node third = this->node(last);
-        if (two.op != Op::Add || third.op != Op::Multiply) {
-            continue;
-        }
-        const Node first = this->node(two.a);
-        const Node second = this->node(two.b);
-        if (first.op != Op::Multiply || second.op != Op::Multiply || isConstant(first.a) ||
-            isConstant(second.a) || isConstant(third.a) || isConstant(first.b) || isConstant(second.b) ||
-            isConstant(third.b)) {
-            continue;
-        }
-        return boundedDot(appendOnce(node), {first.a, second.a, third.a}, {first.b, second.b, third.b});
-    }
-    return kNoNode;
-}
-
-NodeId ProgramBuilder::sumOfNormalized(const Node& given) {
-    // The squares in a sum, whatever else is known of the sum.
-    const auto squaresOf = [this](const auto& self, NodeId id, std::vector<NodeId>& squares) -> bool {
-        const Node& at = node(plainOf(id));
-        if (at.op == Op::Add) {
-            return self(self, at.a, squares) && self(self, at.b, squares);
-        }
-        squares.push_back(at.op == Op::Square ? at.a : kNoNode);
-        return at.op == Op::Square;
-    };
-    std::vector<NodeId> parts;
-    if (!squaresOf(squaresOf, given.a, parts) || !squaresOf(squaresOf, given.b, parts)) {
-        return kNoNode;
-    }
-    std::vector<NodeId> components;
-    for (const NodeId part : parts) {
-        if (node(part).op != Op::Normalized || node(part).c != node(parts.front()).c) {
-            return kNoNode;
-        }
-        components.push_back(node(part).a);
-    }
-    std::sort(components.begin(), components.end());
-    if (std::adjacent_find(components.begin(), components.end()) != components.end()) {
-        return kNoNode;
-    }
-    const NodeId length2 = node(parts.front()).c;
-    std::vector<NodeId> all;
-    const bool isSum = squaresOf(squaresOf, length2, all);
-    std::sort(all.begin(), all.end());
-    return make(isSum && all == components ? Op::UnitSum : Op::PartOfUnit, given.format, appendOnce(given),
-                length2);
-}
-
-bool ProgramBuilder::isSineOf(NodeId id, NodeId& cosine, NodeId& factor) {
-    const Node at = node(id);
-    if (at.op == Op::Multiply) {
-        for (const auto& [sine, other] : {std::pair(at.a, at.b), std::pair(at.b, at.a)}) {
-            if (isSineOf(sine, cosine, factor)) {
-                factor = make(Op::Multiply, at.format, factor, other);
-                return true;
-            }
-        }
-        return false;
-    }
-    if (at.op != Op::Apply || at.function != Function::Sqrt) {
-        return false;
-    }
-    const Node limited = node(at.a);
-    if (limited.op != Op::Maximum || !isConstant(limited.b, 0.0) || node(limited.a).op != Op::Multiply) {
-        return false;
-    }
-    const Node product = node(limited.a);
-    for (const auto& [minus, plus] : {std::pair(product.a, product.b), std::pair(product.b, product.a)}) {
-        const Node& m = node(minus);
-        const Node& p = node(plus);
-        if (m.op == Op::Subtract && isConstant(m.a, 1.0) && p.op == Op::Add &&
-            ((p.a == m.b && isConstant(p.b, 1.0)) || (p.b == m.b && isConstant(p.a, 1.0)))) {
-            cosine = m.b;
-            factor = constant(1.0, at.format);
-            return true;
-        }
-    }
-    return false;
-}
-
-NodeId ProgramBuilder::squaredRadius(const Node& given) {
-    for (const auto& [circle, last] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
-        const Node around = node(circle);
-        const Node square = node(last);
-        if (around.op != Op::CircleSum || around.a != around.b || square.op != Op::Square) {
-            continue;
-        }
-        NodeId cosine = kNoNode;
-        NodeId factor = kNoNode;
-        const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
-        const bool isSine = isSineOf(around.a, cosine, factor);
-        const NodeId expected = isSine ? make(Op::Multiply, given.format, cosine, factor) : kNoNode;
-        makesAuxiliary_ = wasAuxiliary;
-        if (isSine && expected == square.a) {
-            return make(Op::SphereSum, given.format, factor, appendOnce(given));
-        }
-    }
-    return kNoNode;
 }
 
 NodeId ProgramBuilder::opposite(NodeId a) {

@@ -55,6 +55,12 @@ enum class Op : std::uint8_t {
     Bounded,       // a, where |a| <= √b: a dot product and the product of the squared lengths
     UnitSum,       // a, the sum of squares of a normalised vector, which is 1; b is its squared length before
     PartOfUnit,    // a, the sum of some of these squares, which is at most 1
+    WeightedUnit,  // a, the sum of squares of such components times weights; between b and c, the least and
+                   // the greatest weight squared
+    Share,         // a, which is b / (b + c)
+    MirroredSum,   // a, the squared length of 2 (v·h) h - v; b is that of v, c that of h
+    TriangleSum,   // a, the sum of squares of (x + y), which is at most b: (|x| + |y|)²
+    UnitQuotient,  // a = x / max(√c, `value`), a component of a normalised vector: c = x² + b
     SphereSum,     // b = (a s cos t)² + (a s sin t)² + (a z)², where s² = (1 - z)(1 + z): it is a²
     // Comparisons, which give truth values.
     Less,
@@ -102,7 +108,9 @@ struct Node {
     NodeId c = kNoNode;
     // The operation takes place where this truth value is true. kNoNode: always.
     NodeId guard = kNoNode;
-    double value = 0.0;       // of Constant; of Input its number
+    // Of Constant; of Input its number; of UnitQuotient, UnitSum and PartOfUnit the length below which
+    // vectors are divided by this instead.
+    double value = 0.0;
     std::uint32_t first = 0;  // of Merge: its edges
     std::uint32_t count = 0;
 };
@@ -136,6 +144,8 @@ public:
     // operation count.
     NodeId make(Node given);
     NodeId make(Op op, Format format, NodeId a, NodeId b = kNoNode, NodeId c = kNoNode);
+    // Makes a node of another program, whose operands are of this one. What is known of it is kept.
+    NodeId remake(const Node& node);
     NodeId apply(Function function, Format format, NodeId a);
     NodeId refine(NodeId a, Relation relation, NodeId b);
     // A dot product, which is no larger than the product of the lengths: `sum`, or what is known to be the
@@ -186,8 +196,41 @@ private:
     NodeId interpolation(const Node& node);
     NodeId shifted(const Node& node);
     NodeId dotProduct(const Node& node);
+    // A component of a normalised vector, times a weight.
+    struct UnitComponent {
+        NodeId of = kNoNode;  // the vector's component before
+        NodeId length2 = kNoNode;
+        NodeId weight = kNoNode;  // kNoNode: 1
+        double leastLength = 0.0;
+    };
+    UnitComponent unitComponentOf(NodeId id);
+    bool squaresIn(NodeId sum, std::vector<NodeId>& squares) const;
     NodeId sumOfNormalized(const Node& node);
+    using Factors = std::vector<NodeId>;
+    // Shares of a sum; program_shares.cpp.
+    NodeId withoutRefinement(NodeId id) const;
+    void factorsOf(NodeId id, NodeId divisor, Factors& factors) const;
+    void divisorsOf(NodeId id, std::vector<NodeId>& divisors) const;
+    bool isSumWith(NodeId id, const std::vector<NodeId>& parts, int depth) const;
+    bool termsOf(NodeId id, const std::vector<NodeId>& parts, std::vector<Factors>& terms, int depth) const;
+    NodeId sumOfTerms(const std::vector<Factors>& terms, Format format);
+    NodeId shareOf(NodeId value, std::vector<Factors> own, NodeId divisor);
+    NodeId share(const Node& node);
+    NodeId sumOfShares(const Node& node);
+    NodeId limited(const Node& node);
+    NodeId sumOfScaled(const Node& node);
+    NodeId mirroredSum(const Node& node);
+    NodeId quotientOfLess(const Node& node);
+    NodeId triangleSum(const Node& node);
+    NodeId intoChoice(const Node& node);
+    NodeId weightedSum(const Node& sum, NodeId one, std::vector<NodeId> weights);
+    NodeId bareOf(NodeId id) const;  // without refinements
+    void operandsOf(Op op, NodeId id, std::vector<NodeId>& operands) const;
+    NodeId unitPart(const Node& node, NodeId part, NodeId length2, double leastLength);
+    NodeId unitQuotient(const Node& node);
     NodeId squaredRadius(const Node& node);
+    // Whether `product` is `part` times a factor.
+    bool factorOf(NodeId product, NodeId part, NodeId& factor);
     // √((1 - z)(1 + z)) times a factor.
     bool isSineOf(NodeId id, NodeId& cosine, NodeId& factor);
     NodeId folded(const Node& node);
@@ -202,6 +245,11 @@ private:
 
     Program program_;
     std::map<Key, std::vector<NodeId>> known_;
+    struct KnownShare {
+        std::vector<Factors> terms;
+        NodeId divisor = kNoNode;
+    };
+    std::map<NodeId, KnownShare> shares_;
     NodeId guard_ = kNoNode;
     bool makesAuxiliary_ = false;
 };

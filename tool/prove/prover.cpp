@@ -2,6 +2,7 @@
 
 #include "prove/concrete.h"
 #include "prove/gradient.h"
+#include "prove/specialise.h"
 
 #include <fmt/format.h>
 
@@ -73,12 +74,12 @@ double sizeOf(const Interval& side, const InputRange& range) {
 
 class Search {
 public:
-    Search(const Program& program, const Claim& claim, const ProofOptions& options)
-        : program_(program),
+    Search(Program program, const Claim& claim, const ProofOptions& options)
+        : program_(std::move(program)),
           claim_(claim),
           options_(options),
-          boxes_(program),
-          gradient_(program),
+          boxes_(program_),
+          gradient_(program_),
           random_(options.seed) {}
 
     ProofResult run();
@@ -94,10 +95,11 @@ private:
     bool isOutside() const;
     std::string failureOf(NodeId& blamed) const;
     std::string describeFinding(const Finding& finding) const;
+    std::vector<bool> inputsOf(NodeId target) const;
     std::optional<std::size_t> sideToCut(const Box& box);
     void cut(const Box& box, std::size_t side);
 
-    const Program& program_;
+    const Program program_;
     const Claim& claim_;
     const ProofOptions& options_;
     BoxEvaluator boxes_;
@@ -245,15 +247,46 @@ bool Search::isProved(Box& box) {
     return proved;
 }
 
+// The inputs on which a node depends, with the conditions under which it is computed.
+std::vector<bool> Search::inputsOf(NodeId target) const {
+    std::vector<bool> inputs(claim_.inputs.size());
+    std::vector<bool> isNeeded(program_.nodes.size());
+    const auto need = [&](NodeId id) {
+        if (id != kNoNode) {
+            isNeeded[id] = true;
+        }
+    };
+    need(target);
+    for (NodeId id = target + 1; id-- > 0;) {
+        if (!isNeeded[id]) {
+            continue;
+        }
+        const Node& node = program_.nodes[id];
+        if (node.op == Op::Input && static_cast<std::size_t>(node.value) < inputs.size()) {
+            inputs[static_cast<std::size_t>(node.value)] = true;
+        }
+        for (const NodeId operand : {node.a, node.b, node.c, node.guard}) {
+            need(operand);
+        }
+        for (std::uint32_t k = 0; k < node.count; ++k) {
+            need(program_.edges[node.first + k].guard);
+            need(program_.edges[node.first + k].value);
+        }
+    }
+    return inputs;
+}
+
 // The side whose halves have the narrowest bound of what is to blame; a large side where that says nothing.
 std::optional<std::size_t> Search::sideToCut(const Box& box) {
     const NodeId target = blamed_;
     const double width = target == kNoNode ? kInfinity : boxes_.value(target).width();
+    const std::vector<bool> matters =
+        target == kNoNode ? std::vector<bool>(box.sides.size(), true) : inputsOf(target);
     std::optional<std::size_t> best;
     double bestScore = -kInfinity;
     for (std::size_t k = 0; k < box.sides.size(); ++k) {
         const std::optional<double> cut = cutOf(box.sides[k], claim_.inputs[k].scale);
-        if (!cut) {
+        if (!cut || !matters[k]) {
             continue;
         }
         double gain = 0.0;
@@ -374,7 +407,11 @@ std::optional<std::string> refute(const Program& program, const Claim& claim,
 }
 
 ProofResult prove(const Program& program, const Claim& claim, const ProofOptions& options) {
-    return Search(program, claim, options).run();
+    std::vector<Interval> domain;
+    for (const InputRange& input : claim.inputs) {
+        domain.push_back({input.low, input.high});
+    }
+    return Search(specialise(program, domain), claim, options).run();
 }
 
 }  // namespace glint::prove

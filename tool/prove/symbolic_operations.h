@@ -7,6 +7,8 @@
 
 namespace glint::prove {
 
+Diagnostic unsupportedInstruction(std::uint32_t opcode, const char* kind = "SPIR-V instruction");
+
 class SymbolicOperations {
 public:
     SymbolicOperations(const SpirvModule& module, ProgramBuilder& builder);

@@ -35,7 +35,7 @@ vec3 iridescentFresnel(float cosine, vec3 baseF0, float filmIor, float thickness
     if (sum.x <= 0.0) {
         return vec3(1.0);
     }
-    float cosineInFilm = sqrt(sum.x + (sum.y + square.y)) / ior;
+    float cosineInFilm = sqrt(max(sum.x + (sum.y + square.y), 0.0)) / ior;
 
     // From air to film. A reflection off the denser side turns the phase by half a cycle.
     float root12 = excess / (2.0 + excess);

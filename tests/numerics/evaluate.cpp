@@ -1,7 +1,6 @@
-// The probes in double precision.
+// The probes in the precision GLINT_REAL.
 #include "evaluate.h"
 
-#define GLINT_REAL double
 #include "numerics/glsl.h"
 
 #define GLINT_ENERGY_COMPENSATION 1
@@ -14,9 +13,10 @@ namespace {
 
 namespace glint::numerics {
 
-std::span<const ProbeFunction<double>> doubleProbes() {
+template <>
+std::span<const ProbeFunction<GLINT_REAL>> probeFunctions<GLINT_REAL>() {
 #define LISTED_PROBE(name) {#name, glsl::probe##name},
-    static constexpr ProbeFunction<double> kProbes[] = {
+    static constexpr ProbeFunction<GLINT_REAL> kProbes[] = {
 #include "probe_list.inc"
     };
 #undef LISTED_PROBE

@@ -1,7 +1,6 @@
-// The functions of the claims in single precision.
+// The functions of the claims in the precision GLINT_REAL.
 #include "proof_functions.h"
 
-#define GLINT_REAL float
 #include "numerics/glsl.h"
 
 #define GLINT_ENERGY_COMPENSATION 1
@@ -14,9 +13,10 @@ namespace {
 
 namespace glint::numerics {
 
-std::span<const ProbeFunction<float>> floatProofs() {
+template <>
+std::span<const ProbeFunction<GLINT_REAL>> proofFunctions<GLINT_REAL>() {
 #define LISTED_PROOF(name) {#name, glsl::prove##name},
-    static constexpr ProbeFunction<float> kProofs[] = {
+    static constexpr ProbeFunction<GLINT_REAL> kProofs[] = {
 #include "proof_list.inc"
     };
 #undef LISTED_PROOF

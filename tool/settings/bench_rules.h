@@ -1,0 +1,25 @@
+// Which values of settings a bench tries: rules for rows of the table of settings, whose members `against`
+// and `triedFor` they are.
+#pragma once
+
+#include "settings/table.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::compiler {
+
+// Why settings are not worth trying. Each returns a reason for all values, or nothing.
+std::string withoutRays(std::string_view value, const BenchFacts& facts, const Configuration& base);
+std::string withoutPaths(std::string_view value, const BenchFacts& facts, const Configuration& base);
+std::string withoutOrder(std::string_view value, const BenchFacts& facts, const Configuration& base);
+std::string withoutChoice(std::string_view value, const BenchFacts& facts, const Configuration& base);
+std::string withoutEmission(std::string_view value, const BenchFacts& facts, const Configuration& base);
+
+// The values to try, for rows that have no fixed list. `base` is the value of the default.
+std::vector<std::string> strategiesToTry(const BenchFacts& facts, const std::string& base, bool quick);
+std::vector<std::string> effectsToTry(const BenchFacts& facts, const std::string& base, bool quick);
+std::vector<std::string> clampsToTry(const BenchFacts& facts, const std::string& base, bool quick);
+
+}  // namespace glint::compiler
