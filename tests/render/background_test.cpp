@@ -214,6 +214,37 @@ TEST_F(Background, DraftsAreInNoMean) {
     expectNoValidationMessages();
 }
 
+// Frames in bands, and paths whose depth decides what later frames record.
+TEST_F(Background, PathsInBandsBeginWithADraft) {
+    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
+    compiler::CompileSettings settings = settingsWith(true);
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = queries ? package::kTracerRayQuery : package::kTracerRayPipeline;
+    settings.maxBounces = 12;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    const LoadedScene loaded(*scene_, settings);
+    ASSERT_TRUE(loaded.ok());
+    RendererOptions options = optionsOf(setup_, package::kStrategyUber,
+                                        queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
+    options.bounces = settings.maxBounces;
+    options.bands = 2;
+    RenderSetup setup = setup_;
+    setup.frame.recordAllBounces = true;
+    const LinearImage reference = loaded.render(options, setup);
+    options.backgroundPipelines = true;
+    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    std::size_t& adoptedAtOnce = (*renderer)->state().pipelines.adoptedAtOnce;
+    adoptedAtOnce = 0;
+    const LinearImage draft = renderedBy(**renderer, setup);
+    expectDraft(**renderer, setup.samples, "paths");
+    expectLikeness(draft, reference, "paths");
+    (*renderer)->waitForPipelines();
+    adoptedAtOnce = 1;
+    expectSameImage(renderedBy(**renderer, setup), reference, "without a draft");
+    expectNoValidationMessages();
+}
+
 // The pipelines are in the shader cache by now, so a picture that differs shows a pipeline in a wrong place.
 TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     RendererOptions options = optionsOf(setup_, package::kStrategyVisibility, package::kTracerRayQuery);

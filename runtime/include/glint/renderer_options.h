@@ -47,8 +47,8 @@ struct RendererOptions {
     // runs at once.
     std::uint32_t pipelineThreads = 0;
     // Makes the pipelines with shaders of single cases while frames are already drawn. Until a pipeline is
-    // made, the package's fallback shades its hits; apart from drafts, the pictures are the same. Requires a package with
-    // PackageShape::fallback, which must outlive the Renderer. Error "package-fallback" without.
+    // made, the package's fallback shades its hits; apart from drafts, the pictures are the same. Requires a
+    // package with PackageShape::fallback, which must outlive the Renderer. Error "package-fallback".
     bool backgroundPipelines = false;
     // With backgroundPipelines, lets frames begin as soon as the raster pass, a draft of the lighting pass
     // and the last pass are made. A draft shows the base of materials under the sky and the lights, without

@@ -135,8 +135,6 @@ void beginPicture(Renderer::State& state, std::uint32_t sampleIndex) {
     const bool draftsEnd = state.drafted && !state.pipelines.draft;
     if (draftsEnd || sampleIndex < state.firstSample) {
         state.firstSample = sampleIndex;
-    } else if (sampleIndex == 0) {
-        state.firstSample = 0;
     }
     state.drafted = state.pipelines.draft;
     state.drafts += state.drafted ? 1 : 0;
