@@ -10,7 +10,7 @@
 #endif
 
 #ifndef GLINT_CORNER
-#define GLINT_CORNER(i) hostPosition(geometry, corner[i])
+#define GLINT_CORNER(i) hostPosition(geometry, triangle.vertices[i])
 #endif
 
 struct Hit {
@@ -67,26 +67,28 @@ vec3 trianglePosition(HostGeometry geometry, uint primitive, vec2 barycentrics) 
                           p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
 }
 
-// The corners of a triangle in its mesh's space.
+// The corners of a triangle in its mesh's space, with the numbers of their vertices. These may have several forms, and
+// code that reads them is long, so it stands here once.
 struct TriangleCorners {
+    uvec3 vertices;
     vec3 corners[3];
 };
 
 TriangleCorners vertexPositions(HostGeometry geometry, uint primitive) {
     TriangleCorners triangle;
     for (uint i = 0u; i < 3u; ++i) {
-        triangle.corners[i] = hostPosition(geometry, hostVertex(geometry, 3u * primitive + i));
+        triangle.vertices[i] = hostVertex(geometry, 3u * primitive + i);
+        triangle.corners[i] = hostPosition(geometry, triangle.vertices[i]);
     }
     return triangle;
 }
 
 // Fetches the attributes that `features` may need. rayDirection is a unit vector; coneWidth is that of the ray cone at
 // the hit.
-Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
-               uint target, Features features, TriangleCorners triangle) {
+Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, float coneWidth, uint target,
+               Features features, TriangleCorners triangle) {
     InstanceRecord instance = hostInstance(geometry);
-    uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
-                         hostVertex(geometry, 3u * primitive + 2u));
+    uvec3 corner = triangle.vertices;
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     bool mirrored = (instance.flags & kInstanceMirrored) != 0u;
 
@@ -184,11 +186,11 @@ Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 ra
 // The same for the triangle that was hit, whose corners a module may know already.
 Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
              uint target, Features features) {
-    uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
-                         hostVertex(geometry, 3u * primitive + 2u));
     TriangleCorners triangle;
+    triangle.vertices = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
+                              hostVertex(geometry, 3u * primitive + 2u));
     triangle.corners[0] = GLINT_CORNER(0);
     triangle.corners[1] = GLINT_CORNER(1);
     triangle.corners[2] = GLINT_CORNER(2);
-    return fetchHitAt(geometry, primitive, barycentrics, rayDirection, coneWidth, target, features, triangle);
+    return fetchHitAt(geometry, barycentrics, rayDirection, coneWidth, target, features, triangle);
 }

@@ -234,6 +234,7 @@ struct FrameConstants {
     float sampleLodBias;  // of levels that derivatives of the screen choose: log2 of that cone's share of the pixel
     uint sampleIndex;   // 0 for the first sample of a pixel
     uint seed;
+    uint averaged;  // samples in the mean that this one joins; 0: the picture starts with it
     float time;  // seconds: what materials of packs may follow
     uint effects;  // bits of the package's effects that are on
     uint countsLight;  // 1 if rays of lights and of occlusion are counted

@@ -162,7 +162,7 @@ EmitterSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
         Features(GLINT_EMITTER_ALWAYS_LOBES, GLINT_EMITTER_ALWAYS_INPUTS, GLINT_EMITTER_SOMETIMES_LOBES,
                  GLINT_EMITTER_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
     // A cone without width reads the finest level of textures.
-    Hit hit = fetchHitAt(geometry, triangle.primitive, barycentrics, result.direction, 0.0, 0u, features,
+    Hit hit = fetchHitAt(geometry, barycentrics, result.direction, 0.0, 0u, features,
                          vertexPositions(geometry, triangle.primitive));
     if (!hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u) {
         result.density = 0.0;

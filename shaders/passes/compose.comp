@@ -19,9 +19,9 @@ void main() {
         radiance = vec3(0.0);
     }
     RunningMean mean = RunningMean(radiance, vec3(0.0));
-    if (GLINT_FRAME.sampleIndex > 0u) {
+    if (GLINT_FRAME.averaged > 0u) {
         RunningMean last = RunningMean(imageLoad(accumulatedImage, place).rgb, imageLoad(residualImage, place).rgb);
-        mean = includeSample(last, radiance, GLINT_FRAME.sampleIndex);
+        mean = includeSample(last, radiance, GLINT_FRAME.averaged);
     }
     imageStore(accumulatedImage, place, vec4(mean.mean, 1.0));
     if (GLINT_FRAME.accumulates != 0u) {

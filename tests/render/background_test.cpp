@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <string>
@@ -56,6 +59,52 @@ void forEachWay(const Test& test) {
     }
 }
 
+// Returns the frame for a mean of that many samples, of which only some are rendered.
+FrameOptions withCones(FrameOptions frame, std::uint32_t samples) {
+    frame.averagedSamples = samples;
+    return frame;
+}
+
+void expectDraft(Renderer& renderer, std::uint64_t drafts, const std::string& name) {
+    const PipelineProgress progress = renderer.pipelineProgress();
+    EXPECT_TRUE(progress.draft) << name;
+    EXPECT_EQ(progress.drafts, drafts) << name;
+    const Result<FrameCounters> counters = renderer.counters();
+    ASSERT_TRUE(counters) << name;
+    EXPECT_TRUE(counters->draft) << name;
+    EXPECT_EQ(counters->rays, 0U) << name;
+}
+
+double meanOf(const LinearImage& image) {
+    double sum = 0.0;
+    for (const std::array<float, 4>& pixel : image.pixels) {
+        sum += (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+    }
+    return sum / static_cast<double>(image.pixels.size());
+}
+
+// A draft shows the scene, finite and about as bright, and is another picture.
+void expectLikeness(const LinearImage& draft, const LinearImage& reference, const std::string& name) {
+    ASSERT_EQ(draft.pixels.size(), reference.pixels.size()) << name;
+    EXPECT_TRUE(std::isfinite(meanOf(draft))) << name;
+    EXPECT_GT(meanOf(draft), 0.5 * meanOf(reference)) << name;
+    EXPECT_LT(meanOf(draft), 2.0 * meanOf(reference)) << name;
+    double product = 0.0;
+    double squares[2] = {};
+    double most = 0.0;
+    const double means[] = {meanOf(draft), meanOf(reference)};
+    for (std::size_t i = 0; i < draft.pixels.size(); ++i) {
+        const double a = draft.pixels[i][1] - means[0];
+        const double b = reference.pixels[i][1] - means[1];
+        product += a * b;
+        squares[0] += a * a;
+        squares[1] += b * b;
+        most = std::max(most, std::abs(static_cast<double>(draft.pixels[i][1] - reference.pixels[i][1])));
+    }
+    EXPECT_GT(product / std::sqrt(squares[0] * squares[1]), 0.5) << name;
+    EXPECT_GT(most, 0.01) << name;
+}
+
 // The scene of these tests, compiled once.
 class Background : public ::testing::Test {
 protected:
@@ -86,25 +135,114 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
         ASSERT_TRUE(renderer) << name << ": " << toString(renderer.error());
         std::size_t& adoptedAtOnce = (*renderer)->state().pipelines.adoptedAtOnce;
         adoptedAtOnce = 0;
-        expectSameImage(renderedBy(**renderer, setup_), reference, name + ", fallback alone");
+        const LinearImage draft = renderedBy(**renderer, setup_);
+        expectDraft(**renderer, setup_.samples, name);
+        expectLikeness(draft, reference, name + ", draft");
         (*renderer)->waitForPipelines();
-        const std::uint32_t wanted = (*renderer)->pipelineProgress().wanted;
-        const bool ofCases = strategy == package::kStrategyVisibility;
-        EXPECT_EQ(wanted, ofCases ? loaded_->package().caseCount() : 1U) << name;
         adoptedAtOnce = 1;
-        for (std::uint32_t adopted = 1; adopted <= wanted; ++adopted) {
+        expectSameImage(renderedBy(**renderer, setup_), reference, name + ", fallback alone");
+        PipelineProgress progress = (*renderer)->pipelineProgress();
+        EXPECT_FALSE(progress.draft) << name;
+        EXPECT_EQ(progress.drafts, setup_.samples) << name;
+        for (std::uint32_t state = 0; progress.adopted < progress.wanted && state < progress.wanted;
+             ++state) {
             expectSameImage(renderedBy(**renderer, setup_), reference,
-                            name + ", " + std::to_string(adopted) + " pipelines");
-            const PipelineProgress progress = (*renderer)->pipelineProgress();
-            EXPECT_EQ(progress.adopted, adopted) << name;
-            EXPECT_EQ(progress.made, wanted) << name;
+                            name + ", " + std::to_string(progress.adopted) + " pipelines");
+            progress = (*renderer)->pipelineProgress();
             EXPECT_FALSE(progress.error) << name;
         }
+        EXPECT_EQ(progress.adopted, progress.wanted) << name;
         const Result<FrameCounters> counters = (*renderer)->counters();
         ASSERT_TRUE(counters);
         EXPECT_EQ(counters->unknownShader, 0U) << name;
+        EXPECT_FALSE(counters->draft) << name;
         expectNoValidationMessages();
     });
+}
+
+TEST_F(Background, AHostMayAskForNoDraft) {
+    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
+    RendererOptions options = optionsOf(setup_, package::kStrategyVisibility,
+                                        queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
+    const LinearImage reference = loaded_->render(options, setup_);
+    options.backgroundPipelines = true;
+    options.draft = false;
+    auto renderer = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    (*renderer)->state().pipelines.adoptedAtOnce = 0;
+    expectSameImage(renderedBy(**renderer, setup_), reference, "fallback alone");
+    const PipelineProgress progress = (*renderer)->pipelineProgress();
+    EXPECT_FALSE(progress.draft);
+    EXPECT_EQ(progress.drafts, 0U);
+    EXPECT_EQ(progress.wanted, loaded_->package().caseCount());
+    expectNoValidationMessages();
+}
+
+// A mean of samples that began with drafts has none of them once these end.
+TEST_F(Background, DraftsAreInNoMean) {
+    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
+    RendererOptions options = optionsOf(setup_, package::kStrategyUber,
+                                        queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
+    options.backgroundPipelines = true;
+    auto drafting = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
+    options.draft = false;
+    auto other = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
+    ASSERT_TRUE(drafting && other);
+    std::size_t& adoptedAtOnce = (*drafting)->state().pipelines.adoptedAtOnce;
+    adoptedAtOnce = 0;
+    (*other)->state().pipelines.adoptedAtOnce = 0;
+    (*drafting)->waitForPipelines();
+    // The drafts end with the third sample; the picture is the mean of the third and the fourth.
+    std::uint32_t sample = 0;
+    const Result<LinearImage> image = (*drafting)->render(setup_.frame, 4, [&] {
+        adoptedAtOnce = ++sample == 2 ? 1 : 0;
+        return okStatus();
+    });
+    ASSERT_TRUE(image);
+    EXPECT_EQ((*drafting)->pipelineProgress().drafts, 2U);
+    // The third and the fourth sample are what four samples have beyond two.
+    const Result<LinearImage> two = (*other)->render(withCones(setup_.frame, 4), 2);
+    const Result<LinearImage> four = (*other)->render(setup_.frame, 4);
+    ASSERT_TRUE(two && four);
+    LinearImage wanted = *four;
+    for (std::size_t i = 0; i < wanted.pixels.size(); ++i) {
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            wanted.pixels[i][channel] = 2.0F * four->pixels[i][channel] - two->pixels[i][channel];
+        }
+    }
+    expectSameImage(*image, wanted, "the third and the fourth sample");
+    expectNoValidationMessages();
+}
+
+// Frames in bands, and paths whose depth decides what later frames record.
+TEST_F(Background, PathsInBandsBeginWithADraft) {
+    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
+    compiler::CompileSettings settings = settingsWith(true);
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = queries ? package::kTracerRayQuery : package::kTracerRayPipeline;
+    settings.maxBounces = 12;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    const LoadedScene loaded(*scene_, settings);
+    ASSERT_TRUE(loaded.ok());
+    RendererOptions options = optionsOf(setup_, package::kStrategyUber,
+                                        queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
+    options.bounces = settings.maxBounces;
+    options.bands = 2;
+    RenderSetup setup = setup_;
+    setup.frame.recordAllBounces = true;
+    const LinearImage reference = loaded.render(options, setup);
+    options.backgroundPipelines = true;
+    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    std::size_t& adoptedAtOnce = (*renderer)->state().pipelines.adoptedAtOnce;
+    adoptedAtOnce = 0;
+    const LinearImage draft = renderedBy(**renderer, setup);
+    expectDraft(**renderer, setup.samples, "paths");
+    expectLikeness(draft, reference, "paths");
+    (*renderer)->waitForPipelines();
+    adoptedAtOnce = 1;
+    expectSameImage(renderedBy(**renderer, setup), reference, "without a draft");
+    expectNoValidationMessages();
 }
 
 // The pipelines are in the shader cache by now, so a picture that differs shows a pipeline in a wrong place.
@@ -120,7 +258,12 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     ASSERT_TRUE(renderer) << toString(renderer.error());
     PipelineProgress progress = (*renderer)->pipelineProgress();
     for (int frame = 0; frame < 1000 && progress.adopted < progress.wanted; ++frame) {
-        expectSameImage(renderedBy(**renderer, setup_), reference, "frame " + std::to_string(frame));
+        const LinearImage image = renderedBy(**renderer, setup_);
+        const Result<FrameCounters> counters = (*renderer)->counters();
+        ASSERT_TRUE(counters);
+        if (!counters->draft) {
+            expectSameImage(image, reference, "frame " + std::to_string(frame));
+        }
         progress = (*renderer)->pipelineProgress();
     }
     EXPECT_EQ(progress.adopted, progress.wanted);

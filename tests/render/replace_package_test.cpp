@@ -263,6 +263,7 @@ TEST_F(ReplacePackage, NoFrameMixesTwoPackages) {
     const LinearImage old = fresh(*before_, **original_, options);
     const LinearImage wanted = fresh(*after_, **edited_, options);
     options.backgroundPipelines = true;
+    options.draft = false;
     options.pipelineThreads = 2;
     const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
     const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
@@ -285,6 +286,34 @@ TEST_F(ReplacePackage, NoFrameMixesTwoPackages) {
     EXPECT_TRUE(switched);
     renderer->waitForPipelines();
     expectEqualImage(draw(*renderer), wanted, "at the end");
+    expectNoValidationMessages();
+}
+
+// A draft ends while another package waits, because the fixed passes are still made.
+TEST_F(ReplacePackage, ADraftEndsWhileAPackageWaits) {
+    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
+    RendererOptions options = optionsOf(package::kStrategyVisibility,
+                                        queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
+    const LinearImage old = fresh(*before_, **original_, options);
+    const LinearImage wanted = fresh(*after_, **edited_, options);
+    options.backgroundPipelines = true;
+    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
+    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    ASSERT_NE(renderer, nullptr);
+    renderer->state().pipelines.adoptedAtOnce = 0;
+    draw(*renderer);
+    EXPECT_TRUE(renderer->pipelineProgress().draft);
+    ASSERT_TRUE(renderer->replacePackage(*edited_));
+    renderer->state().pipelines.background->wait();
+    // One more pipeline than the fixed ones would be a case.
+    renderer->state().pipelines.adoptedAtOnce = 1;
+    renderer->state().next->pipelines.background->setPaused(true);
+    draw(*renderer);
+    EXPECT_FALSE(renderer->pipelineProgress().draft);
+    renderer->state().next->pipelines.background->setPaused(false);
+    renderer->waitForPipelines();
+    expectEqualImage(draw(*renderer), wanted, "the other package");
+    EXPECT_FALSE(renderer->pipelineProgress().draft);
     expectNoValidationMessages();
 }
 

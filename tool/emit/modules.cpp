@@ -217,6 +217,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     }
     const SourceSet none;
     const Case fallback = fallbackCase(plan);
+    const Case draft = draftCase(plan);
     ModuleDrafts drafts(sources, warm);
     SwitchParts parts(context, scenes, plan, sources, settings, drafts, codeOfCases, ofEmitters);
     if (Status made = parts.makeSwitches(); !made) {
@@ -231,8 +232,9 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         const bool ofSwitch = info.hasSwitch();
         const bool ofFallback = info.purpose == package::Purpose::Fallback;
         const SourceSet* own = ofSwitch ? &parts.wholeSwitch(ofFallback) : &none;
-        if (ofCase || (ofFallback && !ofSwitch)) {
-            const Case& shaderCase = ofCase ? plan.cases[key.index] : fallback;
+        const bool ofDraft = info.purpose == package::Purpose::Draft;
+        if (ofCase || ofDraft || (ofFallback && !ofSwitch)) {
+            const Case& shaderCase = ofCase ? plan.cases[key.index] : ofDraft ? draft : fallback;
             addCase(context, scenes, *plan.model, shaderCase);
             context.set("skipsMisses", ofFallback);
             Result<const SourceSet*> code =

@@ -28,6 +28,7 @@ std::string macroCase(std::string_view name) {
 int ModelBuilder::addFeature(const Members& members, Feature feature, bool isLit) {
     feature.macro = "GLINT" + macroCase("_" + feature.name);
     feature.about = members.text("about", "");
+    feature.isInDraft = members.flag("draft", false);
     std::string capital = feature.name;
     capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));
     feature.shortName = members.text("short", capital);

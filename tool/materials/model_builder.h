@@ -70,15 +70,16 @@ private:
 
     // Members of the objects of a declaration.
     static constexpr std::string_view kFileMembers[] = {
-        "$schema", "name",     "about",    "extension", "object",     "stage",   "short",    "order",
-        "needs",   "lit",      "replaces", "excludes",  "parameters", "derived", "textures", "given",
-        "neutral", "features", "effects",  "gltf",      "cost",       "ofBase",  "glsl",     "attributes"};
+        "$schema",  "name",  "about",      "extension", "object",   "stage",      "short",
+        "order",    "needs", "lit",        "replaces",  "excludes", "parameters", "derived",
+        "textures", "given", "neutral",    "features",  "effects",  "gltf",       "cost",
+        "ofBase",   "glsl",  "attributes", "draft"};
     static constexpr std::string_view kAttributeMembers[] = {"name", "at", "type", "default", "about"};
-    static constexpr std::string_view kFeatureMembers[] = {"name",  "about", "stage", "short",   "order",
-                                                           "needs", "gltf",  "given", "neutral", "cost"};
+    static constexpr std::string_view kFeatureMembers[] = {
+        "name", "about", "stage", "short", "order", "needs", "gltf", "given", "neutral", "cost", "draft"};
     static constexpr std::string_view kTextureMembers[] = {
         "name", "about", "short",   "order", "needs",       "color", "scales",
-        "of",   "is",    "neutral", "cost",  "coordinates", "reads"};
+        "of",   "is",    "neutral", "cost",  "coordinates", "reads", "draft"};
     static constexpr std::string_view kParameterMembers[] = {"name", "at", "type", "default", "range", "also",
                                                              "unit", "of", "is",   "about",   "record"};
 

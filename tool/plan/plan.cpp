@@ -232,6 +232,17 @@ Case fallbackCase(const Plan& plan) {
     return shaderCase;
 }
 
+Case draftCase(const Plan& plan) {
+    Case shaderCase;
+    shaderCase.shaderId = -1;
+    shaderCase.name = "Draft";
+    for (const materials::Feature& feature : plan.model->features) {
+        shaderCase.sometimes |= feature.isInDraft ? feature.mask() : 0;
+    }
+    shaderCase.sometimes &= plan.primaryAlways | plan.primarySometimes;
+    return shaderCase;
+}
+
 std::size_t caseCount(const Plan& plan) {
     return static_cast<std::size_t>(
         std::ranges::count_if(plan.cases, [](const Case& shaderCase) { return !shaderCase.isRetired(); }));

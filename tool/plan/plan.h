@@ -109,6 +109,9 @@ Plan makePlan(std::span<const materials::Material> materials,
 // a material may have, and no shader ID, keys or materials.
 Case fallbackCase(const Plan& plan);
 
+// Returns the case of the draft of the lighting pass: the features of primary surfaces that it shows.
+Case draftCase(const Plan& plan);
+
 // Returns the largest number of cases that a plan may have; 0 means no limit.
 int budgetOf(const PlanOptions& options);
 

@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 14;
+inline constexpr std::uint32_t kVersion = 15;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -190,9 +190,10 @@ enum class ModuleRole : std::uint32_t {
     TraceClosestHit = 14,  // of ray tracing pipelines that only trace: other passes shade their hits
     TraceAnyHit = 15,      // alpha tests
     TraceMiss = 16,
-    EffectWalk = 17,  // one entry for each effect that follows its rays
-    PathRays = 18,    // puts the next rays of paths on the list, in packages with several bounces
-    Deform = 19,      // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
+    EffectWalk = 17,     // one entry for each effect that follows its rays
+    PathRays = 18,       // puts the next rays of paths on the list, in packages with several bounces
+    Deform = 19,         // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
+    LightingDraft = 20,  // stands in for Lighting until that is made
 };
 
 struct ModuleEntry {

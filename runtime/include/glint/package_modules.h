@@ -53,6 +53,7 @@ enum class Purpose : std::uint8_t {
     Paths,     // packages whose paths have several bounces
     Motion,    // packages with meshes that follow skins or morph targets
     Fallback,  // packages that shade hits, with shaders for every material
+    Draft,     // packages that draw a frame and may do so before all pipelines are made
 };
 
 struct RoleInfo {

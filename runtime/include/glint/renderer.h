@@ -187,12 +187,13 @@ struct EffectCounters {
 
 struct FrameCounters {
     std::vector<EffectCounters> effects;  // the package's effects, in the order of their bits
-    std::uint32_t rays = 0;               // rays of all effects
-    std::uint32_t shadowRays = 0;         // deferred shadow rays of hits
-    std::uint32_t orderErrors = 0;        // with RendererOptions::checkOrder
-    std::uint32_t unknownShader = 0;      // hits whose shader ID no case has, without a fallback
-    std::uint32_t alphaTests = 0;         // candidates whose alpha was tested, with FrameOptions::countsLight
-    std::uint32_t nonFinite = 0;          // samples since sample 0 that were not finite; they count as black
+    bool draft = false;               // the frame is a draft (RendererOptions::draft), which sends no rays
+    std::uint32_t rays = 0;           // rays of all effects
+    std::uint32_t shadowRays = 0;     // deferred shadow rays of hits
+    std::uint32_t orderErrors = 0;    // with RendererOptions::checkOrder
+    std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
+    std::uint32_t alphaTests = 0;     // candidates whose alpha was tested, with FrameOptions::countsLight
+    std::uint32_t nonFinite = 0;      // samples since sample 0 that were not finite; they count as black
     // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
     std::vector<std::uint32_t> raysOfBounces;
     // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
@@ -221,8 +222,11 @@ struct PipelineProgress {
     std::uint32_t wanted = 0;   // pipelines that are made in the background
     std::uint32_t made = 0;     // those that were made, or have failed
     std::uint32_t adopted = 0;  // those that recordings use
-    // The first error. Its passes keep the fallback.
+    // The first error. Its passes keep the fallback, or the draft.
     std::optional<Diagnostic> error{};
+    // Whether the next recording may be a draft (RendererOptions::draft), and how many were.
+    bool draft = false;
+    std::uint64_t drafts = 0;
 };
 
 // An image of RGBA in linear 32-bit float. The first row is on top.

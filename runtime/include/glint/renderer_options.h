@@ -47,9 +47,15 @@ struct RendererOptions {
     // runs at once.
     std::uint32_t pipelineThreads = 0;
     // Makes the pipelines with shaders of single cases while frames are already drawn. Until a pipeline is
-    // made, the package's fallback shades its hits; the pictures are the same. Requires a package with
-    // PackageShape::fallback, which must outlive the Renderer. Error "package-fallback" without.
+    // made, the package's fallback shades its hits; apart from drafts, the pictures are the same. Requires a
+    // package with PackageShape::fallback, which must outlive the Renderer. Error "package-fallback".
     bool backgroundPipelines = false;
+    // With backgroundPipelines, lets frames begin as soon as the raster pass, a draft of the lighting pass
+    // and the last pass are made. A draft shows the base of materials under the sky and the lights, without
+    // shadows, and no ray is traced. The first recording with all fixed passes starts the picture anew.
+    // PipelineProgress and FrameCounters say whether a frame is a draft. Without it, Renderer::create() waits
+    // for the fixed passes and the fallback, and no frame is a draft.
+    bool draft = true;
     // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
     // without DeviceHandles::pipelineStatistics.
     bool pipelineStatistics = false;

@@ -124,6 +124,10 @@ std::vector<MemoryItem> GpuScene::memory() const {
     for (const AccelerationStructure& blas : state_->blases) {
         addTo(items, "bottom levels", blas.buffer);
     }
+    for (const auto& [primitive, micromap] : state_->micromaps) {
+        addTo(items, "opacity micromaps", micromap.buffer);
+        addTo(items, "opacity micromaps", micromap.indices);
+    }
     addTo(items, "top level", state_->tlas.buffer);
     addTo(items, "geometry records", state_->geometries);
     addTo(items, "instance records", state_->instances);

@@ -72,6 +72,11 @@ void BounceLevels::completed(std::uint64_t recording, std::span<const std::uint3
     }
 }
 
+void BounceLevels::skipped(std::uint64_t recording) {
+    last_ = recording;
+    read_ = recording;
+}
+
 void BounceLevels::reset() {
     depths_.clear();
     read_ = last_;

@@ -57,6 +57,8 @@ public:
 
     // Forgets everything, for other buffers on the device. Recordings before do not count.
     void reset();
+    // Says that a recording followed no paths, so that nothing is learned of it and of those before.
+    void skipped(std::uint64_t recording);
 
 private:
     struct Depth {

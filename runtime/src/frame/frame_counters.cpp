@@ -108,6 +108,7 @@ Result<FrameCounters> Renderer::counters() {
     std::vector<std::uint32_t> values(counterBytes(state_->size) / sizeof(std::uint32_t));
     std::memcpy(values.data(), bytes, values.size() * sizeof(values[0]));
     FrameCounters counters;
+    counters.draft = state_->drafted;
     for (const EffectName& effect : state_->effects) {
         counters.effects.push_back(countersOf(values, state_->size.effects, effect));
     }

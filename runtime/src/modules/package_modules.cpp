@@ -45,6 +45,8 @@ std::vector<RoleInfo> sharedRoles() {
          Repeated::ByWalk},
         {ModuleRole::PathRays, all, "PathRays", "passes/path_rays.comp", ShaderKind::Compute, Purpose::Paths},
         {ModuleRole::Deform, all, "Deform", "passes/deform.comp", ShaderKind::Compute, Purpose::Motion},
+        {ModuleRole::LightingDraft, all, "LightingDraft", "passes/lighting_draft.comp.mustache",
+         ShaderKind::Compute, Purpose::Draft},
     };
 }
 
@@ -97,6 +99,8 @@ bool hasPurpose(Purpose purpose, const PackageShape& shape) {
             return frame && shape.deforms;
         case Purpose::Fallback:
             return hits && shape.fallback;
+        case Purpose::Draft:
+            return frame && shape.fallback;
     }
     return false;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace glint {
@@ -35,8 +36,11 @@ std::vector<std::uint32_t> casesOf(const PlannedPipeline& planned) {
 BackgroundPipelines::BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
                                          std::uint32_t threads)
     : flags_(flags), waiting_(std::move(planned)), wanted_(static_cast<std::uint32_t>(waiting_.size())) {
-    missing_ =
-        wanted_ - static_cast<std::uint32_t>(std::ranges::count(waiting_, true, &PlannedPipeline::spare));
+    const auto count = [&](PipelineTurn turn) {
+        return static_cast<std::uint32_t>(std::ranges::count(waiting_, turn, &PlannedPipeline::turn));
+    };
+    missing_ = wanted_ - count(PipelineTurn::Spare);
+    missingFixed_ = count(PipelineTurn::Fixed);
     for (std::uint32_t i = 0; i < std::max(threads, 1U); ++i) {
         try {
             threads_.emplace_back([this] { work(); });
@@ -66,8 +70,9 @@ void BackgroundPipelines::work() {
         Result<UniquePipeline> made = planned->job.make(creation);
         const std::lock_guard lock(mutex_);
         --running_;
-        missing_ -= planned->spare ? 0 : 1;
+        missing_ -= planned->turn == PipelineTurn::Spare ? 0 : 1;
         if (made) {
+            missingFixed_ -= planned->turn == PipelineTurn::Fixed ? 1 : 0;
             MadePipeline pipeline{planned->job.name, std::make_shared<const UniquePipeline>(std::move(*made)),
                                   creation.feedback, planned->job.identity};
             done_.push_back({std::move(*planned), std::move(pipeline)});
@@ -78,15 +83,22 @@ void BackgroundPipelines::work() {
     }
 }
 
+std::vector<PlannedPipeline>::iterator BackgroundPipelines::best() {
+    // Among fixed passes, the largest must not begin last.
+    const auto best = std::ranges::max_element(waiting_, {}, [&](const PlannedPipeline& planned) {
+        return std::tuple(-static_cast<int>(planned.turn), waitingHits(planned, hits_),
+                          planned.turn == PipelineTurn::Fixed ? planned.job.wordCount : 0);
+    });
+    return paused_ && best != waiting_.end() && best->turn != PipelineTurn::Fixed ? waiting_.end() : best;
+}
+
 std::optional<PlannedPipeline> BackgroundPipelines::next() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return ends_ || waiting_.empty() || !paused_; });
+    changed_.wait(lock, [&] { return ends_ || waiting_.empty() || best() != waiting_.end(); });
     if (ends_ || waiting_.empty()) {
         return std::nullopt;
     }
-    const auto most = std::ranges::max_element(waiting_, {}, [&](const PlannedPipeline& planned) {
-        return std::pair(!planned.spare, waitingHits(planned, hits_));
-    });
+    const auto most = best();
     PlannedPipeline planned = std::move(*most);
     waiting_.erase(most);
     ++running_;
@@ -99,18 +111,33 @@ void BackgroundPipelines::setHits(std::span<const std::uint32_t> bucketCounts) {
                  bucketCounts.end());
 }
 
-std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::size_t most) {
-    const std::lock_guard lock(mutex_);
-    const auto end = done_.begin() + static_cast<std::ptrdiff_t>(std::min(most, done_.size()));
-    std::vector<Done> taken(std::make_move_iterator(done_.begin()), std::make_move_iterator(end));
-    done_.erase(done_.begin(), end);
+std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::vector<Done>::iterator first,
+                                                                 std::vector<Done>::iterator end) {
+    std::vector<Done> taken(std::make_move_iterator(first), std::make_move_iterator(end));
+    done_.erase(first, end);
     adopted_ += static_cast<std::uint32_t>(taken.size());
     return taken;
 }
 
+std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::size_t most) {
+    const std::lock_guard lock(mutex_);
+    return take(done_.begin(), done_.begin() + static_cast<std::ptrdiff_t>(std::min(most, done_.size())));
+}
+
+std::vector<BackgroundPipelines::Done> BackgroundPipelines::takeFixed() {
+    const std::lock_guard lock(mutex_);
+    if (missingFixed_ > 0) {
+        return {};
+    }
+    const auto fixed = std::stable_partition(done_.begin(), done_.end(), [](const Done& done) {
+        return done.planned.turn != PipelineTurn::Fixed;
+    });
+    return take(fixed, done_.end());
+}
+
 void BackgroundPipelines::wait() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return (waiting_.empty() || paused_) && running_ == 0; });
+    changed_.wait(lock, [&] { return best() == waiting_.end() && running_ == 0; });
 }
 
 void BackgroundPipelines::setPaused(bool paused) {

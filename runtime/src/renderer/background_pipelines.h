@@ -23,8 +23,7 @@ struct PlannedPipeline {
     PipelineJob job;
     std::vector<package::ModuleKey> keys;      // of compute and graphics passes
     std::shared_ptr<const RayPass> rays = {};  // of a ray tracing pipeline
-    bool later = false;                        // frames can begin without it
-    bool spare = false;                        // nothing that is drawn needs it: it is made last
+    PipelineTurn turn = PipelineTurn::First;
 };
 
 // Returns the shader IDs of the cases that have a dispatch of their own with the pipeline.
@@ -46,14 +45,16 @@ public:
     BackgroundPipelines(const BackgroundPipelines&) = delete;
     BackgroundPipelines& operator=(const BackgroundPipelines&) = delete;
 
-    // Sets the order of what remains: the case with the most hits is made next. `bucketCounts` has the misses
-    // first, then the hits by shader ID.
+    // Sets the order of the cases that remain: the one with the most hits is made next. `bucketCounts` has
+    // the misses first, then the hits by shader ID.
     void setHits(std::span<const std::uint32_t> bucketCounts);
     // Returns pipelines that were made since the last call, at most `most`.
     std::vector<Done> take(std::size_t most);
-    // Returns when every pipeline was made or has failed; while paused, when none is being made.
+    // Returns all fixed passes if all are made and none has failed, and otherwise nothing.
+    std::vector<Done> takeFixed();
+    // Returns when every pipeline that may be begun was made or has failed.
     void wait();
-    // While paused, no further pipeline is begun.
+    // While paused, no further pipeline is begun but for fixed passes, which end a draft.
     void setPaused(bool paused);
     // Returns the number of pipelines, other than spare ones, that are not made yet.
     std::uint32_t missing() const;
@@ -63,6 +64,9 @@ public:
 private:
     void work();
     std::optional<PlannedPipeline> next();
+    // Returns what is made next; the end if nothing may be begun. Requires the lock.
+    std::vector<PlannedPipeline>::iterator best();
+    std::vector<Done> take(std::vector<Done>::iterator first, std::vector<Done>::iterator end);
 
     VkPipelineCreateFlags flags_;
     mutable std::mutex mutex_;
@@ -73,6 +77,7 @@ private:
     std::uint32_t wanted_ = 0;
     std::uint32_t running_ = 0;
     std::uint32_t missing_ = 0;
+    std::uint32_t missingFixed_ = 0;
     std::uint32_t adopted_ = 0;
     std::optional<Diagnostic> error_;
     bool ends_ = false;

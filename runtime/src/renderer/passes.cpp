@@ -25,7 +25,7 @@ public:
         state_.timer.recordReset(commands_);
         passes_.barrier(kAllToAll);
         const std::uint32_t whole = passes_.beginStretch({"frame", Pass::Frame});
-        clear(frame);
+        clear(constants);
         static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
         vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), 0, sizeof(constants), &constants);
         passes_.barrier(dependencies().clearToPasses);
@@ -64,6 +64,10 @@ private:
             return;
         }
         const std::uint64_t recording = state_.recordings + 1;
+        if (state_.pipelines.draft) {
+            state_.bounceLevels.skipped(recording);
+            return;
+        }
         copy(state_.frame.counters, gpu::kCounterDeepest * sizeof(std::uint32_t), sizeof(std::uint32_t),
              readbackDepth(state_.size, BounceLevels::slotOf(recording)));
         state_.bounceLevels.recorded(recording, bounces_.count);
@@ -91,9 +95,14 @@ private:
     // Lights the rows of a band.
     void recordBand(const FrameOptions& frame, const gpu::FrameConstants& constants) {
         passes_.setRows(band_.endRow - band_.firstRow);
-        passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
-        passes_.barrier(dependencies().passToPass);
-        recordEffects(frame.effects & state_.size.effects.rays, constants);
+        if (state_.pipelines.draft) {
+            passes_.dispatchPixels({"lighting draft", Pass::Lighting}, pass(ModuleRole::LightingDraft));
+            passes_.barrier(dependencies().passToPass);
+        } else {
+            passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
+            passes_.barrier(dependencies().passToPass);
+            recordEffects(frame.effects & state_.size.effects.rays, constants);
+        }
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
     }
 
@@ -108,10 +117,10 @@ private:
         passes_.barrier(dependencies().passToPass);
     }
 
-    void clear(const FrameOptions& frame) {
+    void clear(const gpu::FrameConstants& constants) {
         // This counter belongs to the accumulated picture, so it is reset with the picture only.
         constexpr VkDeviceSize kKept = gpu::kCounterNonFinite * sizeof(std::uint32_t);
-        if (frame.sampleIndex == 0 || !state_.recorded) {
+        if (constants.averaged == 0 || !state_.recorded) {
             fill(state_.frame.counters, VK_WHOLE_SIZE, 0);
         } else {
             fill(state_.frame.counters, kKept, 0);

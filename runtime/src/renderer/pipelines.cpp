@@ -141,7 +141,7 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     if (key.role == ModuleRole::BucketOffset) {
         return choice.ordering != package::Ordering::TileSort;
     }
-    if (!runsFallback(choice, key.role)) {
+    if (!runsFallback(choice, key.role) || (info.purpose == package::Purpose::Draft && !choice.draft)) {
         return false;
     }
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
@@ -169,11 +169,11 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
                              identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
                             {},
                             {},
-                            true});
+                            PipelineTurn::Spare});
         }
         PlannedPipeline& planned = plan[known->second];
         planned.keys.push_back(key);
-        planned.later = planned.later && isMadeLater(choice, key.role);
+        planned.turn = std::min(planned.turn, turnOf(choice, key.role));
     }
 }
 
@@ -204,7 +204,7 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
                          identify(package, pass->source)},
                         {},
                         pass,
-                        pass->later});
+                        pass->turn});
     }
     return plan;
 }
@@ -282,11 +282,16 @@ package::PackageShape chosenShape(const Package& package, const PipelineChoice& 
     return shape;
 }
 
-bool isMadeLater(const PipelineChoice& choice, package::ModuleRole role) {
+PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role) {
     // The hit shaders of a ray generation shader's pipeline have the code of its strategy's cases.
     const package::RoleInfo& info = *package::findRole(role);
-    return choice.background &&
-           (info.fallback != ModuleRole::None || info.kind == package::ShaderKind::RayGeneration);
+    if (choice.background &&
+        (info.fallback != ModuleRole::None || info.kind == package::ShaderKind::RayGeneration)) {
+        return PipelineTurn::Case;
+    }
+    // A draft is rasterised, lit and composed.
+    const bool isOfDraft = info.purpose == package::Purpose::Draft || role == ModuleRole::Compose;
+    return choice.draft && !isOfDraft ? PipelineTurn::Fixed : PipelineTurn::First;
 }
 
 bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
@@ -331,8 +336,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
         return status.error();
     }
     std::vector<PlannedPipeline> plan = planPipelines(context, package, choice, shaderIds, pipelines.layout);
-    const auto later = std::stable_partition(plan.begin(), plan.end(),
-                                             [](const PlannedPipeline& planned) { return !planned.later; });
+    const auto later = std::stable_partition(plan.begin(), plan.end(), [](const PlannedPipeline& planned) {
+        return planned.turn == PipelineTurn::First;
+    });
     std::vector<PlannedPipeline> laterPlan(std::make_move_iterator(later),
                                            std::make_move_iterator(plan.end()));
     plan.erase(later, plan.end());
@@ -356,7 +362,12 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
             return status.error();
         }
     }
-    addFallback(package, choice, pipelines);
+    pipelines.draft = choice.draft;
+    pipelines.drafted = &package;
+    pipelines.choice = choice;
+    if (!pipelines.draft) {
+        addFallback(package, choice, pipelines);
+    }
     pipelines.shadesUnknown = hasUnknown(package, shaderIds);
     if (!laterPlan.empty()) {
         // One thread is the caller's.
@@ -369,11 +380,39 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     return pipelines;
 }
 
+namespace {
+
+// Lets the fixed passes take the place of the draft, if all are made.
+Status endDraft(Context::State& context, Pipelines& pipelines) {
+    for (BackgroundPipelines::Done& done : pipelines.background->takeFixed()) {
+        pipelines.draft = false;
+        if (Status status = addPipeline(context, done.planned, std::move(done.made), pipelines); !status) {
+            return status;
+        }
+    }
+    if (!pipelines.draft) {
+        addFallback(*pipelines.drafted, pipelines.choice, pipelines);
+    }
+    return okStatus();
+}
+
+}  // namespace
+
 Status adoptPipelines(Context::State& context, Pipelines& pipelines) {
     if (!pipelines.background) {
         return okStatus();
     }
-    for (BackgroundPipelines::Done& done : pipelines.background->take(pipelines.adoptedAtOnce)) {
+    std::size_t most = pipelines.adoptedAtOnce;
+    if (pipelines.draft && most > 0) {
+        if (Status status = endDraft(context, pipelines); !status) {
+            return status;
+        }
+        --most;
+    }
+    if (pipelines.draft) {
+        return okStatus();
+    }
+    for (BackgroundPipelines::Done& done : pipelines.background->take(most)) {
         if (Status status = addPipeline(context, done.planned, std::move(done.made), pipelines); !status) {
             return status;
         }

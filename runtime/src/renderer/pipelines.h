@@ -28,6 +28,16 @@ struct PipelineChoice {
     std::uint32_t bands = 0;    // what chooseBandRows() takes
     // Pipelines with shaders of cases are made later, by threads; until then a fallback is in their place.
     bool background = false;
+    // Frames begin with a draft. Requires `background`.
+    bool draft = false;
+};
+
+// When a pipeline is made: these follow each other.
+enum class PipelineTurn : std::uint8_t {
+    First,  // frames can't begin without it
+    Fixed,  // frames are drafts without it
+    Case,   // the fallback is in its place
+    Spare,  // nothing that is drawn needs it
 };
 
 // How pipelines are made.
@@ -74,6 +84,11 @@ struct Pipelines {
     double creationMs = 0.0;
     // Hits may have shader IDs that no case has, and the package's fallback shades them.
     bool shadesUnknown = false;
+    // Frames are drafts until the fixed passes are there. Then the fallback of `drafted`, which the caller
+    // keeps, stands in for the cases of `choice`.
+    bool draft = false;
+    const Package* drafted = nullptr;
+    PipelineChoice choice;
     std::unique_ptr<BackgroundPipelines> background;  // null if all pipelines were made at once
     std::size_t adoptedAtOnce = std::numeric_limits<std::size_t>::max();  // the most in a recording
 
@@ -91,8 +106,8 @@ struct LayoutSource {
 // Returns the part of the package's shape that decides which of its modules the choice needs.
 package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice);
 
-// Whether the choice has pipelines of that role made later.
-bool isMadeLater(const PipelineChoice& choice, package::ModuleRole role);
+// Returns when the choice has pipelines of that role made.
+PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role);
 
 // Whether the choice needs a pipeline of a fallback's role. It is true for other roles.
 bool runsFallback(const PipelineChoice& choice, package::ModuleRole role);
@@ -110,8 +125,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& layout);
 
-// Puts pipelines that threads have made since the last call in the place of the fallback. The passes that are
-// recorded afterwards use them. Errors: those of buffers, "vulkan-call".
+// Puts pipelines that threads have made since the last call in the place of the fallback, and all fixed
+// passes together in the place of the draft. The passes that are recorded afterwards use them. Errors: those
+// of buffers, "vulkan-call".
 Status adoptPipelines(Context::State& context, Pipelines& pipelines);
 
 }  // namespace glint

@@ -122,7 +122,7 @@ std::vector<RayPass> planCases(const Package& package, const PipelineChoice& cho
             pass.key = {role, shaderId, package::kTracerRayPipeline};
             pass.name = pipelineName(package, pass.key);
             pass.source = tracingSource(package, words);
-            pass.later = isMadeLater(choice, role);
+            pass.turn = turnOf(choice, role);
         }
         passes[known->second].shaderIds.push_back(shaderId);
     }
@@ -150,14 +150,14 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         RayPass pass;
         pass.name = pipelineName(package, key);
         pass.key = key;
-        pass.later = isMadeLater(choice, key.role);
+        pass.turn = turnOf(choice, key.role);
         if (info.kind != package::ShaderKind::RayGeneration) {
             pass.source = tracingSource(package, package.spirv(key));
         } else {
             const HitShaderRoles roles = hitShaderRoles(choice.strategy);
             if (choice.background) {
                 RayPass& fallback = passes.emplace_back(pass);
-                fallback.later = false;
+                fallback.turn = choice.draft ? PipelineTurn::Fixed : PipelineTurn::First;
                 fallback.source = hitFallbackSource(package, roles);
             }
             pass.source = hitShaderSource(package, roles, shaderIds);

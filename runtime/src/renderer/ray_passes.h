@@ -19,7 +19,7 @@ struct RayPass {
     package::ModuleKey key;
     RayPipelineSource source;
     std::vector<std::uint32_t> shaderIds{};  // of the cases that a pass of cases shades
-    bool later = false;                      // frames can begin without it
+    PipelineTurn turn = PipelineTurn::First;
 };
 
 // Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.

@@ -95,6 +95,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.sampleLodBias = std::log2(coneScale);
     constants.sampleIndex = options.sampleIndex;
     constants.seed = options.seed;
+    constants.averaged = options.sampleIndex - state.firstSample;
     constants.time = options.time;
     constants.lightCount = state.scene.lightCount;
     constants.mirrorRoughness = options.mirrorRoughness;
@@ -127,6 +128,16 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     fillLists(state.frame, state.size, constants);
     setBand(state.size, 0, constants);
     return constants;
+}
+
+// A picture begins with sample 0. The first recording after drafts begins another, whatever its number.
+void beginPicture(Renderer::State& state, std::uint32_t sampleIndex) {
+    const bool draftsEnd = state.drafted && !state.pipelines.draft;
+    if (draftsEnd || sampleIndex < state.firstSample) {
+        state.firstSample = sampleIndex;
+    }
+    state.drafted = state.pipelines.draft;
+    state.drafts += state.drafted ? 1 : 0;
 }
 
 // Lets the case that had most hits be made next. The device may be writing the counts of a frame that is in
@@ -215,6 +226,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     if (state_->next) {
         switchPackage(*state_, commands);
     }
+    beginPicture(*state_, frame.sampleIndex);
     recordFrame(*state_, commands, frame, makeConstants(*state_, frame));
     state_->recorded = true;
     ++state_->recordings;
@@ -323,7 +335,10 @@ Result<std::vector<PassTiming>> Renderer::timings() {
 
 PipelineProgress Renderer::pipelineProgress() const {
     const auto& background = state_->pipelines.background;
-    return background ? background->progress() : PipelineProgress{};
+    PipelineProgress progress = background ? background->progress() : PipelineProgress{};
+    progress.draft = state_->pipelines.draft;
+    progress.drafts = state_->drafts;
+    return progress;
 }
 
 void Renderer::waitForPipelines() {

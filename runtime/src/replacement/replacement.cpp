@@ -87,13 +87,14 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next, PackageReplace
     // Nothing stands in for pipelines: the package before is drawn until all are there.
     PipelineChoice choice = next.choice;
     choice.background = false;
+    choice.draft = false;
     const std::vector<std::uint32_t> shaderIds = shaderIdsIn(state.scene, next.package->scene(next.scene));
     pipelines.shadesUnknown = hasUnknown(*next.package, shaderIds);
     const KnownPipelines known = knownPipelines(state);
     std::vector<PlannedPipeline> missing;
     for (PlannedPipeline& planned :
          planPipelines(state.context, *next.package, choice, shaderIds, pipelines.layout)) {
-        planned.spare = isSpare(planned, pipelines.shadesUnknown);
+        planned.turn = isSpare(planned, pipelines.shadesUnknown) ? PipelineTurn::Spare : PipelineTurn::First;
         const auto kept = known.find(planned.job.identity);
         if (kept == known.end()) {
             std::ranges::copy(casesOf(planned), std::back_inserter(result.casesMade));

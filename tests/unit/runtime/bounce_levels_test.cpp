@@ -43,6 +43,17 @@ TEST(BounceLevels, NoBounceLosesLightInTheMean) {
     }
 }
 
+// A draft follows no paths, so it says nothing about their depth.
+TEST(BounceLevels, NothingIsLearnedOfADraft) {
+    BounceLevels levels;
+    levels.skipped(1);
+    levels.skipped(2);
+    levels.completed(2, Depths{});
+    EXPECT_EQ(levels.certainBounces(kBounces), kBounces);
+    complete(levels, 3, kBounces, 5);
+    EXPECT_EQ(levels.certainBounces(kBounces), 6U);
+}
+
 TEST(BounceLevels, DrawsAreEven) {
     constexpr std::uint32_t kDraws = 1U << 16U;
     std::array<std::uint32_t, 4> ones{};

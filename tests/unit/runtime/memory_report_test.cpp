@@ -1,9 +1,11 @@
 // Tests what renderer and scene report about their memory.
 #include "device_fixture.h"
+#include "scene/gpu_scene_state.h"
 
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <utility>
 
 namespace glint::test {
 namespace {
@@ -75,6 +77,34 @@ TEST_F(MemoryReports, OfASceneGrowWithIt) {
     EXPECT_TRUE(find(few, "textures")->isImage);
     EXPECT_GE(one->allocatedBytes(), sum(few));
     EXPECT_GE(many->allocatedBytes(), sum(more));
+}
+
+// The device of the tests builds no micromaps, so their buffers are planted.
+TEST_F(MemoryReports, ListMicromaps) {
+    const Package package = load(makeDeviceSpec());
+    TestScene scene;
+    scene.meshes = {makeSquare(0, 0)};
+    scene.instances = {{0, kIdentity}};
+    const auto gpuScene = upload(package, scene);
+    ASSERT_NE(gpuScene, nullptr);
+    const std::vector<MemoryItem> before = gpuScene->memory();
+    EXPECT_EQ(find(before, "opacity micromaps"), nullptr);
+    GpuScene::State& state = gpuScene->state();
+    const auto make = [&](VkDeviceSize bytes) {
+        Result<Buffer> buffer = createBuffer(state.context, state.pool, bytes,
+                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Device);
+        EXPECT_TRUE(buffer);
+        return buffer ? std::move(*buffer) : Buffer{};
+    };
+    state.micromaps[0].buffer = make(512);
+    state.micromaps[0].indices = make(64);
+    state.micromaps[1].indices = make(32);  // its triangles need no record
+    const std::vector<MemoryItem> items = gpuScene->memory();
+    ASSERT_NE(find(items, "opacity micromaps"), nullptr);
+    EXPECT_EQ(find(items, "opacity micromaps")->count, 3U);
+    EXPECT_GE(find(items, "opacity micromaps")->bytes, 512U + 64U + 32U);
+    EXPECT_EQ(sum(items), sum(before) + find(items, "opacity micromaps")->bytes);
+    EXPECT_GE(gpuScene->allocatedBytes(), sum(items));
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ PlannedPipeline caseOf(std::uint32_t shaderId, std::function<Result<UniquePipeli
     planned.job = {"case " + std::to_string(shaderId), 1,
                    [make = std::move(make)](PipelineCreation&) { return make(); }};
     planned.keys = {{package::roleNamed("ShadeCase"), shaderId, 0}};
-    planned.later = true;
+    planned.turn = PipelineTurn::Case;
     return planned;
 }
 
@@ -91,6 +91,50 @@ TEST(BackgroundPipelines, CasesWithMostHitsComeFirst) {
     EXPECT_EQ(progress.made, 4U);
     EXPECT_EQ(progress.adopted, 4U);
     EXPECT_FALSE(progress.error);
+}
+
+// Fixed passes come before cases, the largest first, also while cases are paused, and are taken together.
+TEST(BackgroundPipelines, FixedPassesComeFirstAndTogether) {
+    std::vector<PlannedPipeline> planned;
+    planned.push_back(caseOf(0, [] { return UniquePipeline(); }));
+    std::promise<void> go;
+    std::shared_future<void> gone = go.get_future().share();
+    for (const std::uint32_t words : {3U, 9U}) {
+        PlannedPipeline& fixed = planned.emplace_back();
+        fixed.job = {"fixed " + std::to_string(words), words,
+                     [gone](PipelineCreation&) -> Result<UniquePipeline> {
+                         gone.wait();
+                         return UniquePipeline();
+                     }};
+        fixed.turn = PipelineTurn::Fixed;
+    }
+    BackgroundPipelines background(std::move(planned), 0, 1);
+    background.setPaused(true);
+    EXPECT_TRUE(background.takeFixed().empty());
+    go.set_value();
+    background.wait();
+    const std::vector<BackgroundPipelines::Done> fixed = background.takeFixed();
+    ASSERT_EQ(fixed.size(), 2U);
+    EXPECT_EQ(fixed[0].made.name, "fixed 9");
+    EXPECT_EQ(fixed[1].made.name, "fixed 3");
+    EXPECT_TRUE(background.take(9).empty());
+    background.setPaused(false);
+    background.wait();
+    EXPECT_EQ(background.take(9).size(), 1U);
+    EXPECT_EQ(background.progress().adopted, 3U);
+}
+
+TEST(BackgroundPipelines, AFixedPassThatFailsKeepsTheOthersBack) {
+    std::vector<PlannedPipeline> planned;
+    for (const bool fails : {false, true}) {
+        PlannedPipeline& fixed = planned.emplace_back();
+        fixed.job = job(0, 1, fails);
+        fixed.turn = PipelineTurn::Fixed;
+    }
+    BackgroundPipelines background(std::move(planned), 0, 1);
+    background.wait();
+    EXPECT_TRUE(background.takeFixed().empty());
+    EXPECT_TRUE(background.progress().error);
 }
 
 TEST(BackgroundPipelines, ErrorsAreToldAndTheRestIsMade) {
