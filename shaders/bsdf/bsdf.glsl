@@ -28,7 +28,7 @@ struct Bsdf {
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
     Layers layers;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     float mirrored;           // share of the microfacets' first reflection that counts; 1 unless rays bring the rest
 #endif
     // prepareBsdf() sets the following members, which depend on the view:
@@ -236,7 +236,7 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         return diffuse * l.z + within;
     }
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     specular *= b.mirrored;
 #endif
     if (GLINT_ENERGY_COMPENSATION != 0) {

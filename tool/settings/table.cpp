@@ -56,6 +56,10 @@ std::string withoutEmission(std::string_view value, const BenchFacts& facts, con
     return value == "on" && !facts.lightsMayEmit ? "the default has no shadow rays" : "";
 }
 
+std::string withoutSkyLight(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {
+    return value == "on" && !facts.skyMayLight ? "the default has no shadow rays" : "";
+}
+
 std::vector<std::string> strategiesToTry(const BenchFacts& /*facts*/, const std::string& /*base*/,
                                          bool /*quick*/) {
     std::vector<std::string> names;
@@ -306,6 +310,21 @@ constexpr Descriptor kRows[] = {
                .against = withoutEmission,
                .exactFor = [](const BenchFacts& facts) { return std::string(facts.emits ? "on" : ""); }},
      .document = "lights.md#emissive-triangles",
+     .recorded = true},
+    {.name = "sky-light",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "whether sky and environment map are a light, with multiple importance sampling",
+     .values = enumerator<&Settings::compile, &CompileSettings::skyLight>(),
+     .bench = {.use = BenchUse::Swept,
+               .exact = "on",
+               .isTransport = true,
+               .tried = "off on",
+               .against = withoutSkyLight,
+               .exactFor =
+                   [](const BenchFacts& facts) { return std::string(facts.skyMayLight ? "on" : ""); }},
+     .document = "lights.md#the-sky",
      .recorded = true},
     {.name = "energy-compensation",
      .commands = kMakers,

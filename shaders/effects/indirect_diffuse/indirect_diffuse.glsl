@@ -14,7 +14,7 @@ const uint kPairIndirectSide = 4u;
 // a radian keeps out the finest texture levels, which would only make noise.
 const float kIndirectSpread = 0.125;
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 // The probability that the surface at hand sends its ray to the far side.
 float indirectFarChance = 0.0;
 #endif
@@ -35,7 +35,7 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
         return noSample(kRayAbsent);
     }
     float chance = luminance(back) / total;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     indirectFarChance = chance;
 #endif
     bool passes = chance > 0.0 && hostRandomPair(hit.target, kPairIndirectSide).x < chance;
@@ -46,7 +46,7 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     return sentSample(hit, direction, weight, max(kIndirectSpread, GLINT_FRAME.pixelSpread));
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 
 // The density of the ray that was sent, by solid angle.
 float densityIndirectDiffuse(Surface surface, Features features, vec3 l) {
