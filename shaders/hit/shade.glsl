@@ -2,9 +2,9 @@
 #include "effects/ambient.glsl"
 #include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
+#include "light/shared.glsl"
 #include "hit/material.glsl"
 #include "light/receiver.glsl"
-#include "light/shared.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
 #if GLINT_PATHS

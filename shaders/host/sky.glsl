@@ -3,7 +3,6 @@
 //
 // In packages whose sky is a light (--sky-light), this file also samples directions with a known density.
 #include "bsdf/constants.glsl"
-#include "bsdf/fresnel.glsl"
 #include "host/resources.glsl"
 
 #if GLINT_SKY_LIGHT
@@ -143,11 +142,12 @@ vec3 hostSkyAround(vec3 direction, float roughness) {
 
 #if GLINT_SKY_LIGHT
 
-// The luminance at horizon, zenith and ground. As much is added as makes every direction possible; it makes a black sky
-// uniform.
+// The luminance (ITU-R BT.709) at horizon, zenith and ground. As much is added as makes every direction possible; it makes
+// a black sky uniform.
 vec3 skyWeights() {
-    precise vec3 weights = vec3(luminance(GLINT_FRAME.skyHorizon), luminance(GLINT_FRAME.skyZenith),
-                                luminance(GLINT_FRAME.skyGround));
+    const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
+    precise vec3 weights = vec3(dot(GLINT_FRAME.skyHorizon, kLuminance), dot(GLINT_FRAME.skyZenith, kLuminance),
+                                dot(GLINT_FRAME.skyGround, kLuminance));
     precise float sum = 2.0 * weights.x + weights.y + weights.z;
     precise vec3 possible = sum > 0.0 ? weights + 0.0025 * sum : vec3(1.0);
     return possible;
