@@ -5,7 +5,7 @@
                                 [--tracer NAME] [--merge POLICY]
 
 All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
-package that has those bounces. Prints Markdown: the device time of all passes of a sample, as the median with its
+package that has those bounces. The sky is no light (--sky-light off). Prints Markdown: the device time of all passes of a sample, as the median with its
 least and greatest value, and the ratio of each strategy to uber in the same round.
 
 SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
@@ -57,7 +57,8 @@ def compile_packages(arguments, folder):
     for bounces in arguments.bounces:
         subprocess.run([arguments.glint, "compile", arguments.scene, "-o", folder / str(bounces), "--bounces",
                         str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", "all", "--effects",
-                        "shadow,reflection", "--max-roughness", "1", "--merge", arguments.merge],
+                        "shadow,reflection", "--max-roughness", "1", "--sky-light", "off", "--merge",
+                        arguments.merge],
                        check=True, capture_output=True)
 
 

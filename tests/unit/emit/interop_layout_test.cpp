@@ -153,6 +153,7 @@ TEST(InteropLayout, IsTheSameInSpirv) {
     compiler::CompileSettings settings;
     settings.debugInfo = true;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    settings.skyLight = compiler::SkyLight::On;  // FrameConstants is whole in such packages alone
     expectInModules(compileSample(settings), layoutsOf(Of::Frame));
 }
 
