@@ -1,7 +1,9 @@
 // The sky as a light: its samples share the light with the rays that find it by chance, so that the mean is
 // the same, and the noise of a small sun in a map is less.
+#include "base/files.h"
 #include "render/harness.h"
 #include "render/scene_builder.h"
+#include "support/temporary_folder.h"
 
 #include <glint/environment.h>
 
@@ -22,8 +24,8 @@ using namespace glint;
 using namespace glint::testing;
 using compiler::SkyLight;
 
-// By then no path has light left that a picture of 16 bits would show.
-constexpr std::uint32_t kManyBounces = 12;
+// By then paths have hardly any light left.
+constexpr std::uint32_t kManyBounces = 16;
 
 struct SkyWays {
     SkyLight sky = SkyLight::On;
@@ -31,6 +33,8 @@ struct SkyWays {
     bool isMap = false;
     bool traces = true;  // effects send rays, which find the sky by chance
     package::ShadowThrough through = package::ShadowThrough::Alpha;
+    std::uint32_t lights = 0;  // --lights
+    bool compensates = false;  // --energy-compensation, which no ray of an effect finds
 };
 
 compiler::CompileSettings settingsOf(const SkyWays& ways) {
@@ -42,11 +46,13 @@ compiler::CompileSettings settingsOf(const SkyWays& ways) {
     settings.effects.maxReflectionRoughness = 1.0F;
     settings.environmentMap = ways.isMap;
     settings.skyLight = ways.sky;
-    settings.emissiveLights = compiler::EmissiveLights::Off;
+    // Emissive triangles are sampled where the sky is, and found by chance elsewhere.
+    settings.emissiveLights =
+        ways.sky == SkyLight::On ? compiler::EmissiveLights::On : compiler::EmissiveLights::Off;
     settings.shadowThrough = ways.through;
-    settings.lightSamples = 0;
+    settings.lightSamples = ways.lights;
     settings.maxBounces = ways.bounces;
-    settings.energyCompensation = false;
+    settings.energyCompensation = ways.compensates;
     return settings;
 }
 
@@ -111,6 +117,7 @@ SkyEstimate estimate(const gltf::Scene& scene, const Environment* map, const Sky
         return {};
     }
     EXPECT_EQ(loaded.package().skyLight(), ways.sky == SkyLight::On);
+    EXPECT_EQ(loaded.package().shadowThrough(), ways.through);
     constexpr int kSeeds = 6;
     double sum = 0.0;
     double squares = 0.0;
@@ -207,6 +214,16 @@ TEST(SkyLight, APlaneUnderAUniformSkyHasItsAlbedo) {
     const SkyWays on{SkyLight::On, 1, false, true};
     expectSameMean(estimate(plane(metal), nullptr, on, 64), estimate(plane(metal), nullptr, off, 64),
                    "metal");
+    // Rays and samples share the lobes of a dielectric, whose diffuse lobe depends on the direction of the
+    // light.
+    materials::Material dielectric = matte(0.8F);
+    dielectric["specularFactor"] = 1.0F;
+    dielectric["roughnessFactor"] = 0.5F;
+    SkyWays shared = on;
+    SkyWays apart = off;
+    shared.compensates = apart.compensates = true;
+    expectSameMean(estimate(plane(dielectric), nullptr, shared, 64),
+                   estimate(plane(dielectric), nullptr, apart, 64), "dielectric", 3e-3);
     // What no ray brings: rough metal by samples, smooth metal by the ambient light.
     for (const float roughness : {0.7F, 0.1F}) {
         metal["roughnessFactor"] = roughness;
@@ -219,20 +236,23 @@ TEST(SkyLight, APlaneUnderAUniformSkyHasItsAlbedo) {
 
 TEST(SkyLight, TheMeanIsThatOfChance) {
     const gltf::Scene scene = openBox();
+    gltf::Scene withLamp = scene;
+    materials::Material lamp = matte(0.0F);
+    lamp["emissiveFactor"] = {1.0F, 0.6F, 0.3F};
+    addQuad(withLamp, lamp, {-1.99F, -0.5F, -1.0F}, {0, 0, -1.5F}, {0, 1.0F, 0});
     const std::unique_ptr<Environment> map = sunnyMap();
     ASSERT_NE(map, nullptr);
-    for (const bool isMap : {false, true}) {
-        const Environment* const environment = isMap ? map.get() : nullptr;
-        const SkyWays chance{SkyLight::Off, kManyBounces, isMap};
-        const SkyWays sampled{SkyLight::On, kManyBounces, isMap};
-        expectSameMean(estimate(scene, environment, sampled, 96), estimate(scene, environment, chance, 512),
-                       isMap ? "map with a sun" : "uniform sky", 5e-3);
-    }
+    expectSameMean(estimate(scene, map.get(), {SkyLight::On, kManyBounces, true}, 96),
+                   estimate(scene, map.get(), {SkyLight::Off, kManyBounces, true}, 384), "map with a sun");
+    // With emissive triangles and a hierarchy of them.
+    SkyWays sampled{SkyLight::On, kManyBounces};
+    sampled.lights = 1;
+    expectSameMean(estimate(withLamp, nullptr, sampled, 96),
+                   estimate(withLamp, nullptr, {SkyLight::Off, kManyBounces}, 256), "uniform sky and a lamp");
 }
 
-// A pane of thin glass stands in the opening. With `glass` shadow rays pass it, and paths leave out what
-// these bring.
-TEST(SkyLight, LightThroughGlassCountsOnce) {
+// The opening with a pane of thin glass.
+gltf::Scene glazedBox() {
     gltf::Scene scene = openBox();
     materials::Material glass;
     glass["metallicFactor"] = 0.0F;
@@ -241,19 +261,27 @@ TEST(SkyLight, LightThroughGlassCountsOnce) {
     glass["baseColorFactor"] = {0.6F, 0.8F, 0.7F, 1.0F};
     glass.doubleSided = true;
     addQuad(scene, glass, {0, 1.5F, -4}, {2, 0, 0}, {0, 0, 5});
-    const SkyEstimate chance = estimate(scene, nullptr, {SkyLight::Off, kManyBounces}, 256);
-    expectSameMean(estimate(scene, nullptr, {SkyLight::On, kManyBounces}, 128), chance,
-                   "opaque to shadow rays", 5e-3);
+    return scene;
+}
+
+// With `glass` shadow rays pass the pane, and paths leave out what these bring.
+TEST(SkyLight, LightThroughGlassCountsOnce) {
+    const gltf::Scene scene = glazedBox();
+    const SkyEstimate chance = estimate(scene, nullptr, {SkyLight::Off, kManyBounces}, 192);
+    expectSameMean(estimate(scene, nullptr, {SkyLight::On, kManyBounces}, 96), chance,
+                   "opaque to shadow rays");
     const SkyWays through{SkyLight::On, kManyBounces, false, true, package::ShadowThrough::Glass};
-    expectSameMean(estimate(scene, nullptr, through, 128), chance, "passed by shadow rays", 1e-2);
+    expectSameMean(estimate(scene, nullptr, through, 96), chance, "passed by shadow rays", 2e-3);
 }
 
 TEST(SkyLight, StrategiesAgree) {
-    const gltf::Scene scene = openBox();
+    const gltf::Scene scene = glazedBox();
     const std::unique_ptr<Environment> map = sunnyMap();
     ASSERT_NE(map, nullptr);
     for (const bool isMap : {false, true}) {
-        compiler::CompileSettings settings = settingsOf({SkyLight::On, 3, isMap});
+        const package::ShadowThrough through =
+            isMap ? package::ShadowThrough::Alpha : package::ShadowThrough::Glass;
+        compiler::CompileSettings settings = settingsOf({SkyLight::On, 3, isMap, true, through});
         settings.strategies = package::allStrategies();
         settings.tracers = package::kAllTracers;
         settings.shadows = isMap ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
@@ -321,6 +349,29 @@ TEST(SkyLight, AutoDecidesByTheBounces) {
     EXPECT_TRUE(samples());
     settings.effects.named = compiler::builtinEffects({"indirect-diffuse"});
     EXPECT_FALSE(samples()) << "without shadow rays";
+    settings.skyLight = SkyLight::On;
+    const auto refused = compiler::planPackage({&scene, 1}, settings);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().id, "sky-light");
+}
+
+// A host's own sky has no density: `auto` leaves it to rays, and `on` is refused.
+TEST(SkyLight, AHostsOwnSkyIsNoLight) {
+    const test::TemporaryFolder folder;
+    constexpr const char* kText = R"(// A sky of one half.
+#include "host/resources.glsl"
+vec3 hostSky(vec3 direction) { return vec3(0.5); }
+vec3 hostSkyAround(vec3 direction, float roughness) { return vec3(0.5); }
+vec3 hostSkyIrradianceOverPi(vec3 normal) { return vec3(0.5); }
+)";
+    ASSERT_TRUE(base::writeFile(folder.path() / "sky.glsl", kText));
+    const gltf::Scene scene = plane(matte(0.6F));
+    compiler::CompileSettings settings = settingsOf({SkyLight::Auto, 2});
+    settings.host = folder.path().string();
+    const LoadedScene loaded = load(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    EXPECT_FALSE(loaded.package().skyLight());
+    EXPECT_NEAR(meanOf(render(loaded, setupOf(scene, nullptr, 1, 1), 2)), 0.3, 1e-4);
     settings.skyLight = SkyLight::On;
     const auto refused = compiler::planPackage({&scene, 1}, settings);
     ASSERT_FALSE(refused);

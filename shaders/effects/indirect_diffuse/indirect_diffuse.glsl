@@ -20,7 +20,8 @@ float indirectFarChance = 0.0;
 #endif
 
 // Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
-// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same.
+// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same; or those of the
+// BSDF, where samples of lights bring a part of the same light.
 EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
     vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
     vec3 front = surface.bsdf.diffuse * base;
@@ -42,7 +43,12 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     vec3 local = sampleCosine(hostRandomPair(hit.target, kPairIndirect));
     vec3 direction = onSide(toWorld(surface, passes ? vec3(local.xy, -local.z) : local),
                             passes ? -hit.geometricNormal : hit.geometricNormal);
+#if GLINT_SHARED_LIGHTS
+    vec3 weight = evaluateDiffuse(surface.bsdf, features, passes ? vec3(local.xy, -local.z) : local) /
+                  (passes ? chance : 1.0 - chance);
+#else
     vec3 weight = passes ? back / chance : front / (1.0 - chance);
+#endif
     return sentSample(hit, direction, weight, max(kIndirectSpread, GLINT_FRAME.pixelSpread));
 }
 
