@@ -5,8 +5,8 @@
                                 [--tracer NAME] [--merge POLICY]
 
 All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
-package that has those bounces. Prints Markdown: the device time of all passes of a sample, as the median with its
-least and greatest value, and the ratio of each strategy to uber in the same round. If it is stopped by SIGTERM, as
+package that has those bounces. The sky is no light (--sky-light off). Prints Markdown: the device time of all passes
+of a sample, as the median with its least and greatest value, and the ratio of each strategy to uber in the same round. If it is stopped by SIGTERM, as
 timeout(1) does, it prints what it has measured until then.
 
 SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
@@ -61,7 +61,8 @@ def compile_packages(arguments, folder):
     for bounces in arguments.bounces:
         subprocess.run([arguments.glint, "compile", arguments.scene, "-o", folder / str(bounces), "--bounces",
                         str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", tracer, "--effects",
-                        "shadow,reflection", "--max-roughness", "1", "--merge", arguments.merge],
+                        "shadow,reflection", "--max-roughness", "1", "--sky-light", "off", "--merge",
+                        arguments.merge],
                        check=True, capture_output=True)
 
 

@@ -28,7 +28,7 @@ struct Bsdf {
     vec3 eta;                 // n_t / n_i for red, green, blue; read if the key has a volume
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
     Layers layers;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     float mirrored;           // share of the microfacets' first reflection that counts; 1 unless rays bring the rest
 #endif
     // prepareBsdf() sets the following members, which depend on the view:
@@ -236,7 +236,7 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         return diffuse * l.z + within;
     }
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     specular *= b.mirrored;
 #endif
     if (GLINT_ENERGY_COMPENSATION != 0) {
@@ -320,6 +320,27 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     }
     return result;
 }
+
+#if GLINT_SHARED_LIGHTS
+
+// Returns π times what the diffuse lobes of the base send from l to the view, through the layers above it. It is what
+// evaluateBsdf() has of them: rays that share the light with samples must bring the same.
+vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
+    vec3 base = vec3(0.0);
+    if (l.z > 0.0) {
+        GLINT_RELAXED float fresnel = largest(facetBetween(b, features, l).dielectricFresnel);
+        base = diffuseLobe(b.layers, features, b.diffuse, b.view, l) * diffuseShare(b, features, l, fresnel);
+    } else if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+        GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
+        base = b.diffuseTransmitted * diffuseShare(b, features, vec3(l.xy, -l.z), fresnel);
+    }
+    // Without their own reflection; that of mirrors would cost the digits of the difference.
+    b.layers.counted = noLayerShares();
+    return addLayersAbove(b.layers, features, b.view, l, l.z, base) -
+           addLayersAbove(b.layers, features, b.view, l, l.z, vec3(0.0));
+}
+
+#endif
 
 // Returns what the base reflects or transmits, times |n·l|, without the layers above it.
 vec3 evaluateBase(Bsdf b, Features features, vec3 l) {

@@ -1,4 +1,5 @@
-// The sky's light on a surface, for the part that no rays bring.
+// The sky's light on a surface, for the part that no rays bring. In packages whose sky is a light (--sky-light), samples of
+// the sky bring most of that part, and leave only what they would hardly find.
 #include "bsdf/ggx.glsl"
 #include "host/sky.glsl"
 #include "effects/sky_shares.glsl"
@@ -36,11 +37,42 @@ vec3 skyAroundLobe(Surface surface) {
     return sum / max(total, 1e-12);
 }
 
+#if GLINT_SKY_LIGHT
+
+// Samples of the sky leave lobes of a lower roughness to the ambient light. At this roughness a metal's lobe is some 40
+// times as dense as samples of a uniform sky.
+const float kLeastSampledRoughness = 0.4;
+
+// Returns the shares of `sky`, which no ray brings, that the ambient light brings: smooth reflection, and transmission
+// through microfacets, because shadow rays do not see through volumes.
+SkyShares ambientShares(Surface surface, Features features, SkyShares sky) {
+    sky.diffuse = 0.0;
+    sky.behind = 0.0;
+    sky.mirrored *= surface.roughness < kLeastSampledRoughness ? 1.0 : 0.0;
+    sky.layers = smoothLayerShares(surface, features, sky.layers, kLeastSampledRoughness);
+    return sky;
+}
+
+// Returns the shares of `shares` that samples of the sky bring, of which `sky` is what no ray brings.
+SkyShares sampledShares(Surface surface, Features features, SkyShares shares, SkyShares sky) {
+    SkyShares ambient = ambientShares(surface, features, sky);
+    shares.mirrored -= ambient.mirrored;
+    shares.transmitted -= ambient.transmitted;
+    shares.layers = lessLayerShares(shares.layers, ambient.layers);
+    return shares;
+}
+
+#endif
+
 // The light that the microfacets reflect of the sky. `mirrored` is the share of the first bounce that the sky brings.
 vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELAXED float mirrored) {
     GLINT_RELAXED vec3 all = specularAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
     GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss,
                                                    surface.bsdf.viewBias);
+#if GLINT_SKY_LIGHT
+    // Samples of the sky bring what bounces between microfacets.
+    all = first;
+#endif
     if (hasLobe(features, GLINT_ANISOTROPY)) {
         // Later bounces have nearly forgotten where the view was.
         vec3 again = (all - first) * hostSkyIrradianceOverPi(surface.normal);
@@ -74,6 +106,9 @@ vec3 ambientTransmission(Surface surface, Features features) {
 }
 
 vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
+#if GLINT_SKY_LIGHT
+    sky = ambientShares(surface, features, sky);
+#endif
     GLINT_RELAXED float below = diffusePassed(surface);
     // The occlusion texture describes the outside, and so do the rays of ambient occlusion.
     GLINT_RELAXED float open = surface.occlusion * sky.open;

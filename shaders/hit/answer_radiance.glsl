@@ -12,7 +12,7 @@ struct ShadeResult {
     vec3 direct;
     vec3 shadowDirection;  // unit vector
     float shadowDistance;  // metres; 0 if no light reaches the surface and no ray is needed
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     uint shadowSees;       // kShadow*
 #endif
 #if GLINT_PATHS
@@ -27,7 +27,7 @@ ShadeResult darkness() {
     result.direct = vec3(0.0);
     result.shadowDirection = vec3(0.0);
     result.shadowDistance = 0.0;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     result.shadowSees = kShadowOfLight;
 #endif
 #if GLINT_PATHS
@@ -55,7 +55,11 @@ void resolveEnd(uint target, vec3 radiance, uint path) {
 }
 
 void resolveMiss(uint target, vec3 direction) {
+#if GLINT_SKY_LIGHT
+    resolveEnd(target, hostSky(direction) * storedSkyShare(target), kPathMiss);
+#else
     resolveEnd(target, hostSky(direction), kPathMiss);
+#endif
 }
 
 void resolveUnknown(uint target) {

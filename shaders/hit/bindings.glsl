@@ -3,8 +3,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require
 
-#include "interop/frame.h"
 #include "generated/scene.glsl"
+#include "interop/frame.h"
 
 layout(push_constant, scalar) uniform PushBlock {
     layout(offset = GLINT_BINDING_PUSH_OFFSET) PushConstants pushed;

@@ -27,7 +27,7 @@ Bsdf makeBase(SurfaceValues values, Features features) {
     bsdf.transmitted = vec3(0.0);
     bsdf.diffuseTransmitted = vec3(0.0);
     bsdf.eta = vec3(1.0);
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     bsdf.mirrored = 1.0;
     bsdf.layers.counted = wholeLayerShares();
 #endif

@@ -21,6 +21,9 @@ struct PathStep {
 #if GLINT_EMISSIVE_LIGHTS
     uint receiver;      // LobeRay::normal
 #endif
+#if GLINT_SKY_LIGHT
+    float skyShare;     // of the sky's light, that the ray brings if it leaves the scene
+#endif
 };
 
 PathStep endOfPath() {
@@ -32,6 +35,9 @@ PathStep endOfPath() {
     step.medium = 0u;
 #if GLINT_EMISSIVE_LIGHTS
     step.receiver = 0u;
+#endif
+#if GLINT_SKY_LIGHT
+    step.skyShare = 1.0;
 #endif
     return step;
 }

@@ -4,8 +4,10 @@
 #include "light/receiver.glsl"
 #include "hit/samples.glsl"
 #include "hit/surface.glsl"
+#include "hit/surface_values.glsl"
 #include "host/material.glsl"
 #include "host/random.glsl"
+#include "host/sky.glsl"
 #include "materials/volume/attenuation.glsl"
 
 // The pairs of dimensions of the sequence: a direction; a lobe, and whether the path survives.
@@ -37,6 +39,14 @@ uint mediumBeyond(Hit hit, Features features, bool passes) {
     return medium;
 }
 
+#if GLINT_SHADOW_GLASS
+// Returns whether the light that arrives through the hit is light that the surface which sent the ray has sampled. Then
+// the ray keeps its share.
+bool seesSkyFromBefore(Hit hit, Features features, bool passes) {
+    return isWithinGlass(hit, features) || (passes && hasLobe(features, GLINT_TRANSMISSION));
+}
+#endif
+
 // Samples a direction of all lobes by one-sample multiple importance sampling: one lobe is chosen by its share of the
 // light, and the weight is the whole BSDF over the density of the mixture (Veach 1997). `arriving` is the throughput at
 // the hit.
@@ -63,6 +73,14 @@ PathStep nextStep(Hit hit, Surface surface, Features features, vec3 arriving) {
 #if GLINT_EMISSIVE_LIGHTS
     step.receiver = receiverNormal(hit, features);
 #endif
+#if GLINT_SKY_LIGHT
+    step.skyShare = drawn.pdf / (drawn.pdf + hostSkyDensity(step.direction));
+#if GLINT_SHADOW_GLASS
+    if (seesSkyFromBefore(hit, features, passes)) {
+        step.skyShare = storedSkyShare(hit.target);
+    }
+#endif
+#endif
     return step;
 }
 
@@ -73,6 +91,9 @@ PathStep straightStep(Hit hit, vec3 arriving) {
     step.throughput = arriving;
     step.coneSpread = hit.arrival.coneSpread;
     step.medium = hit.arrival.medium;
+#if GLINT_SKY_LIGHT
+    step.skyShare = storedSkyShare(hit.target);
+#endif
     return step;
 }
 
@@ -89,5 +110,8 @@ void storePath(Hit hit, PathStep step) {
     GLINT_FRAME.paths.data[place] = PathState(step.throughput, step.medium);
 #if GLINT_EMISSIVE_LIGHTS
     storeLobeRay(hit.target, step.density, step.receiver);
+#endif
+#if GLINT_SKY_LIGHT
+    storeSkyShare(hit.target, step.skyShare);
 #endif
 }

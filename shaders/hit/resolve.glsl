@@ -26,7 +26,7 @@ Hit loadHit(HitRecord record, RayRecord ray, HostGeometry geometry, Features fea
 void resolveHit(Hit hit, ShadeResult result) {
     vec3 radiance = result.radiance;
     if (result.shadowDistance > 0.0) {
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
         uint sees = result.shadowSees;
 #else
         uint sees = kShadowOfLight;

@@ -114,6 +114,17 @@ void storeLobeRay(uint target, float density, uint normal) {
 }
 #endif
 
+#if GLINT_SKY_LIGHT
+// The share of the sky's light that the ray of a sample brings if it leaves the scene. Samples of the sky bring the rest.
+void storeSkyShare(uint target, float share) {
+    GLINT_FRAME.skyShares.data[samplePlace(target)] = share;
+}
+
+float storedSkyShare(uint target) {
+    return GLINT_FRAME.skyShares.data[samplePlace(target)];
+}
+#endif
+
 // path is one of kPath*. It is that of the first bounce; further bounces add their light.
 void storeRadiance(uint target, vec3 radiance, uint path) {
     uint place = samplePlace(target);

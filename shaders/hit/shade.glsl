@@ -2,7 +2,7 @@
 #include "effects/ambient.glsl"
 #include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
-#include "light/emitter.glsl"
+#include "light/shared.glsl"
 #include "hit/material.glsl"
 #include "light/receiver.glsl"
 #include "host/lights.glsl"
@@ -66,36 +66,72 @@ void aimAtLight(Hit hit, HostLight light, inout ShadeResult result) {
     result.shadowDistance = aim.distance;
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 
-// The light of an emissive light at the hit of a ray, without its shadow. The path's next ray finds such lights, too;
-// where there is none, this sample counts alone. Its aim is the shadow ray.
-vec3 lightOfEmitterAtHit(Hit hit, Surface surface, Features features, HostLight light, uint index,
-                         out LightSample aim) {
-    EmitterSample drawn = emitterLight(hit, light, shadingDimension(kPairEmitter + index));
+// Whether a ray of the path follows from the hit, which finds shared lights, too.
+bool sendsRay() {
+#if GLINT_PATHS
+    return pathGoesOn();
+#else
+    return false;
+#endif
+}
+
+// Leaves the lobes on which samples of the light bring its light. `sky` is what no ray of an effect brings.
+void keepSampledLobes(Hit hit, Features features, HostLight light, SkyShares sky, inout Surface surface) {
+    // An effect that follows the transmitted light finds shared lights itself.
+    surface.bsdf.transmitted *= sky.transmitted;
+#if GLINT_SKY_LIGHT
+    if (light.emitter == kSkyEmitter) {
+        if (!sendsRay()) {
+            keepShares(sampledShares(surface, features, wholeSky(), wholeSky()), surface);
+        }
+#if GLINT_SHADOW_GLASS
+        surface.bsdf.transmitted = vec3(0.0);
+#endif
+    }
+#endif
+}
+
+// The light of a shared light at the hit of a ray, without its shadow. Where no ray follows, this sample counts alone. Its
+// aim is the shadow ray.
+vec3 lightOfSharedAtHit(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares sky,
+                        out LightSample aim) {
+    SharedSample drawn = sampleShared(hit, light, index, shadingDimension(0u));
     aim = LightSample(vec3(0.0), 0.0, vec3(0.0), kRaySent);
     if (drawn.density <= 0.0) {
         return vec3(0.0);
     }
-    aim = emitterAim(hit, drawn);
+#if GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
+    if (light.emitter == kSkyEmitter && isWithinGlass(hit, features)) {
+        return vec3(0.0);
+    }
+#endif
+    aim = aimAtShared(hit, light, drawn);
     float density = drawn.density;
 #if GLINT_PATHS
     if (pathGoesOn()) {
-        density += bsdfPdf(surface.bsdf, features, toSurface(surface, drawn.direction));
+        Surface whole = surface;
+        whole.bsdf.transmitted *= sky.transmitted;
+        density += bsdfPdf(whole.bsdf, features, toSurface(surface, drawn.direction));
     }
 #endif
+    keepSampledLobes(hit, features, light, sky, surface);
     return aim.distance > 0.0
                ? scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / density
                : vec3(0.0);
 }
 
-// What its shadow ray sees: as much as a ray of the path.
-uint seenTowardsEmitter(Hit hit, Features features, vec3 direction) {
+// What its shadow ray sees: as much as a ray of the path, or what rays to other lights see.
+uint seenTowardsShared(Hit hit, Features features, HostLight light, vec3 direction) {
+    if (passesAsLight(light)) {
+        return kShadowOfLight;
+    }
 #if GLINT_PATHS
     bool passes = dot(direction, hit.geometricNormal) < 0.0;
-    return mediumBeyond(hit, features, passes) == 0u ? kShadowOfEmitter : kShadowOfEmitterWithin;
+    return mediumBeyond(hit, features, passes) == 0u ? kShadowOfShared : kShadowOfSharedWithin;
 #else
-    return kShadowOfEmitterWithin;
+    return kShadowOfSharedWithin;
 #endif
 }
 
@@ -117,7 +153,7 @@ vec3 countedEmission(Hit hit, Surface surface) {
 vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light) {
 #if GLINT_SHADOW_GLASS
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        if (hasLobe(features, GLINT_VOLUME) && showsBack(features) && !hit.frontFace) {
+        if (isWithinGlass(hit, features)) {
             return vec3(0.0);
         }
         surface.bsdf.transmitted = vec3(0.0);
@@ -136,20 +172,17 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
     uint index = 0u;
-#if GLINT_EMISSIVE_LIGHTS
-    // An effect that follows the transmitted light finds emissive lights itself.
-    Surface lobes = surface;
-    lobes.bsdf.transmitted *= sky.transmitted;
-    bool emits = false;
+#if GLINT_SHARED_LIGHTS
+    uint chosenSees = kShadowOfLight;
+    bool shares = false;
     LightSample chosenAim;
 #endif
     for (uint i = 0u; i < lights; ++i) {
         HostLight light = lightOfHost(hit, features, i);
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
         LightSample aim;
-        vec3 contribution =
-            isEmitter(light) ? lightOfEmitterAtHit(hit, lobes, features, light, i, aim)
-                             : lightOfLight(hit, surface, features, light);
+        vec3 contribution = isShared(light) ? lightOfSharedAtHit(hit, surface, features, light, i, sky, aim)
+                                            : lightOfLight(hit, surface, features, light);
 #else
         vec3 contribution = lightOfLight(hit, surface, features, light);
 #endif
@@ -164,26 +197,36 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
             chosen = contribution;
             chosenWeight = weight;
             index = i;
-#if GLINT_EMISSIVE_LIGHTS
-            emits = isEmitter(light);
+#if GLINT_SHARED_LIGHTS
+            shares = isShared(light);
             chosenAim = aim;
+            chosenSees = shares ? seenTowardsShared(hit, features, light, aim.direction) : kShadowOfLight;
 #endif
         } else {
             random = (random - probability) / (1.0 - probability);
         }
     }
     result.direct = chosen * (total / chosenWeight);
-#if GLINT_EMISSIVE_LIGHTS
-    if (total > 0.0 && emits) {
+#if GLINT_SHARED_LIGHTS
+    if (total > 0.0 && shares) {
         result.shadowDirection = chosenAim.direction;
         result.shadowDistance = chosenAim.distance;
-        result.shadowSees = seenTowardsEmitter(hit, features, chosenAim.direction);
+        result.shadowSees = chosenSees;
         return;
     }
 #endif
     if (total > 0.0) {
         aimAtLight(hit, lightOfHost(hit, features, index), result);
     }
+}
+
+// The shares of the ambient light where no ray follows the hit. Where shadow rays to the sky pass glass, those of the
+// surface that sent the ray have brought a part of what is behind this glass.
+SkyShares ambientOfHit(Hit hit, SkyShares sky) {
+#if GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
+    sky.transmitted *= storedSkyShare(hit.target);
+#endif
+    return sky;
 }
 
 #if GLINT_PATHS
@@ -203,7 +246,7 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
         surface.bsdf.transmitted *= sky.transmitted;
         result.path = nextStep(hit, surface, features, arrivingShare(hit.arrival, hit.position));
     } else {
-        result.radiance += ambientLight(surface, features, hit.view, sky);
+        result.radiance += ambientLight(surface, features, hit.view, ambientOfHit(hit, sky));
     }
     return result;
 }
@@ -215,7 +258,7 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     ShadeResult result = darkness();
     SkyShares sky = wholeSky();
     changeSkyOfHit(hit, features, sky);
-    result.radiance = countedEmission(hit, surface) + ambientLight(surface, features, hit.view, sky);
+    result.radiance = countedEmission(hit, surface) + ambientLight(surface, features, hit.view, ambientOfHit(hit, sky));
     chooseLight(hit, surface, features, sky, result);
     return result;
 }

@@ -22,6 +22,13 @@ bool showsBack(Features features) {
 #endif
 }
 
+// Returns whether the hit is on the inside of glass. Where shadow rays pass glass, those of the surface that sent the ray
+// have passed this glass on the straight line, with all that happens within.
+bool isWithinGlass(Hit hit, Features features) {
+    return hasLobe(features, GLINT_TRANSMISSION) && hasLobe(features, GLINT_VOLUME) && showsBack(features) &&
+           !hit.frontFace;
+}
+
 // The normals of double-sided materials turn to the viewer.
 float facing(Hit hit, Features features) {
     return showsBack(features) && !hit.frontFace ? -1.0 : 1.0;

@@ -85,10 +85,10 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 // The same for what sees other surfaces (kShadow*).
 bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
-    uint culled = sees == kShadowOfEmitter ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
+    uint culled = sees == kShadowOfShared ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | culled,
                           GLINT_RAY_MASK, origin, 0.0, direction, distance);
@@ -137,9 +137,9 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
     return traced.geometry == kMissGeometry;
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
-    uint culled = sees == kShadowOfEmitter ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
+    uint culled = sees == kShadowOfShared ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
     traced.geometry = 0u;
 #if defined(GLINT_LIGHT_IN_HIT_PAYLOAD) && (GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE)
     const uint kEnd = gl_RayFlagsNoneEXT;  // The any-hit shader knows rays to other lights by the flag (hit/any_hit.glsl).
@@ -161,6 +161,6 @@ float closestDistance(vec3 origin, vec3 direction, float most) {
 
 #endif
 
-#if GLINT_EMISSIVE_LIGHTS == 0
+#if GLINT_SHARED_LIGHTS == 0
 #define isVisibleTo(sees, origin, direction, distance) isVisible(origin, direction, distance)
 #endif

@@ -1,6 +1,6 @@
 // Lights that a surface may see. The light at a point is the sum over all of them. Here they are the punctual lights of
 // Glint's scene and, in packages with emissive lights, the triangles that emit light; or with --lights K those without
-// bounds and K of the others, which a hierarchy chooses.
+// bounds and K of the others, which a hierarchy chooses. In packages whose sky is a light, it is the last one.
 //
 // A host with many lights may return few: each stands for those that it was chosen from, at random, and its irradiance
 // is divided by the probability with which it was chosen. Then the mean of the sum is right, and so is the picture's.
@@ -9,11 +9,11 @@
 #include "light/tree.glsl"
 
 // A light. Glint only hands it back to the functions below.
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 struct SceneLight {
     LightRecord punctual;
-    uint emitter;  // or an emissive triangle (light/emitter.glsl)
-    float chance;  // of that: how often one of the surface's samples is expected to fall on it
+    uint emitter;  // or an emissive triangle (light/emitter.glsl), or kSkyEmitter
+    float chance;  // of a triangle: how often one of the surface's samples is expected to fall on it
 };
 #define HostLight SceneLight
 #define GLINT_PUNCTUAL(light) (light).punctual
@@ -22,7 +22,8 @@ struct SceneLight {
 #define GLINT_PUNCTUAL(light) light
 #endif
 
-uint hostLightCount(vec3 position) {
+// The lights apart from the sky.
+uint sceneLightCount() {
 #if GLINT_LIGHT_SAMPLES > 0
     return GLINT_FRAME.unboundedLights + (GLINT_FRAME.lightTreeNodes > 0u ? GLINT_LIGHT_SAMPLES : 0u);
 #elif GLINT_EMISSIVE_LIGHTS
@@ -32,14 +33,43 @@ uint hostLightCount(vec3 position) {
 #endif
 }
 
+uint hostLightCount(vec3 position) {
+#if GLINT_SKY_LIGHT
+    return sceneLightCount() + 1u;
+#else
+    return sceneLightCount();
+#endif
+}
+
 // A light of the scene by its number.
 HostLight lightOfScene(uint number) {
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     return SceneLight(GLINT_FRAME.lights.data[number], kNoEmitter, 0.0);
 #else
     return GLINT_FRAME.lights.data[number];
 #endif
 }
+
+#if GLINT_SHARED_LIGHTS
+
+// Returns whether rays of lobes find the light, too: an emissive triangle, or the sky. The functions that sample lights
+// are for the others.
+bool isShared(HostLight light) {
+    return light.emitter != kNoEmitter;
+}
+
+#endif
+
+#if GLINT_SKY_LIGHT
+
+HostLight lightOfSky() {
+    SceneLight light;
+    light.emitter = kSkyEmitter;
+    light.chance = 1.0;
+    return light;
+}
+
+#endif
 
 #if GLINT_EMISSIVE_LIGHTS
 
@@ -49,11 +79,6 @@ HostLight lightOfEmitter(uint emitter, float chance) {
     light.emitter = emitter;
     light.chance = chance;
     return light;
-}
-
-// Returns whether the light is an emissive triangle. The functions that sample lights are for the others.
-bool isEmitter(HostLight light) {
-    return light.emitter != kNoEmitter;
 }
 
 // How many samples of an emissive triangle a surface expects to take: SceneLight::chance.
@@ -72,6 +97,11 @@ float emitterChance(LightReceiver receiver, uint emitter) {
 
 // The hierarchy knows the surface that asks. `random` is uniform in [0, 1)³. The same arguments give the same light.
 HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
+#if GLINT_SKY_LIGHT
+    if (index == sceneLightCount()) {
+        return lightOfSky();
+    }
+#endif
     if (index < GLINT_FRAME.unboundedLights) {
         uint leaf = GLINT_FRAME.lightTreeNodes + index;
         return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
@@ -96,6 +126,11 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
 
 // `random` is uniform in [0, 1)³, for hosts that choose. The same arguments give the same light.
 HostLight hostLight(uint index, vec3 position, vec3 random) {
+#if GLINT_SKY_LIGHT
+    if (index == sceneLightCount()) {
+        return lightOfSky();
+    }
+#endif
 #if GLINT_EMISSIVE_LIGHTS
     if (index >= GLINT_FRAME.lightCount) {
         uint emitter = index - GLINT_FRAME.lightCount;

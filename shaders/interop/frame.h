@@ -111,8 +111,8 @@ struct ShadowRecord {
 };
 // What stops a shadow ray.
 GLINT_CONSTANT(kShadowOfLight, 0u);     // either side of every surface
-GLINT_CONSTANT(kShadowOfEmitter, 1u);   // what stops a ray that finds the emissive triangle by chance
-GLINT_CONSTANT(kShadowOfEmitterWithin, 2u);  // the same within a volume
+GLINT_CONSTANT(kShadowOfShared, 1u);   // what stops a ray of a lobe that finds the light by chance
+GLINT_CONSTANT(kShadowOfSharedWithin, 2u);  // the same within a volume
 
 // A hit as a surface, for a host that lights it. 112 bytes. Vectors are in the world.
 struct SurfaceRecord {
@@ -163,6 +163,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RadianceArr
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PathArray { PathState data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LobeRayArray { LobeRay data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SkyShareArray { float data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer HitArray { HitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PackedHitArray { PackedHitRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer ShadowArray { ShadowRecord data[]; };
@@ -216,6 +217,13 @@ GLINT_CONSTANT(kBinningNone, 0u);
 GLINT_CONSTANT(kBinningSign, 1u);        // signs of the direction: 8 bins
 GLINT_CONSTANT(kBinningOctahedral, 2u);  // cells of the octahedral map of the direction: 8 x 8 bins
 GLINT_CONSTANT(kMaxDirectionBins, 64u);
+
+// Shaders have the members of the sky's light only in packages that have it, so that others do not change.
+#ifdef __cplusplus
+#define GLINT_SKY_LIGHT_MEMBERS 1
+#else
+#define GLINT_SKY_LIGHT_MEMBERS GLINT_SKY_LIGHT
+#endif
 
 // The constants of one frame of one sample.
 struct FrameConstants {
@@ -314,6 +322,14 @@ struct FrameConstants {
     uint endRow;        // the row after its last one
     uint bandFirst;     // the number of its first pixel
     uint outsideBands;  // pixels of the frame that samples of a band have no memory for
+#if GLINT_SKY_LIGHT_MEMBERS
+    // In packages whose sky is a light:
+    GLINT_ADDRESS(SkyShare) skyShares;  // of every sample, in the order of the samples: the share of the sky's light
+                                        // that its ray brings if it leaves the scene
+    GLINT_ADDRESS(Uint) skyCounts;      // the distribution of the environment map (runtime/src/sky/sky_counts.h)
+    uint skyColumns;
+    uint skyRows;
+#endif
 };
 
 GLINT_INTEROP_END

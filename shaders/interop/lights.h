@@ -30,6 +30,11 @@ GLINT_CONSTANT(kLightLeaf, 0x80000000u);
 GLINT_CONSTANT(kLightEmitter, 0x40000000u);
 // No emissive triangle.
 GLINT_CONSTANT(kNoEmitter, 0xFFFFFFFFu);
+// In the place of an emissive triangle: the sky.
+GLINT_CONSTANT(kSkyEmitter, 0xFFFFFFFEu);
+
+// The counts of the distribution of an environment map add up to this number, because random numbers have so many values.
+GLINT_CONSTANT(kSkyCounts, 16777216u);
 
 // A triangle that emits light. The triangles of a geometry follow each other. 12 bytes.
 struct EmitterRecord {

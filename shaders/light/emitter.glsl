@@ -6,6 +6,7 @@
 #include "hit/samples.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
+#include "light/shared_sample.glsl"
 
 #if GLINT_EMISSIVE_LIGHTS
 
@@ -15,13 +16,6 @@ const uint kPairEmitter = 0x20000u;
 // Triangles that fill less are sampled by area. There the density by solid angle hardly varies, unless the triangle is
 // seen from the side, and the formulas for the sphere lose their digits.
 const float kLeastSampledAngle = 0.01;
-
-struct EmitterSample {
-    vec3 direction;  // unit vector, towards the point
-    vec3 radiance;   // that arrives along it if nothing is in the way
-    float density;   // of the direction, by solid angle, for one sample of this triangle; 0 if no light arrives
-    vec3 end;        // of the shadow ray, off the triangle
-};
 
 // The corners in the world.
 struct EmitterTriangle {
@@ -143,7 +137,7 @@ vec3 emissionOf(Hit hit, Features features) {
 #endif
 }
 
-EmitterSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
+SharedSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
     EmitterTriangle triangle = emitterTriangle(emitter);
     SeenTriangle seen = seenFrom(position, triangle);
     bool byAngle = seen.angle >= kLeastSampledAngle;
@@ -151,7 +145,7 @@ EmitterSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
                                 : sampleBarycentrics(u);
     precise vec3 point = triangle.corners[0] + (barycentrics.x * (triangle.corners[1] - triangle.corners[0]) +
                                                 barycentrics.y * (triangle.corners[2] - triangle.corners[0]));
-    EmitterSample result = EmitterSample(directionOr(point - position, vec3(0.0)), vec3(0.0), 0.0, point);
+    SharedSample result = SharedSample(directionOr(point - position, vec3(0.0)), vec3(0.0), 0.0, point);
     result.density = emitterPointDensity(position, triangle, seen, point);
     if (result.direction == vec3(0.0) || result.density <= 0.0) {
         result.density = 0.0;
@@ -180,18 +174,18 @@ EmitterSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
 }
 
 // The sample of a light that hostLight() has given. Its density is that of all samples of a surface together.
-EmitterSample emitterLight(Hit hit, HostLight light, uint pair) {
+SharedSample emitterLight(Hit hit, HostLight light, uint pair) {
     if (light.chance <= 0.0) {
-        return EmitterSample(vec3(0.0), vec3(0.0), 0.0, vec3(0.0));
+        return SharedSample(vec3(0.0), vec3(0.0), 0.0, vec3(0.0));
     }
-    EmitterSample drawn = sampleEmitter(light.emitter, hit.position, hostRandomPair(hit.target, pair));
+    SharedSample drawn = sampleEmitter(light.emitter, hit.position, hostRandomPair(hit.target, pair));
     drawn.density *= light.chance;
     return drawn;
 }
 
 // The shadow ray of a sample, in place of its direction: from where rays leave the surface to where the triangle's
 // clearance ends.
-LightSample emitterAim(Hit hit, EmitterSample drawn) {
+LightSample emitterAim(Hit hit, SharedSample drawn) {
     precise vec3 away = drawn.end - rayOrigin(hit, drawn.direction);
     precise float squared = dot(away, away);
     precise float distance = sqrt(squared);

@@ -66,7 +66,7 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 // The same for what `sees` other surfaces (kShadow*): rays to emissive triangles take glass for opaque, because rays of
 // lobes bring the light that passes it.
 bool lightArrivesTo(uint sees, vec3 origin, vec3 direction, float distance, inout vec3 light) {
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 #if GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE
     if (sees == kShadowOfLight) {
         return lightArrives(origin, direction, distance, light);

@@ -13,33 +13,36 @@
 
 GLINT_PIXEL_WORKGROUP
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 
-// The light of an emissive light, without its shadow, for the shares of the lobes that rays of effects don't bring.
-vec3 lightOfEmitter(Hit hit, Surface surface, Features features, EmitterSample drawn, SkyShares shares) {
+// The light of a shared light, without its shadow, for the shares of the lobes that rays of effects don't bring.
+vec3 lightOfShared(Hit hit, Surface surface, Features features, HostLight light, SharedSample drawn, SkyShares sky) {
+    SkyShares shares = sky;
     shareWithEffects(surface, features, toSurface(surface, drawn.direction), drawn.density, shares);
-    surface.bsdf.mirrored = shares.mirrored;
-    surface.bsdf.layers.counted = shares.layers;
-    surface.bsdf.diffuse *= shares.diffuse;
-    surface.bsdf.transmitted *= shares.transmitted;
-    surface.bsdf.diffuseTransmitted *= shares.behind;
+#if GLINT_SKY_LIGHT
+    if (light.emitter == kSkyEmitter) {
+        shares = sampledShares(surface, features, shares, sky);
+    }
+#endif
+    keepShares(shares, surface);
     return scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / drawn.density;
 }
 
 // The same with its shadow.
-vec3 visibleEmitter(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares shares,
-                    inout ShadowCounts counts) {
-    EmitterSample drawn = emitterLight(hit, light, kPairEmitter + index);
+vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares sky,
+                   inout ShadowCounts counts) {
+    SharedSample drawn = sampleShared(hit, light, index, 0u);
     if (drawn.density <= 0.0) {
         return vec3(0.0);
     }
-    vec3 contribution = lightOfEmitter(hit, surface, features, drawn, shares);
-    LightSample aim = emitterAim(hit, drawn);
+    vec3 contribution = lightOfShared(hit, surface, features, light, drawn, sky);
+    LightSample aim = aimAtShared(hit, light, drawn);
     if (luminance(contribution) <= 0.0 || aim.distance <= 0.0) {
         counts.facing += 1u;
         return vec3(0.0);
     }
-    bool visible = isVisibleTo(kShadowOfEmitter, rayOrigin(hit, aim.direction), aim.direction, aim.distance);
+    uint sees = passesAsLight(light) ? kShadowOfLight : kShadowOfShared;
+    bool visible = lightArrivesTo(sees, rayOrigin(hit, aim.direction), aim.direction, aim.distance, contribution);
     counts.rays += 1u;
     counts.misses += visible ? 1u : 0u;
     return visible ? contribution : vec3(0.0);
@@ -55,9 +58,9 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
 #endif
     for (uint i = 0u; i < lights; ++i) {
         HostLight light = lightOfHost(hit, features, i);
-#if GLINT_EMISSIVE_LIGHTS
-        if (isEmitter(light)) {
-            sum += visibleEmitter(hit, surface, features, light, i, sky, counts);
+#if GLINT_SHARED_LIGHTS
+        if (isShared(light)) {
+            sum += visibleShared(hit, surface, features, light, i, sky, counts);
             continue;
         }
 #endif

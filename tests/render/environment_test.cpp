@@ -37,7 +37,7 @@ LinearImage makeMap(std::uint32_t width, std::uint32_t height, const Value& valu
 
 std::unique_ptr<Environment> makeEnvironment(std::uint32_t width, std::uint32_t height, const Value& value) {
     Result<std::unique_ptr<Environment>> environment =
-        Environment::create(sharedContext(), makeMap(width, height, value));
+        Environment::create(sharedContext(), makeMap(width, height, value), {.sampled = true});
     if (!environment) {
         ADD_FAILURE() << toString(environment.error());
         return nullptr;

@@ -12,14 +12,15 @@ namespace glint::testing {
 namespace {
 
 Result<std::vector<std::uint32_t>> compileKernel(const gltf::Scene& scene, const LoadedScene& loaded,
-                                                 const std::string& shader) {
+                                                 const std::string& shader,
+                                                 const compiler::CompileSettings& settings) {
     const Result<base::Bytes> text =
         base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests" / "render" / "shaders" / shader);
     if (!text) {
         return text.error();
     }
     const Result<compiler::SourceSet> sources =
-        makeSourceSet(gltf::SceneList({&scene, 1}), loaded.compiled().plan, {});
+        makeSourceSet(gltf::SceneList({&scene, 1}), loaded.compiled().plan, settings);
     if (!sources) {
         return sources.error();
     }
@@ -36,8 +37,9 @@ Result<std::vector<std::uint32_t>> compileKernel(const gltf::Scene& scene, const
 HitKernel::HitKernel(std::unique_ptr<SceneKernel> kernel) : kernel_(std::move(kernel)) {}
 
 Result<std::unique_ptr<HitKernel>> HitKernel::create(const gltf::Scene& scene, const LoadedScene& loaded,
-                                                     const std::string& shader) {
-    const Result<std::vector<std::uint32_t>> words = compileKernel(scene, loaded, shader);
+                                                     const std::string& shader,
+                                                     const compiler::CompileSettings& settings) {
+    const Result<std::vector<std::uint32_t>> words = compileKernel(scene, loaded, shader, settings);
     return words ? create(loaded, *words) : words.error();
 }
 

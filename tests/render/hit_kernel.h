@@ -17,9 +17,11 @@ class HitKernel {
 public:
     // `shader` is a file of tests/render/shaders. It finds the scene through FrameConstants, runs `width`
     // invocations in workgroups of kRayGroupSize, reads its input from `rays` and `lights`, and writes words
-    // to `counters`. Errors: those of compileShader, "vulkan-call". `scene` must outlive the kernel.
+    // to `counters`. `settings` decide what it is compiled with. Errors: those of compileShader,
+    // "vulkan-call". `scene` must outlive the kernel.
     static Result<std::unique_ptr<HitKernel>> create(const gltf::Scene& scene, const LoadedScene& loaded,
-                                                     const std::string& shader);
+                                                     const std::string& shader,
+                                                     const compiler::CompileSettings& settings = {});
 
     // The same for a compiled shader.
     static Result<std::unique_ptr<HitKernel>> create(const LoadedScene& loaded,

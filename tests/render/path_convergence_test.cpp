@@ -97,7 +97,8 @@ std::unique_ptr<Environment> windowMap() {
         map.pixels.push_back(window ? std::array<float, 4>{6.0F, 6.0F, 5.0F, 1.0F}
                                     : std::array<float, 4>{0.1F, 0.15F, 0.2F, 1.0F});
     }
-    Result<std::unique_ptr<Environment>> environment = Environment::create(sharedContext(), std::move(map));
+    Result<std::unique_ptr<Environment>> environment =
+        Environment::create(sharedContext(), std::move(map), {.sampled = true});
     EXPECT_TRUE(environment.ok());
     return environment.ok() ? std::move(*environment) : nullptr;
 }

@@ -38,6 +38,7 @@ compiler::CompileSettings pathSettings(std::uint32_t bounces,
     settings.strategies = strategy;
     settings.maxBounces = bounces;
     settings.emissiveLights = compiler::EmissiveLights::Off;  // paths find emission by chance
+    settings.skyLight = compiler::SkyLight::Off;              // and the sky
     settings.effects = {false, 0};
     for (const char* const effect : kEffects) {
         settings.effects.named |= compiler::builtinEffects({effect});

@@ -200,6 +200,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
          {{"hitLobes", manifest.hitLobes},
           {"lights", package.lightSamples() == 0 ? base::Json("all") : base::Json(package.lightSamples())},
           {"emissiveLights", package.emission() != nullptr},
+          {"skyLight", package.skyLight()},
           {"energyCompensation", manifest.energyCompensation},
           {"trustTextures", manifest.trustTextures},
           {"textureLod", manifest.textureLod},

@@ -87,14 +87,15 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
 // Returns null if no map is given. Fills in the report's members about it.
 Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
                                                        const RenderArguments& arguments, Context& context,
-                                                       RenderReport& report) {
+                                                       const Package& package, RenderReport& report) {
     const std::string& file = arguments.environment;
     if (file.empty()) {
         return std::unique_ptr<Environment>();
     }
     console.progress("filtering " + file);
     std::vector<Diagnostic> notes;
-    Result<std::unique_ptr<Environment>> environment = scene_view::loadEnvironment(context, file, notes);
+    Result<std::unique_ptr<Environment>> environment =
+        scene_view::loadEnvironment(context, file, {.sampled = package.skyLight()}, notes);
     console.report(notes);
     if (environment) {
         report.environment = {file, (*environment)->statistics()};
@@ -262,16 +263,16 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         !settled) {
         return settled;
     }
-    const Result<std::unique_ptr<Environment>> environment =
-        obtainEnvironment(console, arguments, **context, report);
-    if (!environment) {
-        return environment.error();
-    }
     console.progress("compiling " + arguments.scene);
     const Result<Package> package = obtainPackage(console, arguments, plan, (*context)->handles().tracers,
                                                   scene, std::move(given), report);
     if (!package) {
         return package.error();
+    }
+    const Result<std::unique_ptr<Environment>> environment =
+        obtainEnvironment(console, arguments, **context, *package, report);
+    if (!environment) {
+        return environment.error();
     }
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);

@@ -210,6 +210,11 @@ Result<CompileSettings> completed(std::span<const gltf::Scene> scenes, CompileSe
         return emissive.error();
     }
     settings.emissiveLights = *emissive;
+    Result<SkyLight> sky = skyLightOf(scenes, settings);
+    if (!sky) {
+        return sky.error();
+    }
+    settings.skyLight = *sky;
     Result<std::uint32_t> lights = lightSamplesOf(scenes, settings);
     if (!lights) {
         return lights.error();

@@ -26,7 +26,7 @@ bool isLit(const gltf::Scene& scene) {
 
 EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings) {
     const bool lit = settings.addsLight || settings.emissiveLights == EmissiveLights::On ||
-                     std::ranges::any_of(scenes.scenes(), isLit);
+                     settings.skyLight == SkyLight::On || std::ranges::any_of(scenes.scenes(), isLit);
     EffectPlan plan = decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
     if (settings.passes == package::Passes::Steps) {
         // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.

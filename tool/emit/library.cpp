@@ -36,6 +36,7 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     settings.precision = package::ShadingPrecision::Single;
     settings.answer = package::HitAnswer::Radiance;
     settings.emissiveLights = EmissiveLights::Off;
+    settings.skyLight = SkyLight::Off;
     Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources;
@@ -49,6 +50,7 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     sources->add("hit/samples.glsl", "");
     // The host has the lights.
     sources->add("light/emitter.glsl", "");
+    sources->add("light/shared.glsl", "");
     sources->add("light/receiver.glsl", "");
     return sources;
 }

@@ -14,26 +14,30 @@ namespace glint::compiler {
 
 namespace {
 
-// The files of a host that decide where emissive triangles and their materials are.
+// The files of a host that decide where emissive triangles and their materials are, and those that decide
+// what the sky is and who samples it.
 constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "geometry.glsl", "material.glsl"};
+constexpr std::string_view kSkyFiles[] = {"lights.glsl", "sky.glsl"};
 
 bool castsShadows(std::span<const gltf::Scene> scenes, CompileSettings settings) {
-    settings.emissiveLights = EmissiveLights::On;
+    settings.addsLight = true;
     return planEffects(gltf::SceneList(scenes), settings).effects.lights != 0;
 }
 
-// Returns why the package can't have emissive lights, or an empty text.
-Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
+// Returns why the package can't have lights that Glint samples by `files` of the host, or an empty text.
+// `whose` says what these are.
+Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
+                              std::span<const std::string_view> files, std::string_view whose) {
     Result<std::vector<std::string>> replaced = replacedHostFiles(settings.host);
     if (!replaced) {
         return replaced.error();
     }
-    const bool ofHost = settings.passes == package::Passes::Steps ||
-                        std::ranges::any_of(kEmitterFiles, [&](std::string_view file) {
-                            return std::ranges::find(*replaced, file) != replaced->end();
-                        });
+    const bool ofHost =
+        settings.passes == package::Passes::Steps || std::ranges::any_of(files, [&](std::string_view file) {
+            return std::ranges::find(*replaced, file) != replaced->end();
+        });
     if (ofHost) {
-        return std::string("the lights or the geometry are the host's");
+        return fmt::format("{} are the host's", whose);
     }
     return std::string(castsShadows(scenes, settings) ? "" : "the package has no effect shadow");
 }
@@ -75,7 +79,7 @@ Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
     if (most == 0 || (!isOn && most > kMostEmitters)) {
         return EmissiveLights::Off;
     }
-    const Result<std::string> why = hindrance(scenes, settings);
+    const Result<std::string> why = hindrance(scenes, settings, kEmitterFiles, "the lights or the geometry");
     if (!why) {
         return why.error();
     }
@@ -85,6 +89,23 @@ Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
                          "add the effect shadow, or leave out --emissive-lights");
     }
     return why->empty() ? EmissiveLights::On : EmissiveLights::Off;
+}
+
+Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
+    const bool isOn = settings.skyLight == SkyLight::On;
+    if (settings.skyLight == SkyLight::Off || (!isOn && settings.maxBounces == 1)) {
+        return SkyLight::Off;
+    }
+    const Result<std::string> why = hindrance(scenes, settings, kSkyFiles, "the lights or the sky");
+    if (!why) {
+        return why.error();
+    }
+    if (isOn && !why->empty()) {
+        return makeError("sky-light", "",
+                         fmt::format("--sky-light on needs shadow rays and a sky of Glint's own: {}", *why),
+                         "add the effect shadow, or leave out --sky-light");
+    }
+    return why->empty() ? SkyLight::On : SkyLight::Off;
 }
 
 EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan) {

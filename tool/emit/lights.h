@@ -1,5 +1,5 @@
 // Which lights a surface takes: all of them, or some that a hierarchy chooses; whether triangles that emit
-// light are among them; and what shadow rays pass.
+// light and the sky are among them; and what shadow rays pass.
 #pragma once
 
 #include "gltf/scene.h"
@@ -29,6 +29,10 @@ std::size_t countEmitters(const gltf::Scene& scene);
 // "emissive-lights" if the settings demand what a host with lights of its own, or a package without shadow
 // rays, can't have.
 Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
+
+// Returns SkyLight::On or Off for a package of `scenes`. Error "sky-light" if the settings demand what a host
+// with a sky or lights of its own, or a package without shadow rays, can't have.
+Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
 
 // Returns the features that decide what the triangles emit: those that all of them have, and those that some
 // have. If a layer covers the emission of one, they are all features.

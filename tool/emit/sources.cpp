@@ -129,6 +129,10 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_LIGHT_SAMPLES {}\n", settings.lightSamples.value_or(0));
     const bool emissive = settings.emissiveLights == EmissiveLights::On;
     text += fmt::format("#define GLINT_EMISSIVE_LIGHTS {}\n", flag(emissive));
+    const bool sky = settings.skyLight == SkyLight::On;
+    text += fmt::format("#define GLINT_SKY_LIGHT {}\n", flag(sky));
+    text += "// Some lights are found by rays of lobes, too.\n";
+    text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky));
     if (emissive) {
         text += emitterDefines(scenes, plan);
     }

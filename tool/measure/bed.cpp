@@ -160,7 +160,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     if (!base.environment.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
-            scene_view::loadEnvironment(*bed->context_, base.environment, notes);
+            scene_view::loadEnvironment(*bed->context_, base.environment, {.sampled = true}, notes);
         observer.report(notes);
         if (!environment) {
             return environment.error();

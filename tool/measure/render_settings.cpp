@@ -77,6 +77,8 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     compiler::CompileSettings emissive = compileSettings(settings, plan, package::kAllTracers, scene);
     emissive.emissiveLights = compiler::EmissiveLights::On;
     facts.lightsMayEmit = compiler::emissiveLightsOf({&scene, 1}, emissive).ok();
+    emissive.skyLight = compiler::SkyLight::On;
+    facts.skyMayLight = compiler::skyLightOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
     facts.lights = static_cast<std::size_t>(std::ranges::count_if(
         data.lights, [](const LightView& light) { return light.type != LightView::Type::Directional; }));

@@ -36,12 +36,13 @@ std::vector<Diagnostic> describe(const std::string& file, const LinearImage& ima
 }  // namespace
 
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
+                                                     const EnvironmentOptions& options,
                                                      std::vector<Diagnostic>& notes) {
     const Result<LinearImage> image = image::readRadiance(file);
     if (!image) {
         return image.error();
     }
-    Result<std::unique_ptr<Environment>> environment = Environment::create(context, *image);
+    Result<std::unique_ptr<Environment>> environment = Environment::create(context, *image, options);
     if (!environment) {
         Diagnostic error = environment.error();
         error.where = file;

@@ -58,6 +58,10 @@ std::string withoutEmission(std::string_view value, const BenchFacts& facts, con
     return value == "on" && !facts.lightsMayEmit ? "the default has no shadow rays" : "";
 }
 
+std::string withoutSkyLight(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {
+    return value == "on" && !facts.skyMayLight ? "the default has no shadow rays" : "";
+}
+
 std::vector<std::string> strategiesToTry(const BenchFacts& /*facts*/, const std::string& /*base*/,
                                          bool /*quick*/) {
     std::vector<std::string> names;

@@ -40,6 +40,17 @@ constexpr std::span<const Named<EmissiveLights>> namesOf(EmissiveLights /*type*/
     return kEmissiveLightsNames;
 }
 
+// Whether the sky is a light that surfaces sample.
+enum class SkyLight : std::uint8_t { Auto, Off, On };
+inline constexpr Named<SkyLight> kSkyLightNames[] = {
+    {SkyLight::Auto, "auto", "in packages for several bounces with the effect shadow"},
+    {SkyLight::Off, "off", "rays find its light, and without occlusion it stands in for further ones"},
+    {SkyLight::On, "on", "surfaces send shadow rays to it"},
+};
+constexpr std::span<const Named<SkyLight>> namesOf(SkyLight /*type*/) {
+    return kSkyLightNames;
+}
+
 struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -62,6 +73,7 @@ struct CompileSettings {
     // lights (emit/lights.h).
     std::optional<std::uint32_t> lightSamples{};
     EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
+    SkyLight skyLight = SkyLight::Auto;                    // so it does here
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures). Packages with a

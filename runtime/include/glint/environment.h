@@ -11,6 +11,12 @@
 
 namespace glint {
 
+struct EnvironmentOptions {
+    // Packages whose sky is a light (Package::skyLight()) need the distribution of the map's light, which
+    // takes up to 2 MiB on the device.
+    bool sampled = false;
+};
+
 // An environment is made once. The frames of any number of renderers can share it, and it may be destroyed
 // before they are. The Context must outlive it.
 class Environment {
@@ -21,7 +27,8 @@ public:
     // Khronos viewers. Any size and aspect ratio is allowed, since the whole image covers the whole sphere.
     // Negative channels count as 0. Errors: "environment-size" for an image without pixels;
     // "environment-radiance", with the pixel, for NaN, infinity and anything above 1e18.
-    static Result<std::unique_ptr<Environment>> create(Context& context, const LinearImage& image);
+    static Result<std::unique_ptr<Environment>> create(Context& context, const LinearImage& image,
+                                                       const EnvironmentOptions& options = {});
     ~Environment();
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
@@ -35,6 +42,7 @@ public:
         std::uint64_t negativePixels = 0;  // pixels with a channel below 0
         // Whether texels have 16 bits a channel because this device can't filter 32-bit images.
         bool halfFloat = false;
+        bool sampled = false;   // as EnvironmentOptions::sampled
         double filterMs = 0.0;  // host time
     };
     const Statistics& statistics() const;

@@ -54,6 +54,7 @@ struct TrafficShape {
     std::uint32_t bucketCount = 1;
     bool paths = false;  // of several bounces
     bool emissiveLights = false;
+    bool skyLight = false;
     bool deferredShadows = false;
     bool accumulates = false;  // the frame adds its sample to a mean
     bool marchesScreen = false;

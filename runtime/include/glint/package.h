@@ -95,6 +95,8 @@ public:
     // Returns how many lights a surface chooses by a hierarchy, which GpuScene then builds; 0 if it takes
     // all.
     std::uint32_t lightSamples() const;
+    // Whether surfaces sample the sky as a light. An environment map then needs EnvironmentOptions::sampled.
+    bool skyLight() const;
     // Returns where records of materials say what they emit, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
     // Returns what says where alpha is in records, or null for packages that do not test it, or by code that

@@ -140,6 +140,8 @@ struct PackageHeader {
     ShadowThrough shadowThrough;
     std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
     std::uint32_t trustTextures;  // 1: shaders rely on what the textures of the scenes hold
+    std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
+    std::uint32_t pad;            // 0
 };
 
 enum class SectionKind : std::uint32_t {
@@ -315,7 +317,7 @@ struct SamplerEntry {
     std::uint32_t mipmapped;
 };
 
-static_assert(sizeof(PackageHeader) == 144);
+static_assert(sizeof(PackageHeader) == 152);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 32);

@@ -23,6 +23,9 @@ void fillEnvironment(const Environment::State& environment, const Outside& outsi
     constants.environmentLevels = static_cast<float>(environment.statistics.levels);
     constants.environmentTurn = static_cast<float>(turns - std::floor(turns));
     constants.environmentScale = environment.scale * outside.intensity;
+    constants.skyCounts = environment.counts.address;
+    constants.skyColumns = environment.countColumns;
+    constants.skyRows = environment.countRows;
 }
 
 }  // namespace
@@ -40,6 +43,11 @@ Status checkOutside(const FrameSize& size, const Outside& outside) {
         return makeError("environment-missing", "",
                          "the package reads an environment map, and the frame has none",
                          "set FrameOptions::environment, or compile the package without an environment map");
+    }
+    if (size.skyLight && outside.environment != nullptr && !outside.environment->statistics().sampled) {
+        return makeError("environment-unsampled", "",
+                         "the package samples the sky as a light, and the environment map can't be sampled",
+                         "create it with EnvironmentOptions::sampled, or compile with --sky-light off");
     }
     if (!size.environmentMap && outside.environment != nullptr) {
         return makeError(
@@ -76,6 +84,7 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.nextListed = frame.nextListed.address;
     constants.paths = frame.paths.address;
     constants.lobeRays = frame.lobeRays.address;
+    constants.skyShares = frame.skyShares.address;
     constants.hits = frame.hits.address;
     constants.packedHits = frame.hits.address;
     constants.shadows = frame.shadows.address;

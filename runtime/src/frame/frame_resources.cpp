@@ -169,6 +169,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {&Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
         {&Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
          MemoryUse::Device},
+        {&Frame::skyShares, size.skyLight ? samples * sizeof(float) : 0, kStorage, MemoryUse::Device},
         {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
         {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},

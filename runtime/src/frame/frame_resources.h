@@ -31,7 +31,7 @@ struct FrameResources {
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
     // others is `pool`.
-    static constexpr std::size_t kBufferCount = 22;
+    static constexpr std::size_t kBufferCount = 23;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
@@ -46,6 +46,7 @@ struct FrameResources {
     Buffer nextListed;
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
+    Buffer skyShares;    // present if the sky is a light of the package
     Buffer hits;         // full or packed records; present if hits are ordered
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
@@ -74,6 +75,7 @@ struct FrameResources {
                  {"next rays", &nextListed},
                  {"paths", &paths},
                  {"rays of lobes", &lobeRays},
+                 {"shares of the sky", &skyShares},
                  {"hits", &hits},
                  {"ordered hits", &orderedHits},
                  {"visited hits", &visitedHits},
@@ -111,6 +113,7 @@ struct FrameSize {
 
     bool paths = false;  // the package's shaders keep the state of paths
     bool emissiveLights = false;
+    bool skyLight = false;
     std::uint32_t bounces = 1;  // the most of a path
 
     bool accumulates = true;     // the picture is a mean over frames

@@ -27,7 +27,7 @@ constexpr std::uint32_t kRay = kWord + kVector + kAim + kWord;
 
 // What a pass that shades a hit writes: light, and the next ray of the path or that there is none.
 std::uint32_t answerBytes(const TrafficShape& shape) {
-    return shape.paths ? kPixel + kStart + kAim + kWord + kPath : kStart;
+    return shape.paths ? kPixel + kStart + kAim + kWord + kPath + (shape.skyLight ? kWord : 0) : kStart;
 }
 
 // What it reads of the ray.
@@ -41,9 +41,10 @@ std::uint32_t arrivalBytes(const TrafficShape& shape) {
 
 void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const std::uint32_t lobe = shape.emissiveLights ? sizeof(gpu::LobeRay) : 0;
+    const std::uint32_t share = shape.skyLight ? kWord : 0;
     rows.push_back({"lighting", Unit::Sample, 0, kStart + lobe + (shape.marchesScreen ? kWeight : 0)});
-    rows.push_back(
-        {"lighting", Unit::Sent, 0, kAim + (shape.marchesScreen ? 0 : kWeight) + (shape.paths ? kPath : 0)});
+    rows.push_back({"lighting", Unit::Sent, 0,
+                    kAim + share + (shape.marchesScreen ? 0 : kWeight) + (shape.paths ? kPath : 0)});
     if (shape.walks > 0) {
         // The counts tell effects apart no further, so all that is sent is taken for walked.
         rows.push_back({"effect walk", Unit::Sample, kWord, 0});
@@ -69,7 +70,8 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
         rows.push_back({"copy", Unit::Ray, key, kWord});
     }
     // A miss needs of its record only that it is one.
-    const TrafficRow miss{"", Unit::Miss, 3 * kWord + kVector + (shape.paths ? kVector : 0),
+    const TrafficRow miss{"", Unit::Miss,
+                          (shape.skyLight ? 4 : 3) * kWord + kVector + (shape.paths ? kVector : 0),
                           shape.paths ? kPixel + kWord : kStart};
     const TrafficRow shaded{"", Unit::Hit, kWord + hit + arrivalBytes(shape), answer};
     const TrafficRow traced{
@@ -116,6 +118,7 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
     shape.bucketCount = package.bucketCount();
     shape.paths = package::hasPaths(package.shape());
     shape.emissiveLights = package.emission() != nullptr;
+    shape.skyLight = package.skyLight();
     shape.deferredShadows =
         effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     shape.accumulates = options.accumulate;

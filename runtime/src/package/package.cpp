@@ -110,6 +110,10 @@ std::uint32_t Package::lightSamples() const {
     return state_->header.lightSamples;
 }
 
+bool Package::skyLight() const {
+    return state_->header.skyLight != 0;
+}
+
 const package::EmissionEntry* Package::emission() const {
     return state_->emission.empty() ? nullptr : state_->emission.data();
 }

@@ -135,6 +135,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.lightSamples > package::kMaxLightSamples) {
         return outside("the number of light samples", header.lightSamples);
     }
+    if (header.skyLight > 1) {
+        return outside("the kind of the sky's light", header.skyLight);
+    }
     if (header.environmentMap > 1) {
         return outside("the kind of sky", header.environmentMap);
     }

@@ -180,6 +180,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.batchCount = choice.batchEffects ? size.sampleCount : std::min(size.sampleCount, 1U);
     size.paths = package::hasPaths(package.shape());
     size.emissiveLights = package.emission() != nullptr;
+    size.skyLight = package.skyLight();
     size.bounces = size.paths ? choice.bounces : 1;
     size.ordered = size.sampleCount > 0 && (choice.strategy & package::orderedStrategies()) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;

@@ -5,6 +5,7 @@
 #include "sky/environment_state.h"
 #include "sky/map_filter.h"
 #include "sky/radiance_map.h"
+#include "sky/sky_counts.h"
 
 #include <algorithm>
 #include <chrono>
@@ -104,9 +105,31 @@ Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& l
     return (*uploader)->finish();
 }
 
+Status uploadCounts(Environment::State& state, const SkyCounts& distribution) {
+    state.countColumns = distribution.columns;
+    state.countRows = distribution.rows;
+    const std::span<const std::uint8_t> bytes = bytesOf(std::span<const std::uint32_t>(distribution.counts));
+    Result<Buffer> buffer =
+        createBuffer(state.context, state.pool, bytes.size(),
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+    if (!buffer) {
+        return buffer.error();
+    }
+    state.counts = std::move(*buffer);
+    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
+    if (!uploader) {
+        return uploader.error();
+    }
+    if (Status status = (*uploader)->copyToBuffer(bytes, state.counts); !status) {
+        return status;
+    }
+    return (*uploader)->finish();
+}
+
 }  // namespace
 
-Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image) {
+Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image,
+                                                         const EnvironmentOptions& options) {
     Result<CheckedMap> checked = checkMap(image);
     if (!checked) {
         return checked.error();
@@ -116,6 +139,7 @@ Result<std::unique_ptr<Environment>> Environment::create(Context& context, const
     const Clock::time_point start = Clock::now();
     RadianceMap map = fitToDevice(std::move(checked->map));
     state->harmonics = skyHarmonics(map);
+    const SkyCounts distribution = options.sampled ? skyCounts(map) : SkyCounts{};
     const std::vector<RadianceMap> levels = filterByRoughness(std::move(map));
     Statistics& statistics = state->statistics;
     statistics.filterMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -123,9 +147,15 @@ Result<std::unique_ptr<Environment>> Environment::create(Context& context, const
     statistics.height = levels.front().height;
     statistics.levels = static_cast<std::uint32_t>(levels.size());
     statistics.negativePixels = checked->negativePixels;
+    statistics.sampled = options.sampled;
     statistics.halfFloat = !context.state().limits.filteredFloats;
     if (Status status = uploadLevels(*state, levels); !status) {
         return status.error();
+    }
+    if (options.sampled) {
+        if (Status status = uploadCounts(*state, distribution); !status) {
+            return status.error();
+        }
     }
     if (Status status = createSampler(*state); !status) {
         return status.error();

@@ -16,6 +16,10 @@ struct Environment::State {
     MemoryPool pool;
     DeviceImage map;  // one mip for each level; layout SHADER_READ_ONLY_OPTIMAL
     UniqueSampler sampler;
+    // If statistics.sampled: the distribution of the map's light (sky_counts.h).
+    Buffer counts;
+    std::uint32_t countColumns = 0;
+    std::uint32_t countRows = 0;
     float scale = 1.0F;  // radiance that a texel value of 1 stands for
     SkyHarmonics harmonics{};
     Statistics statistics;

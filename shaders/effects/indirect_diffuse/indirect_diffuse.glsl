@@ -14,13 +14,14 @@ const uint kPairIndirectSide = 4u;
 // a radian keeps out the finest texture levels, which would only make noise.
 const float kIndirectSpread = 0.125;
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 // The probability that the surface at hand sends its ray to the far side.
 float indirectFarChance = 0.0;
 #endif
 
 // Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
-// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same.
+// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same; or those of the
+// BSDF, where samples of lights bring a part of the same light.
 EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
     vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
     vec3 front = surface.bsdf.diffuse * base;
@@ -35,18 +36,23 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
         return noSample(kRayAbsent);
     }
     float chance = luminance(back) / total;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     indirectFarChance = chance;
 #endif
     bool passes = chance > 0.0 && hostRandomPair(hit.target, kPairIndirectSide).x < chance;
     vec3 local = sampleCosine(hostRandomPair(hit.target, kPairIndirect));
     vec3 direction = onSide(toWorld(surface, passes ? vec3(local.xy, -local.z) : local),
                             passes ? -hit.geometricNormal : hit.geometricNormal);
+#if GLINT_SHARED_LIGHTS
+    vec3 weight = evaluateDiffuse(surface.bsdf, features, passes ? vec3(local.xy, -local.z) : local) /
+                  (passes ? chance : 1.0 - chance);
+#else
     vec3 weight = passes ? back / chance : front / (1.0 - chance);
+#endif
     return sentSample(hit, direction, weight, max(kIndirectSpread, GLINT_FRAME.pixelSpread));
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 
 // The density of the ray that was sent, by solid angle.
 float densityIndirectDiffuse(Surface surface, Features features, vec3 l) {

@@ -23,7 +23,7 @@ vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
            baseShare(surface, features);
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 // What the surface at hand sends.
 struct ReflectionRay {
     TracedLayers layers;
@@ -77,7 +77,7 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, float trac
     weighLayers(layers, features, baseMirror, base);
     float ofLayers = sumOfLayers(layers);
     float brought = luminance(base) + ofLayers;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     reflectionRay = ReflectionRay(layers, baseMirror ? 0.0 : 1.0, baseMirror);
 #endif
     if (brought <= 0.0) {
@@ -90,7 +90,7 @@ EffectSample sampleLobes(Hit hit, Surface surface, Features features, float trac
         TracedLayer layer;
         chosen = chooseLayer(layers, features, brought, random, layer);
         chance = 1.0 - ofLayers / brought;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
         reflectionRay = ReflectionRay(layers, baseMirror ? 0.0 : chance,
                                       chosen == kChosenBase ? baseMirror : layer.isMirror);
 #endif
@@ -111,7 +111,7 @@ EffectSample sampleReflection(Hit hit, Surface surface, Features features, inout
     return sampleLobes(hit, surface, features, traced, layers);
 }
 
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
 
 // The density of rays to other directions than a mirror's, by solid angle.
 float glossyDensity(Surface surface, Features features, vec3 l) {

@@ -46,7 +46,7 @@ void returnShaded(Hit hit, ShadeResult result) {
     shaded.shadowOrigin = rayOrigin(hit, result.shadowDirection);
     shaded.shadowDirection = result.shadowDirection;
     shaded.shadowDistance = result.shadowDistance;
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     shaded.shadowSees = result.shadowSees;
 #endif
 #if GLINT_PATHS

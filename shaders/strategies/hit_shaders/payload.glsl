@@ -11,7 +11,7 @@ struct HitPayload {
     vec3 shadowOrigin;
     vec3 shadowDirection;
     float shadowDistance;  // 0: no shadow ray; negative: the ray left the scene
-#if GLINT_EMISSIVE_LIGHTS
+#if GLINT_SHARED_LIGHTS
     uint shadowSees;
 #endif
 };

@@ -27,6 +27,7 @@ compiler::Configuration usual() {
             {"alpha", "opaque"},
             {"shadow-through", "alpha"},
             {"emissive-lights", "off"},
+            {"sky-light", "off"},
             {"precision", "32"},
             {"hit-record", "full"},
             {"strategy", "visibility"},
@@ -44,7 +45,7 @@ compiler::Configuration usual() {
 compiler::BenchFacts rich() {
     compiler::BenchFacts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.manyLights = facts.sizedLights = true;
-    facts.passesLight = facts.emits = facts.lightsMayEmit = true;
+    facts.passesLight = facts.emits = facts.lightsMayEmit = facts.skyMayLight = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = facts.packsTextures = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.effectsOfAnyRoughness = facts.effects;

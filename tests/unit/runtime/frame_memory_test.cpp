@@ -109,8 +109,8 @@ TEST(FrameTraffic, GrowsWithWhatAFrameDoes) {
     TrafficShape plain;
     plain.effects = 1;
     for (bool TrafficShape::*const member :
-         {&TrafficShape::paths, &TrafficShape::emissiveLights, &TrafficShape::accumulates,
-          &TrafficShape::marchesScreen, &TrafficShape::binsRays}) {
+         {&TrafficShape::paths, &TrafficShape::emissiveLights, &TrafficShape::skyLight,
+          &TrafficShape::accumulates, &TrafficShape::marchesScreen, &TrafficShape::binsRays}) {
         TrafficShape more = plain;
         more.*member = true;
         EXPECT_GT(bytesMoved(more), bytesMoved(plain));

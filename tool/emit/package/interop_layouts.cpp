@@ -84,7 +84,8 @@ Result<std::vector<StructLayout>> interopLayouts(std::string_view declarations) 
                 return makeError("internal", "shaders/interop", layout.name + " has no end",
                                  "end it with };");
             }
-            if (line.empty()) {
+            // What GLSL has only in some packages is always there in C++.
+            if (line.empty() || line.starts_with('#')) {
                 continue;
             }
             if (Status added = addMember(line, layout, alignment); !added) {

@@ -336,6 +336,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
     header.lightSamples = settings.lightSamples.value_or(0);
+    header.skyLight = settings.skyLight == SkyLight::On ? 1 : 0;
     header.precision = settings.precision;
     header.passes = settings.passes;
     header.answer = settings.answer;

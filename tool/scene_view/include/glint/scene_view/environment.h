@@ -16,6 +16,7 @@ namespace glint::scene_view {
 // Errors: of the file
 // ("file-open", "image-format", …) and of Environment::create(), with the file as their place.
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
+                                                     const EnvironmentOptions& options,
                                                      std::vector<Diagnostic>& notes);
 
 }  // namespace glint::scene_view
