@@ -54,7 +54,6 @@ TEST(CompilePackage, HasTheModulesOfItsStrategies) {
 TEST(CompilePackage, WithAFallbackHasASmallDraft) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::LightingDraft], 0);
     settings.plan.fallback = true;
     const compiler::CompiledPackage package = compileSample(settings);
     const auto find = [&](ModuleRole role) {
