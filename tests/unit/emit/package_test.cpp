@@ -50,6 +50,28 @@ TEST(CompilePackage, HasTheModulesOfItsStrategies) {
     EXPECT_EQ(hitShaders[ModuleRole::Trace], 0);
 }
 
+// The first frame waits for the draft. So it has the features that say so, no rays, and little code.
+TEST(CompilePackage, WithAFallbackHasASmallDraft) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.fallback = true;
+    const compiler::CompiledPackage package = compileSample(settings);
+    const auto find = [&](ModuleRole role) {
+        return *std::ranges::find(package.modules, role,
+                                  [](const compiler::CompiledModule& module) { return module.key.role; });
+    };
+    ASSERT_EQ(countRoles(package)[ModuleRole::LightingDraft], 1);
+    const compiler::CompiledModule draft = find(ModuleRole::LightingDraft);
+    EXPECT_EQ(draft.statistics.rayQueries, 0U);
+    EXPECT_LT(2 * draft.statistics.instructions, find(ModuleRole::Lighting).statistics.instructions);
+    const compiler::Case shown = compiler::draftCase(package.plan);
+    EXPECT_EQ(shown.always, 0U);
+    EXPECT_NE(shown.sometimes, 0U);
+    for (const materials::Feature& feature : package.plan.model->features) {
+        EXPECT_TRUE(feature.isInDraft || (shown.sometimes & feature.mask()) == 0) << feature.name;
+    }
+}
+
 TEST(CompilePackage, RefusesNoStrategy) {
     compiler::CompileSettings settings;
     settings.strategies = 0;
