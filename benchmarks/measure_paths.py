@@ -5,9 +5,9 @@
                                 [--tracer NAME] [--merge POLICY]
 
 All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
-package that has those bounces. The sky is no light (--sky-light off). Prints Markdown: the device time of all passes
-of a sample, as the median with its least and greatest value, and the ratio of each strategy to uber in the same round. If it is stopped by SIGTERM, as
-timeout(1) does, it prints what it has measured until then.
+package that has those bounces. The sky is no light (--sky-light off). Prints Markdown: the device time of all passes of
+a sample, as the median with its least and greatest value, and the ratio of each strategy to uber in the same round. If
+it is stopped by SIGTERM, as timeout(1) does, it prints what it has measured until then.
 
 SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
 benchmarks/make_synthetic_scene.py, so that no path leaves it.

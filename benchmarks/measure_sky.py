@@ -5,11 +5,11 @@
                               [--bounces N|unlimited] [--rounds N] [--reference-spp N]
                               [--tracer auto|ray-query|ray-pipeline] [--device NAME] [--json FILE]
 
-The scene is the floor with boxes of measure_lights.py. It is lit by the default gradient, or by a map of 128 x 64: uniform,
-with a soft bright window, or with a small sun. `off` and `on` are values of --sky-light. With unlimited bounces both have
-the same mean. The error is the relMse against --reference-spp samples of `on`, which falls as 1 / samples; it is given for
-one sample. The time is the median over the rounds of the device time of all passes of a sample. `time at equal error` is
-that of error / TARGET samples. Prints each row when it is known.
+The scene is the floor with boxes of measure_lights.py. It is lit by the default gradient, or by a map of 128 x 64:
+uniform, with a soft bright window, or with a small sun. `off` and `on` are values of --sky-light. With unlimited
+bounces both have the same mean. The error is the relMse against --reference-spp samples of `on`, which falls as 1 /
+samples; it is given for one sample. The time is the median over the rounds of the device time of all passes of a
+sample. `time at equal error` is that of error / TARGET samples. Prints each row when it is known.
 """
 
 import argparse

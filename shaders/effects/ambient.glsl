@@ -1,5 +1,5 @@
-// The sky's light on a surface, for the part that no rays bring. In packages whose sky is a light (--sky-light), samples of
-// the sky bring most of that part, and leave only what they would hardly find.
+// The sky's light on a surface, for the part that no rays bring. In packages whose sky is a light (--sky-light),
+// samples of the sky bring most of that part, and leave only what they would hardly find.
 #include "bsdf/ggx.glsl"
 #include "host/sky.glsl"
 #include "effects/sky_shares.glsl"
@@ -18,9 +18,9 @@ float tapRoughness(float pdf) {
 }
 
 // The mean of the sky over an anisotropic lobe at the first bounce, by filtered importance sampling (Křivánek and
-// Colbert 2008, "Real-time Shading with Filtered Importance Sampling"). Hammersley's points choose visible normals. Each
-// direction reads the level of the map whose lobe fills its share of the solid angle. Fresnel does not weight them,
-// because the albedo has it.
+// Colbert 2008, "Real-time Shading with Filtered Importance Sampling"). Hammersley's points choose visible normals.
+// Each direction reads the level of the map whose lobe fills its share of the solid angle. Fresnel does not weight
+// them, because the albedo has it.
 vec3 skyAroundLobe(Surface surface) {
     Bsdf b = surface.bsdf;
     vec3 sum = vec3(0.0);

@@ -61,8 +61,8 @@ PathStep nextStep(Hit hit, Surface surface, Features features, vec3 arriving) {
     if (drawn.pdf <= 0.0 || !(largestShare > 0.0) || !survives(choice.y, step.throughput)) {
         return step;
     }
-    // Only transmission sends light to the far side. A layer whose own normal is turned may choose a direction there: its
-    // light is reflected at the triangle, like all light below a surface.
+    // Only transmission sends light to the far side. A layer whose own normal is turned may choose a direction there:
+    // its light is reflected at the triangle, like all light below a surface.
     bool passes = drawn.direction.z < 0.0 && transmits(features);
     step.direction = onSide(toWorld(surface, drawn.direction), passes ? -hit.geometricNormal : hit.geometricNormal);
     step.density = drawn.pdf;

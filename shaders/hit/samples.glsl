@@ -115,7 +115,8 @@ void storeLobeRay(uint target, float density, uint normal) {
 #endif
 
 #if GLINT_SKY_LIGHT
-// The share of the sky's light that the ray of a sample brings if it leaves the scene. Samples of the sky bring the rest.
+// The share of the sky's light that the ray of a sample brings if it leaves the scene. Samples of the sky bring the
+// rest.
 void storeSkyShare(uint target, float share) {
     GLINT_FRAME.skyShares.data[samplePlace(target)] = share;
 }

@@ -93,8 +93,8 @@ void keepSampledLobes(Hit hit, Features features, HostLight light, SkyShares sky
 #endif
 }
 
-// The light of a shared light at the hit of a ray, without its shadow. Where no ray follows, this sample counts alone. Its
-// aim is the shadow ray.
+// The light of a shared light at the hit of a ray, without its shadow. Where no ray follows, this sample counts alone.
+// Its aim is the shadow ray.
 vec3 lightOfSharedAtHit(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares sky,
                         out LightSample aim) {
     SharedSample drawn = sampleShared(hit, light, index, shadingDimension(0u));
@@ -148,8 +148,8 @@ vec3 countedEmission(Hit hit, Surface surface) {
 }
 
 // The light of a light that emits from no triangle, without its shadow. Where shadow rays pass glass, the surface that
-// sent the ray has had the light of such lights behind this glass on the straight line, with all that happens within: it
-// would count twice.
+// sent the ray has had the light of such lights behind this glass on the straight line, with all that happens within:
+// it would count twice.
 vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light) {
 #if GLINT_SHADOW_GLASS
     if (hasLobe(features, GLINT_TRANSMISSION)) {

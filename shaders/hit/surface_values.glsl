@@ -22,8 +22,8 @@ bool showsBack(Features features) {
 #endif
 }
 
-// Returns whether the hit is on the inside of glass. Where shadow rays pass glass, those of the surface that sent the ray
-// have passed this glass on the straight line, with all that happens within.
+// Returns whether the hit is on the inside of glass. Where shadow rays pass glass, those of the surface that sent the
+// ray have passed this glass on the straight line, with all that happens within.
 bool isWithinGlass(Hit hit, Features features) {
     return hasLobe(features, GLINT_TRANSMISSION) && hasLobe(features, GLINT_VOLUME) && showsBack(features) &&
            !hit.frontFace;

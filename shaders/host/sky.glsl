@@ -142,8 +142,8 @@ vec3 hostSkyAround(vec3 direction, float roughness) {
 
 #if GLINT_SKY_LIGHT
 
-// The luminance (ITU-R BT.709) at horizon, zenith and ground. As much is added as makes every direction possible; it makes
-// a black sky uniform.
+// The luminance (ITU-R BT.709) at horizon, zenith and ground. As much is added as makes every direction possible; it
+// makes a black sky uniform.
 vec3 skyWeights() {
     const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
     precise vec3 weights = vec3(dot(GLINT_FRAME.skyHorizon, kLuminance), dot(GLINT_FRAME.skyZenith, kLuminance),

@@ -1,5 +1,6 @@
-// Lights that rays of lobes find, too: emissive triangles and the sky. Samples of such lights and rays share the light by
-// the balance heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995).
+// Lights that rays of lobes find, too: emissive triangles and the sky. Samples of such lights and rays share the light
+// by the balance heuristic (Veach and Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering",
+// 1995).
 #include "light/emitter.glsl"
 #include "effects/sky_shares.glsl"
 #include "hit/constants.glsl"

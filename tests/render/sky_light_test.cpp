@@ -3,6 +3,8 @@
 #include "base/files.h"
 #include "render/harness.h"
 #include "render/scene_builder.h"
+#include "render/ways.h"
+#include "support/nightly.h"
 #include "support/temporary_folder.h"
 
 #include <glint/environment.h>
@@ -56,8 +58,12 @@ compiler::CompileSettings settingsOf(const SkyWays& ways) {
     return settings;
 }
 
+void noLights(scene_view::SceneViewData& data) {
+    data.lights.clear();
+}
+
 LoadedScene load(const gltf::Scene& scene, const compiler::CompileSettings& settings) {
-    return LoadedScene(scene, settings, [](scene_view::SceneViewData& data) { data.lights.clear(); });
+    return LoadedScene(scene, settings, noLights);
 }
 
 SkyView uniformSky(float radiance) {
@@ -223,9 +229,9 @@ TEST(SkyLight, APlaneUnderAUniformSkyHasItsAlbedo) {
     SkyWays apart = off;
     shared.compensates = apart.compensates = true;
     expectSameMean(estimate(plane(dielectric), nullptr, shared, 64),
-                   estimate(plane(dielectric), nullptr, apart, 64), "dielectric", 3e-3);
+                   estimate(plane(dielectric), nullptr, apart, 64), "dielectric");
     // What no ray brings: rough metal by samples, smooth metal by the ambient light.
-    for (const float roughness : {0.7F, 0.1F}) {
+    for (const float roughness : test::nightly() ? std::vector{0.7F, 0.1F} : std::vector{0.7F}) {
         metal["roughnessFactor"] = roughness;
         const SkyWays alone{SkyLight::On, 1, false, false};
         const SkyWays ambient{SkyLight::Off, 1, false, false};
@@ -268,8 +274,10 @@ gltf::Scene glazedBox() {
 TEST(SkyLight, LightThroughGlassCountsOnce) {
     const gltf::Scene scene = glazedBox();
     const SkyEstimate chance = estimate(scene, nullptr, {SkyLight::Off, kManyBounces}, 192);
-    expectSameMean(estimate(scene, nullptr, {SkyLight::On, kManyBounces}, 96), chance,
-                   "opaque to shadow rays");
+    if (test::nightly()) {
+        expectSameMean(estimate(scene, nullptr, {SkyLight::On, kManyBounces}, 96), chance,
+                       "opaque to shadow rays");
+    }
     const SkyWays through{SkyLight::On, kManyBounces, false, true, package::ShadowThrough::Glass};
     expectSameMean(estimate(scene, nullptr, through, 96), chance, "passed by shadow rays", 2e-3);
 }
@@ -282,31 +290,20 @@ TEST(SkyLight, StrategiesAgree) {
         const package::ShadowThrough through =
             isMap ? package::ShadowThrough::Alpha : package::ShadowThrough::Glass;
         compiler::CompileSettings settings = settingsOf({SkyLight::On, 3, isMap, true, through});
-        settings.strategies = package::allStrategies();
-        settings.tracers = package::kAllTracers;
         settings.shadows = isMap ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
-        const LoadedScene loaded = load(scene, settings);
-        ASSERT_TRUE(loaded.ok());
         std::optional<LinearImage> reference;
-        for (const package::Strategy strategy : package::strategies()) {
-            for (const package::Tracer tracer : package::kTracers) {
-                if ((sharedContext().handles().tracers & tracer) == 0 ||
-                    (package::tracersOf(strategy, package::kAllTracers) & tracer) == 0) {
-                    continue;
-                }
-                RendererOptions options;
-                options.strategy = strategy;
-                options.tracer = tracer;
+        forEachWay(
+            scene, settings,
+            [&](const LoadedScene& loaded, const Way& way) {
+                RendererOptions options = optionsOf(way);
                 options.bounces = 3;
                 const LinearImage image =
                     loaded.render(options, setupOf(scene, isMap ? map.get() : nullptr, 4, 1));
                 ASSERT_FALSE(image.pixels.empty());
-                reference = reference ? reference : image;
-                expectSameImage(
-                    image, *reference,
-                    std::string(package::nameOf(strategy)) + " with " + std::string(package::nameOf(tracer)));
-            }
-        }
+                reference = reference.value_or(image);
+                expectSameImage(image, *reference, nameOf(way));
+            },
+            noLights);
     }
 }
 
@@ -318,7 +315,7 @@ TEST(SkyLight, TheNoiseOfASunIsLess) {
     const LoadedScene chance = load(scene, settingsOf({SkyLight::Off, 4, true}));
     const LoadedScene sampled = load(scene, settingsOf({SkyLight::On, 4, true}));
     ASSERT_TRUE(chance.ok() && sampled.ok());
-    const LinearImage reference = render(sampled, setupOf(scene, map.get(), 1024, 1), 4);
+    const LinearImage reference = render(sampled, setupOf(scene, map.get(), 384, 1), 4);
     ASSERT_FALSE(reference.pixels.empty());
     std::array<double, 2> errors{};
     for (int seed = 0; seed < 3; ++seed) {

@@ -51,7 +51,8 @@ double solidAngleOf(std::uint32_t index) {
 std::vector<Drawn> draw(bool isMap, const gpu::FrameConstants& constants) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
-    const int mesh = addMesh(scene, makeQuad(addMaterial(scene, materials::Material()), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}));
+    const int mesh = addMesh(
+        scene, makeQuad(addMaterial(scene, materials::Material()), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}));
     addInstance(scene, mesh);
     const LoadedScene loaded(scene, compiler::PlanOptions{});
     compiler::CompileSettings settings;

@@ -20,8 +20,8 @@ float indirectFarChance = 0.0;
 #endif
 
 // Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
-// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same; or those of the
-// BSDF, where samples of lights bring a part of the same light.
+// The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same; or those of
+// the BSDF, where samples of lights bring a part of the same light.
 EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
     vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
     vec3 front = surface.bsdf.diffuse * base;

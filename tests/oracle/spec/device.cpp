@@ -211,7 +211,8 @@ std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
         const auto color = toFloats(texel);
         image.pixels.push_back({color[0], color[1], color[2], 1.0F});
     }
-    Result<std::unique_ptr<Environment>> environment = Environment::create(testing::sharedContext(), image, {.sampled = true});
+    Result<std::unique_ptr<Environment>> environment =
+        Environment::create(testing::sharedContext(), image, {.sampled = true});
     if (!environment) {
         ADD_FAILURE() << toString(environment.error());
         return nullptr;

@@ -1,6 +1,6 @@
 #version 460
-// For random numbers (origin, cone) and directions: the sky's sample, its density, the density that is evaluated for it,
-// and that for the direction.
+// For random numbers (origin, cone) and directions: the sky's sample, its density, the density that is evaluated for
+// it, and that for the direction.
 #include "hit/bindings.glsl"
 #include "host/sky.glsl"
 
