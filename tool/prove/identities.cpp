@@ -17,7 +17,7 @@ constexpr std::size_t kMostCoefficients = 128;  // of a Bernstein form
 // Coefficients are floats or results of them, so that a rest of this size is what rounding left.
 constexpr double kRest = 1e-5;
 // More than all operations on a coefficient round, relative to its terms.
-constexpr double kSlack = 0x1p-40;
+constexpr double kCoefficientSlack = 0x1p-40;
 
 Interval timesReal(const Interval& a, const Interval& b) {
     const auto at = [](double x, double y) { return x == 0.0 || y == 0.0 ? 0.0 : x * y; };
@@ -447,7 +447,7 @@ Interval Identities::bound(NodeId id, std::span<const Interval> values) {
         }
         const Interval term = timesReal(value, Interval::of(coefficient.value));
         sum = {sum.low + term.low, sum.high + term.high};
-        slack += coefficient.weight * value.magnitude() * kSlack;
+        slack += coefficient.weight * value.magnitude() * kCoefficientSlack;
     }
     const double error = errorOf(id, values) + slack;
     const Interval best = meet(sum, form);
