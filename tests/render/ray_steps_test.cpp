@@ -48,6 +48,7 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     // Rays keep their origins in packages for several bounces. The frame has one.
     settings.maxBounces = 2;
     settings.emissiveLights = compiler::EmissiveLights::Off;
+    settings.skyLight = compiler::SkyLight::Off;
     const LoadedScene loaded(scene, settings);
     KnownRays known;
     if (!loaded.ok()) {
