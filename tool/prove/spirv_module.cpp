@@ -26,7 +26,6 @@ private:
 
     SpirvModule& module_;
     bool inFunction_ = false;
-    SpirvId pendingMerge_ = 0;
 };
 
 std::uint32_t ModuleReader::constantOf(SpirvId id) const {
