@@ -149,7 +149,8 @@ TEST_F(Bench, MeasuresAgainstAllOfTransport) {
     const double bias = 1.0 - parts.at("noise").get<double>();
     EXPECT_GT(bias, 0.7);
     EXPECT_NEAR(parts.at("exact").at("bias").get<double>(), bias, 0.1);
-    // With more bounces the sky's light is traced, too, so that this setting alone takes nearly all of it away.
+    // With more bounces the sky's light is traced, too, so that this setting alone takes nearly all of it
+    // away.
     EXPECT_GT(parts.at("exact").at("bias").get<double>(), largest - 0.05);
     EXPECT_NE(point(full, "bounces 2"), nullptr);
 

@@ -2,7 +2,7 @@
 #include "prove/symbolic_operations.h"
 
 #include <fmt/format.h>
-#include <glslang/SPIRV/GLSL.std.450.h>
+#include <spirv/unified1/GLSL.std.450.h>
 
 namespace glint::prove {
 
