@@ -108,8 +108,8 @@ struct Node {
     NodeId c = kNoNode;
     // The operation takes place where this truth value is true. kNoNode: always.
     NodeId guard = kNoNode;
-    // Of Constant; of Input its number; of UnitQuotient, UnitSum and PartOfUnit the length below which
-    // vectors are divided by this instead.
+    // What a Constant is, the number of an Input, or the length below which UnitQuotient, UnitSum and
+    // PartOfUnit divide vectors by this instead.
     double value = 0.0;
     std::uint32_t first = 0;  // of Merge: its edges
     std::uint32_t count = 0;
