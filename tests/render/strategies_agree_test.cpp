@@ -111,7 +111,7 @@ TEST_P(StrategiesAgreeTested, WithAlphaMasks) {
 std::vector<std::string> scenePaths() {
     std::vector<std::string> paths;
     if (test::nightly()) {
-        // These two take as long as all others together. By day the tests of the command compare pictures of
+        // These two take two fifths of the time of all. By day the tests of the command compare pictures of
         // the gallery, which has transformed textures, too.
         paths.emplace_back(GLINT_GALLERY_SCENE);
         paths.push_back(

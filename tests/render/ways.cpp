@@ -8,13 +8,15 @@ namespace glint::testing {
 
 namespace {
 
-// Returns the strategies (bits) that forEachWay() renders with the tracer.
+// Returns the strategies (bits) that forEachWay() renders with the tracer. A strategy whose turn falls on a
+// tracer that it or the device lacks takes the other one.
 std::uint32_t strategiesWith(package::Tracer tracer) {
+    const std::uint32_t tracers = sharedContext().handles().tracers;
     std::uint32_t strategies = 0;
     std::size_t turn = 0;
     for (const package::Strategy strategy : package::strategies()) {
         const package::Tracer own = package::kTracers[turn++ % std::size(package::kTracers)];
-        const bool takesOwn = (package::tracersOf(strategy, own) & own) != 0;
+        const bool takesOwn = (package::tracersOf(strategy, own) & own & tracers) != 0;
         const bool takes = (package::tracersOf(strategy, tracer) & tracer) != 0;
         if (takes && (test::nightly() || tracer == own || !takesOwn)) {
             strategies |= strategy;
