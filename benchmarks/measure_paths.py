@@ -13,6 +13,7 @@ SCENE is a file, or box:K for a closed box that is made here: its walls are squa
 benchmarks/make_synthetic_scene.py, so that no path leaves it.
 """
 import argparse
+import concurrent.futures
 import json
 import pathlib
 import random
@@ -21,6 +22,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 from make_synthetic_scene import write_scene
 
@@ -68,12 +70,24 @@ def compile_packages(arguments, folder):
 
 def device_time(arguments, folder, strategy, bounces):
     """Returns the milliseconds of the last sample's passes."""
-    stats = folder / "stats.json"
-    subprocess.run([arguments.glint, "render", arguments.scene, "-o", folder / "picture.png", "--package",
+    stats = folder / f"stats-{strategy}-{bounces}.json"
+    subprocess.run([arguments.glint, "render", arguments.scene, "-o", stats.with_suffix(".png"), "--package",
                     folder / str(bounces), "--bounces", str(bounces), "--strategy", strategy, "--tracer",
                     arguments.tracer, "--size", arguments.size, "--spp", str(arguments.spp), "--max-roughness", "1",
                     "--stats", stats], check=True, capture_output=True)
     return sum(entry["milliseconds"] for entry in json.loads(stats.read_text())["passes"])
+
+
+def fill_driver_cache(arguments, folder, cases):
+    """Renders each case once, all at the same time: a driver may take minutes for one uber shader, on one thread."""
+    def render(case):
+        start = time.monotonic()
+        device_time(arguments, folder, *case)
+        print(f"{case[0]}, {case[1]} bounces: first render after {time.monotonic() - start:.0f} s", file=sys.stderr,
+              flush=True)
+
+    with concurrent.futures.ThreadPoolExecutor(len(cases)) as pool:
+        list(pool.map(render, cases))
 
 
 def spread(values):
@@ -128,6 +142,7 @@ def main():
         times = {case: [] for case in cases}
         signal.signal(signal.SIGTERM, stop)
         try:
+            fill_driver_cache(arguments, folder, cases)
             for _ in range(arguments.rounds):
                 for case in chance.sample(cases, len(cases)):
                     times[case].append(device_time(arguments, folder, *case))
