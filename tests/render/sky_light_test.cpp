@@ -329,8 +329,8 @@ TEST(SkyLight, TheNoiseOfASunIsLess) {
     EXPECT_LT(errors[1], 0.25 * errors[0]);
 }
 
-// A package without the light has none of its code, and `auto` decides by bounces and shadows.
-TEST(SkyLight, AutoDecidesByTheBounces) {
+// A package without the light has none of its code, and `auto` decides by bounces and effects.
+TEST(SkyLight, AutoDecidesByBouncesAndEffects) {
     const gltf::Scene scene = openBox();
     compiler::CompileSettings settings = settingsOf({SkyLight::Auto, 1});
     const auto samples = [&] {
@@ -347,6 +347,9 @@ TEST(SkyLight, AutoDecidesByTheBounces) {
     EXPECT_TRUE(samples());
     settings.effects.named = compiler::builtinEffects({"indirect-diffuse"});
     EXPECT_FALSE(samples()) << "without shadow rays";
+    settings.effects.named = compiler::builtinEffects({"shadow", "reflection"});
+    EXPECT_FALSE(samples()) << "without rays for the light that surfaces scatter";
+    settings.effects.named = compiler::builtinEffects({"indirect-diffuse"});
     settings.skyLight = SkyLight::On;
     const auto refused = compiler::planPackage({&scene, 1}, settings);
     ASSERT_FALSE(refused);

@@ -24,6 +24,21 @@ bool castsShadows(std::span<const gltf::Scene> scenes, CompileSettings settings)
     return planEffects(gltf::SceneList(scenes), settings).effects.lights != 0;
 }
 
+// Whether rays bring the sky's light, and that of surfaces in front of it, to surfaces that scatter it. Where
+// none do, the ambient term stands for both: samples of the sky would replace it by the first alone.
+bool tracesScattered(std::span<const gltf::Scene> scenes, CompileSettings settings) {
+    settings.addsLight = true;
+    const gltf::SceneList list(scenes);
+    if (list.materials().empty()) {
+        return false;
+    }
+    const std::uint32_t rays = planEffects(list, settings).effects.rays;
+    const std::vector<materials::EffectDeclaration>& declared = list.materials().front().model().effects;
+    return std::ranges::any_of(declared, [&](const materials::EffectDeclaration& effect) {
+        return (rays & materials::findEffect(declared, effect.name)) != 0 && !effect.refines.empty();
+    });
+}
+
 // Returns why the package can't have lights that Glint samples by `files` of the host, or an empty text.
 // `whose` says what these are.
 Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
@@ -93,7 +108,8 @@ Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
 
 Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
     const bool isOn = settings.skyLight == SkyLight::On;
-    if (settings.skyLight == SkyLight::Off || (!isOn && settings.maxBounces == 1)) {
+    if (settings.skyLight == SkyLight::Off ||
+        (!isOn && (settings.maxBounces == 1 || !tracesScattered(scenes, settings)))) {
         return SkyLight::Off;
     }
     const Result<std::string> why = hindrance(scenes, settings, kSkyFiles, "the lights or the sky");
