@@ -38,7 +38,8 @@ void setLook(float scale) {
     colors[ImGuiCol_TabHovered] = {0.27F, 0.38F, 0.49F, 1.0F};
     colors[ImGuiCol_TabActive] = accent;
     colors[ImGuiCol_CheckMark] = {0.45F, 0.72F, 1.0F, 1.0F};
-    colors[ImGuiCol_SliderGrab] = {0.36F, 0.60F, 0.86F, 1.0F};
+    colors[ImGuiCol_SliderGrab] = {0.25F, 0.44F, 0.64F, 1.0F};
+    colors[ImGuiCol_SliderGrabActive] = {0.30F, 0.54F, 0.80F, 1.0F};
     style.ScaleAllSizes(scale);
     ImGui::GetIO().FontGlobalScale = scale;
 }

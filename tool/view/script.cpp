@@ -20,8 +20,8 @@ namespace glint::view {
 
 namespace {
 
-constexpr double kMostMs = 120'000.0;  // for a part of a step
-constexpr std::uint64_t kSettle = 2;   // frames after which the window has taken in an event
+constexpr double kMostMs = 60'000.0;  // for a part of a step
+constexpr std::uint64_t kSettle = 3;  // frames after which the window has taken in an event
 
 Diagnostic scriptError(const std::string& file, int line, const std::string& message) {
     return makeError("window-script", fmt::format("{}:{}", file, line), message, "correct the script");
@@ -129,9 +129,11 @@ void Script::typeText(const std::string& text) {
 
 // Turns the wheel until the control can be seen.
 void Script::reveal(const std::string& control) {
+    // Lists and what is scrolled need some frames before they stay where they are.
     auto last = std::make_shared<std::uint64_t>(0);
     act([this, control, last]() -> Result<bool> {
-        if (*last != 0 && host_.frames() < *last + kSettle) {
+        *last = *last == 0 ? host_.frames() : *last;
+        if (host_.frames() < *last + 2 * kSettle) {
             return false;
         }
         const std::optional<Controls::Place> place = host_.controls->find(control);
@@ -178,6 +180,7 @@ Status Script::parse(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
         ++line_;
+        lines_.push_back(line);
         std::istringstream stream(line);
         std::vector<std::string> words;
         for (std::string word; stream >> word && word.front() != '#';) {
@@ -316,14 +319,19 @@ Status Script::parseLine(const std::vector<std::string>& words, const std::strin
         frames(kSettle);
         return okStatus();
     } else if (what == "minimise" && withArguments(0)) {
+        frames(kSettle);
         act([this]() -> Result<bool> {
-            glfwIconifyWindow(host_.window);
+            if (!input_.setMinimised(true)) {
+                glfwIconifyWindow(host_.window);
+            }
             return true;
         });
         return okStatus();
     } else if (what == "restore" && withArguments(0)) {
         act([this]() -> Result<bool> {
-            glfwRestoreWindow(host_.window);
+            if (!input_.setMinimised(false)) {
+                glfwRestoreWindow(host_.window);
+            }
             glfwFocusWindow(host_.window);
             return true;
         });
@@ -380,6 +388,11 @@ bool Script::isDone() const {
 Status Script::step() {
     while (!steps_.empty()) {
         Step& step = steps_.front();
+        if (step.line != shown_) {
+            shown_ = step.line;
+            host_.detail(
+                fmt::format("step {}: {}", step.line, lines_[static_cast<std::size_t>(step.line) - 1]));
+        }
         const std::int64_t now = base::Clock::now().time_since_epoch().count();
         began_ = began_ == 0 ? now : began_;
         const Result<bool> done = step.act();
@@ -390,7 +403,9 @@ Status Script::step() {
             const base::Clock::time_point since{base::Clock::duration(began_)};
             return base::millisecondsSince(since) < kMostMs
                        ? okStatus()
-                       : Status(scriptError(file_, step.line, "the step is not done after two minutes"));
+                       : Status(scriptError(file_, step.line,
+                                            fmt::format("the step is not done after a minute: {}",
+                                                        lines_[static_cast<std::size_t>(step.line) - 1])));
         }
         began_ = 0;
         steps_.pop_front();

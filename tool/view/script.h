@@ -27,6 +27,7 @@ struct ScriptHost {
     std::function<void(const std::string&)> drop;
     std::function<Status(const std::string&)> report;  // writes the window's state as JSON
     std::function<std::uint64_t()> frames;
+    std::function<void(const std::string&)> detail;  // says which step begins
 };
 
 class Script {
@@ -58,7 +59,7 @@ public:
     Script(const Script&) = delete;
     Script& operator=(const Script&) = delete;
 
-    // Goes on, between two frames. Error "window-script" if a step fails or takes longer than two minutes.
+    // Goes on, between two frames. Error "window-script" if a step or a part of it fails or takes longer than a minute.
     Status step();
     bool isDone() const;
 
@@ -87,7 +88,9 @@ private:
         Act act;
     };
     std::deque<Step> steps_;
-    int line_ = 0;  // that is being parsed
+    int line_ = 0;   // that is being parsed
+    int shown_ = 0;  // that runs
+    std::vector<std::string> lines_;
     std::int64_t began_ = 0;
 };
 

@@ -5,10 +5,8 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -83,29 +81,33 @@ bool isLive(const Descriptor& row) {
     return row.stage == compiler::SettingStage::Frame && (row.commands & compiler::kOfCompile) == 0;
 }
 
+double parsedNumber(const std::string& text) {
+    double value = 0.0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value;
+}
+
 // What a slider spans; ranges may reach much farther than values that make sense.
 constexpr double kWideRange = 4096.0;
 
-// Draws a slider for a number. Returns its text while it moves.
-std::optional<std::string> drawNumber(const char* label, const Descriptor& row, const std::string& text) {
-    double value = 0.0;
-    std::from_chars(text.data(), text.data() + text.size(), value);
-    const double max = std::min(row.values.max, std::max(kWideRange, 2.0 * value));
+// Draws a slider for a number. Returns its text while it moves. `present` is the setting's, and `text` what
+// is shown.
+std::optional<std::string> drawNumber(const char* label, const Descriptor& row, const std::string& present,
+                                      const std::string& text) {
+    const double value = parsedNumber(text);
+    const double max = std::min(row.values.max, std::max(kWideRange, 2.0 * parsedNumber(present)));
     // Where a range is wide, small values matter most.
     const ImGuiSliderFlags flags =
         (row.values.max <= kWideRange ? ImGuiSliderFlags_AlwaysClamp : ImGuiSliderFlags_None) |
         (max - row.values.min > 100.0 && row.values.min >= 0.0 ? ImGuiSliderFlags_Logarithmic
                                                                : ImGuiSliderFlags_None);
-    if (row.values.form == ValueForm::Whole) {
-        int whole = static_cast<int>(std::min(value, static_cast<double>(std::numeric_limits<int>::max())));
-        const bool moved = ImGui::SliderInt(label, &whole, static_cast<int>(row.values.min),
-                                            static_cast<int>(max), "%d", flags);
-        return moved ? std::optional(std::to_string(whole)) : std::nullopt;
+    const bool isWhole = row.values.form == ValueForm::Whole;
+    double moved = value;
+    if (!ImGui::SliderScalar(label, ImGuiDataType_Double, &moved, &row.values.min, &max,
+                             isWhole ? "%.0f" : "%.3g", flags)) {
+        return std::nullopt;
     }
-    auto real = static_cast<float>(value);
-    const bool moved = ImGui::SliderFloat(label, &real, static_cast<float>(row.values.min),
-                                          static_cast<float>(max), "%.3g", flags);
-    return moved ? std::optional(fmt::format("{:.3g}", real)) : std::nullopt;
+    return isWhole ? fmt::format("{:.0f}", moved) : fmt::format("{:.3g}", moved);
 }
 
 bool isWordOf(const std::vector<SettingWord>& words, const std::string& text) {
@@ -126,8 +128,6 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
     const std::vector<SettingWord> words = wordsOf(row);
     std::optional<std::string> next;
 
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
     ImGui::AlignTextToFramePadding();
     const ImVec4 color = differs                          ? ImVec4(0.55F, 0.80F, 1.0F, 1.0F)
                          : idle.empty() && locked.empty() ? ImGui::GetStyle().Colors[ImGuiCol_Text]
@@ -135,7 +135,7 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
     ImGui::TextColored(color, "%s", name.c_str());
     tip(explained(row, kUsual) + (locked.empty() ? "" : "\n\n" + locked) +
         (idle.empty() ? "" : "\n\nchanges nothing here: " + idle));
-    ImGui::TableNextColumn();
+    ImGui::SameLine(ImGui::GetFontSize() * 12.0F);
     ImGui::BeginDisabled(!locked.empty());
     const float resetWidth = ImGui::GetFrameHeight();
     ImGui::SetNextItemWidth(-resetWidth - ImGui::GetStyle().ItemSpacing.x);
@@ -197,7 +197,7 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
                 }
                 break;
             }
-            if (const std::optional<std::string> moved = drawNumber(label.c_str(), row, shown)) {
+            if (const std::optional<std::string> moved = drawNumber(label.c_str(), row, present, shown)) {
                 drafts_[name] = *moved;
                 if (isLive(row)) {
                     next = *moved;
@@ -278,13 +278,9 @@ bool SettingsPanel::draw(Controls& controls, compiler::Settings& settings,
             !ImGui::CollapsingHeader(std::string(group).c_str(), ImGuiTreeNodeFlags_DefaultOpen)) {
             continue;
         }
-        if (ImGui::BeginTable(std::string(group).c_str(), 2, ImGuiTableFlags_SizingFixedFit)) {
-            ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 11.5F);
-            ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
-            for (const Descriptor* const row : rows) {
-                changed = drawRow(controls, *row, settings, facts) || changed;
-            }
-            ImGui::EndTable();
+        // A table would leave out rows that are scrolled away, and scripts could not find them.
+        for (const Descriptor* const row : rows) {
+            changed = drawRow(controls, *row, settings, facts) || changed;
         }
     }
     ImGui::EndChild();

@@ -72,7 +72,8 @@ Status Window::openDevice() {
     std::optional<Result<std::unique_ptr<Context>>> made;
     for (const auto& [fetch, half] :
          {std::pair(true, true), std::pair(false, true), std::pair(true, false)}) {
-        options.positionFetch = asked.positionFetch || fetch;
+        // The validation layers of Debian 12 don't know position fetch.
+        options.positionFetch = asked.positionFetch || (fetch && asked.validation == Validation::Off);
         options.shaderFloat16 = asked.shaderFloat16 || half;
         made = Context::createHeadless(options);
         if (*made || made->error().id != "device-features") {
@@ -169,7 +170,8 @@ Status Window::open() {
                               [this] { return error_.has_value(); },
                               [this](const std::string& file) { onDrop(file); },
                               [this](const std::string& file) { return writeReport(file); },
-                              [this] { return frames_; }};
+                              [this] { return frames_; },
+                              [this](const std::string& text) { request_.observer->detail(text); }};
         Result<std::unique_ptr<Script>> script = Script::read(request_.script, host);
         if (!script) {
             return script.error();

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <imgui.h>
 #include <numeric>
+#include <utility>
 
 namespace glint::view {
 
@@ -85,12 +86,21 @@ void Window::drawInterface() {
     area_ = {0, 0, static_cast<int>(width * pixelScale_), static_cast<int>(height * pixelScale_)};
     drawMarks();
     drawStatus(width, height, line);
-    measuresPasses_ = false;
+    const bool measured = std::exchange(measuresPasses_, false);
     if (showsPanel_) {
         drawSidePanel(width, panel, io.DisplaySize.y);
     }
     if (showsHelp_) {
         drawHelp();
+    }
+    if (measured != measuresPasses_) {
+        // Times of whole frames and of passes don't mix in a chart. A picture that is complete has none yet.
+        for (std::unique_ptr<Side>& one : sides_) {
+            if (one) {
+                one->history.clear();
+                one->picture.restart();
+            }
+        }
     }
 }
 
@@ -493,6 +503,7 @@ void Window::drawHelp() {
     const ImVec2 middle{0.5F * static_cast<float>(area_.width) / pixelScale_,
                         0.5F * static_cast<float>(area_.height) / pixelScale_};
     ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, {2.0F * middle.x, 2.0F * middle.y});
     ImGui::Begin("Keys and mouse", &showsHelp_,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);

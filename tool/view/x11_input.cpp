@@ -70,6 +70,36 @@ bool X11Input::key(const std::string& name, bool down) const {
     return true;
 }
 
+bool X11Input::setMinimised(bool minimised) const {
+    Display* const display = displayOf(display_);
+    const Atom managed = XInternAtom(display, "_NET_SUPPORTING_WM_CHECK", True);
+    Atom type = 0;
+    int format = 0;
+    unsigned long count = 0;
+    unsigned long rest = 0;
+    unsigned char* data = nullptr;
+    if (managed != 0 &&
+        XGetWindowProperty(display, DefaultRootWindow(display), managed, 0, 1, False, AnyPropertyType, &type,
+                           &format, &count, &rest, &data) == Success) {
+        XFree(data);
+        if (count > 0) {
+            return false;
+        }
+    }
+    // Inter-Client Communication Conventions Manual, section 4.1.3.1: the state, and the icon's window.
+    const long state[] = {minimised ? IconicState : NormalState, 0};
+    const Atom name = XInternAtom(display, "WM_STATE", False);
+    if (minimised) {
+        XUnmapWindow(display, window_);
+    } else {
+        XMapWindow(display, window_);
+    }
+    XChangeProperty(display, window_, name, name, 32, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(state), 2);
+    XFlush(display);
+    return true;
+}
+
 std::optional<X11Input::Pixels> X11Input::picture() const {
     Display* const display = displayOf(display_);
     XWindowAttributes attributes{};

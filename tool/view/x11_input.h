@@ -26,6 +26,9 @@ public:
     // the keyboard has no such key.
     bool key(const std::string& name, bool down) const;
 
+    // What a window manager does, where there is none; returns false where there is one.
+    bool setMinimised(bool minimised) const;
+
     struct Pixels {
         std::uint32_t width = 0;
         std::uint32_t height = 0;
