@@ -197,6 +197,11 @@ Status Builder::makePackage(Build& build) {
         compiler::CompileSettings compile =
             measure::compileSettings(settings, build.options, context_.handles().tracers, *build.scene);
         compile.emitHeader = false;
+        // The package also has the strategies that were asked for before, so that a renderer of one of them
+        // can switch to it.
+        strategies_ = sceneKey_ == strategiesKey_ ? strategies_ | compile.strategies : compile.strategies;
+        strategiesKey_ = sceneKey_;
+        compile.strategies = strategies_;
         const std::vector<Diagnostic> ofEffects = request_.effectWarnings(scenes, compile);
         messages.insert(messages.end(), ofEffects.begin(), ofEffects.end());
         Result<compiler::CompiledPackage> compiled =

@@ -90,6 +90,8 @@ private:
     std::string sceneKey_;
     std::shared_ptr<const scene_view::TextureSet> textures_;
     std::string texturesKey_;
+    std::uint32_t strategies_ = 0;  // bits
+    std::string strategiesKey_;
 
     mutable std::mutex mutex_;  // guards all below
     std::condition_variable wake_;

@@ -17,6 +17,17 @@ std::optional<Controls::Place> Controls::find(const std::string& name) const {
     return found == places_.end() ? std::nullopt : std::optional(found->second);
 }
 
+void closeByEscape() {
+#if IMGUI_VERSION_NUM >= 18700
+    const bool pressed = ImGui::IsKeyPressed(ImGuiKey_Escape);
+#else
+    const bool pressed = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+#endif
+    if (pressed) {
+        ImGui::CloseCurrentPopup();
+    }
+}
+
 void tip(const std::string& text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
         ImGui::BeginTooltip();

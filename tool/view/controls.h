@@ -31,6 +31,9 @@ private:
     std::map<std::string, Place> current_;
 };
 
+// Closes the list that is open if Escape is pressed. Call it in the list.
+void closeByEscape();
+
 // Shows a text while the mouse is over ImGui's last item.
 void tip(const std::string& text);
 

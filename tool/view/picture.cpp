@@ -109,10 +109,10 @@ Result<Picture::Device> Picture::upload(const Build& build, const RendererOption
     return made;
 }
 
-// Returns whether the renderer goes on with the new package.
+// Returns whether the scene on the device goes on with the new package.
 Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     const bool isSameScene = renderer_ && build.scene == build_.scene && build.textures == build_.textures &&
-                             uploadsAlike(build.settings, build_.settings) && drawAlike(options, options_);
+                             uploadsAlike(build.settings, build_.settings);
     if (!isSameScene) {
         return false;
     }
@@ -122,6 +122,23 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     }
     lastChange_ = fmt::format("package replaced: {} pipelines made, {} kept", replaced->pipelinesMade,
                               replaced->pipelinesKept);
+    if (drawAlike(options, options_)) {
+        return true;
+    }
+    // The scene changes to the package with a sample of the renderer that it has. Then it can get another
+    // one.
+    renderer_->waitForPipelines();
+    if (recordedIn_ == 0 || !renderer_->renderSamples(lastFrame_, 1)) {
+        return false;
+    }
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(context_, *build.package, *gpuScene_, options);
+    if (!renderer) {
+        return renderer.error();
+    }
+    renderer_ = std::move(*renderer);
+    inFlight_.clear();
+    lastChange_ = fmt::format("{} pipelines made", renderer_->footprint().pipelines);
     return true;
 }
 
@@ -222,6 +239,9 @@ Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timin
     frame.sampleIndex = samples_;
     frame.time = moment_ ? static_cast<float>(moment_->seconds) : 0.0F;
     const bool wasDraft = renderer_->pipelineProgress().draft;
+    lastFrame_ = frame;
+    lastFrame_.sampleIndex = 0;
+    lastFrame_.timing = Timing::Frame;
     if (Status recorded = renderer_->record(commands, frame); !recorded) {
         return recorded;
     }

@@ -58,13 +58,19 @@ public:
     // Begins the mean over samples anew.
     void restart() {
         samples_ = 0;
+        fails_ = false;
     }
     // Samples that the picture averages.
     std::uint32_t samples() const {
         return samples_;
     }
+    // Also if it can't be drawn as its settings ask for.
     bool isComplete() const {
-        return samples_ >= settings_.samples;
+        return samples_ >= settings_.samples || fails_;
+    }
+    // Draws nothing until the settings or the camera change.
+    void skip() {
+        fails_ = true;
     }
     // Records a sample. `number` is that of the frame in which it is.
     Status record(VkCommandBuffer commands, const CameraView& camera, Timing timing, std::uint64_t number);
@@ -128,7 +134,9 @@ private:
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
     RendererOptions options_;
+    FrameOptions lastFrame_;  // as recorded last
     std::uint32_t samples_ = 0;
+    bool fails_ = false;
     std::uint64_t recordedIn_ = 0;
     struct Recording {
         std::uint64_t frame = 0;

@@ -20,8 +20,8 @@ namespace glint::view {
 
 namespace {
 
-constexpr double kMostMs = 60'000.0;  // for a part of a step
-constexpr std::uint64_t kSettle = 3;  // frames after which the window has taken in an event
+constexpr double kMostMs = 180'000.0;  // for a part of a step
+constexpr std::uint64_t kSettle = 3;   // frames after which the window has taken in an event
 
 Diagnostic scriptError(const std::string& file, int line, const std::string& message) {
     return makeError("window-script", fmt::format("{}:{}", file, line), message, "correct the script");
@@ -404,7 +404,7 @@ Status Script::step() {
             return base::millisecondsSince(since) < kMostMs
                        ? okStatus()
                        : Status(scriptError(file_, step.line,
-                                            fmt::format("the step is not done after a minute: {}",
+                                            fmt::format("the step is not done after three minutes: {}",
                                                         lines_[static_cast<std::size_t>(step.line) - 1])));
         }
         began_ = 0;

@@ -59,7 +59,8 @@ public:
     Script(const Script&) = delete;
     Script& operator=(const Script&) = delete;
 
-    // Goes on, between two frames. Error "window-script" if a step or a part of it fails or takes longer than a minute.
+    // Goes on, between two frames. Error "window-script" if a step or a part of it fails or takes longer than
+    // three minutes.
     Status step();
     bool isDone() const;
 

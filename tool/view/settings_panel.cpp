@@ -167,6 +167,7 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
                     controls.mark(name + "=" + word.name);
                     tip(word.what.empty() ? word.name : word.what);
                 }
+                closeByEscape();
                 ImGui::EndCombo();
             } else {
                 controls.mark(name);
@@ -191,6 +192,7 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
                         ImGui::CloseCurrentPopup();
                     }
                     controls.mark(name + "=");
+                    closeByEscape();
                     ImGui::EndCombo();
                 } else {
                     controls.mark(name);

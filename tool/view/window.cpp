@@ -200,6 +200,12 @@ void Window::report(const Diagnostic& message) {
     wakes_ = 4;
 }
 
+void Window::fail(const Diagnostic& error) {
+    error_ = error;
+    report(error);
+    status_ = "failed, the picture stays as it was: " + error.message;
+}
+
 void Window::say(const std::string& text) {
     status_ = text;
     request_.observer->detail(text);
@@ -209,7 +215,12 @@ void Window::say(const std::string& text) {
 void Window::order(std::size_t index, bool reread) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
-    builder_->start({index, one.wanted, scene_, reread});
+    BuildOrder order{index, one.wanted, scene_, reread};
+    // As on the command line: textures may hold anything where a fallback or a host stands by.
+    order.settings.compile.trustTextures = one.wanted.compile.trustTextures &&
+                                           !one.wanted.compile.plan.fallback &&
+                                           one.wanted.compile.host.empty();
+    builder_->start(std::move(order));
 }
 
 bool Window::isComplete() const {
@@ -315,9 +326,7 @@ Status Window::takeBuilds() {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }
-        error_ = installed.error();
-        report(*error_);
-        status_ = "failed; the picture stays as it was";
+        fail(installed.error());
     }
     return okStatus();
 }
@@ -415,6 +424,9 @@ Status Window::followSettings(std::size_t index) {
     if (change == Change::None) {
         return okStatus();
     }
+    if (!builder_->isBusy(index)) {
+        error_.reset();
+    }
     if (change != Change::Frame) {
         if (Status waited = presenter_->waitForFrames(); !waited) {
             return waited;
@@ -423,9 +435,7 @@ Status Window::followSettings(std::size_t index) {
         one.history.clear();
     }
     if (Status changed = one.picture.change(next, width, height); !changed) {
-        error_ = changed.error();
-        report(*error_);
-        status_ = "failed; the picture stays as it was";
+        fail(changed.error());
     }
     wakes_ = 4;
     return okStatus();
@@ -641,9 +651,9 @@ Status Window::drawFrame(const Presenter::Frame& frame) {
         const Status recorded =
             one->picture.record(frame.commands, cameraView(), timing, presenter_->submitted() + 1);
         if (!recorded) {
-            error_ = recorded.error();
-            report(*error_);
-            return recorded;
+            fail(recorded.error());
+            one->picture.skip();
+            continue;
         }
         sampled = true;
         ++samples_;

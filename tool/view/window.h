@@ -85,6 +85,7 @@ private:
     double distanceToMiddle(const CameraView& view) const;
     void report(const Diagnostic& message);
     void say(const std::string& text);
+    void fail(const Diagnostic& error);
     bool isIdle() const;
     bool isComplete() const;
     CameraView cameraView() const;

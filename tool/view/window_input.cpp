@@ -93,8 +93,8 @@ void Window::openFile(const std::string& file) {
         exposureIsNew_ = autoExposure_;
         say("lighting the scene by " + file);
     } else {
-        report(makeError("window-drop", file, "is no scene and no environment map",
-                         "drop a .gltf, .glb, .hdr or .exr file"));
+        fail(makeError("window-drop", file, "is no scene and no environment map",
+                       "drop a .gltf, .glb, .hdr or .exr file"));
         return;
     }
     for (std::size_t i = 0; i < kPictures; ++i) {

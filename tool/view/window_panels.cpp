@@ -286,6 +286,7 @@ void Window::drawAnimation() {
                 }
                 controls_.mark(fmt::format("animation={}", i));
             }
+            closeByEscape();
             ImGui::EndCombo();
         } else {
             controls_.mark("animation");
@@ -494,8 +495,7 @@ void Window::followPanel() {
         }
     }
     if (Status followed = followSettings(edited_); !followed) {
-        error_ = followed.error();
-        report(*error_);
+        fail(followed.error());
     }
 }
 
