@@ -27,13 +27,13 @@ VirtualScreen::VirtualScreen() {
         _exit(127);
     }
     close(ends[1]);
-    // The server writes its number when it is ready.
-    std::array<char, 16> text{};
-    const ssize_t count = read(ends[0], text.data(), text.size());
-    close(ends[0]);
-    for (ssize_t i = 0; i < count && text[static_cast<std::size_t>(i)] != '\n'; ++i) {
-        display_ += (i == 0 ? ":" : "") + std::string(1, text[static_cast<std::size_t>(i)]);
+    // The server writes its number and a line break, in two parts, when it is ready.
+    std::string text;
+    for (char c = '\0'; read(ends[0], &c, 1) == 1 && c != '\n';) {
+        text += c;
     }
+    close(ends[0]);
+    display_ = text.empty() ? "" : ":" + text;
 }
 
 VirtualScreen::~VirtualScreen() {
