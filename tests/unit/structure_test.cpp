@@ -26,7 +26,7 @@ namespace package = glint::package;
 // before it.
 constexpr std::string_view kParts[] = {"base",      "materials",  "plan",     "gltf", "scene",   "spirv",
                                        "prove",     "cache",      "settings", "emit", "inspect", "image",
-                                       "synthetic", "scene_view", "measure",  "cli"};
+                                       "synthetic", "scene_view", "measure",  "view", "cli"};
 // The first part that may use the runtime and Vulkan, and not only the headers that say what a package is and
 // what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";

@@ -64,6 +64,10 @@ struct HeadlessOptions {
     // Enables VK_EXT_opacity_micromap if the device supports it; DeviceHandles::opacityMicromaps then says
     // whether it does.
     bool opacityMicromaps = true;
+    // Further extensions to enable, for programs that show pictures in windows. Devices without those of
+    // devices are not chosen; Vulkan's error for a missing extension of the instance is returned.
+    std::vector<std::string> instanceExtensions{};
+    std::vector<std::string> deviceExtensions{};
 };
 
 // Returns the package::Tracer bits that a device can be created with. 0 means that Glint does not run on it.
@@ -113,7 +117,7 @@ public:
     // Uses the caller's device. Errors: "context-handles", "context-queue", "device-features" (it names each
     // feature or extension that the physical device lacks), and those of loading Vulkan's functions.
     static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles);
-    // Makes an instance, a device and a queue without a surface. Errors: "validation-layer",
+    // Makes an instance, a device and a queue. Makes no surface. Errors: "validation-layer",
     // "device-missing", "device-features", and those of the loader and of Vulkan's calls.
     static Result<std::unique_ptr<Context>> createHeadless(const HeadlessOptions& options = {});
 

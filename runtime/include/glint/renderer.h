@@ -236,6 +236,14 @@ struct LinearImage {
     std::vector<std::array<float, 4>> pixels;
 };
 
+// The surface that a pixel sees.
+struct SurfacePlace {
+    std::uint32_t instance = 0;  // index into SceneView::instances
+    std::uint32_t mesh = 0;      // the numbers of PrimitiveView
+    std::uint32_t primitive = 0;
+    std::uint32_t shaderId = 0;  // of the case that shades hits on it; their bucket is 1 + shaderId
+};
+
 // The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must
 // outlive it.
 class Renderer {
@@ -313,6 +321,12 @@ public:
     // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
     // by row from the top. Waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();
+    // Returns the surface that a pixel sees in the last sample, or no value if it sees the sky. (0, 0) is the
+    // pixel at the top left. Waits for the device. Errors: "render-size" for a pixel outside of the picture,
+    // "scene-edited" for scenes with SceneView::editable, whose editor knows their instances.
+    Result<std::optional<SurfacePlace>> readPlace(std::uint32_t x, std::uint32_t y);
+    // Reads output() back. Waits for the device.
+    Result<LinearImage> readOutput();
 
     // What the renderer uses, also where RendererOptions left the choice to it.
     package::Tracer tracer() const;

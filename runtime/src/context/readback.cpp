@@ -114,6 +114,51 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     return surfaces;
 }
 
+Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    if (x >= state_->size.width || y >= state_->size.height) {
+        return makeError("render-size", "", "the picture has no such pixel",
+                         "name one within its width and height");
+    }
+    if (state_->scene.places.empty()) {
+        return makeError("scene-edited", "", "the scene is edited, so the numbers of its upload may be stale",
+                         "ask its SceneEditor, or upload the scene without SceneView::editable");
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    using Identity = std::array<std::uint32_t, 2>;
+    const auto identities = readImage<Identity>(*state_, *runner, gpu::kBindingSurface);
+    if (!identities) {
+        return identities.error();
+    }
+    const std::uint32_t geometry = (*identities)[std::size_t{y} * state_->size.width + x][0];
+    if (geometry == gpu::kNoSurface) {
+        return std::optional<SurfacePlace>();
+    }
+    const GeometryPlace& place = state_->scene.places[geometry];
+    return std::optional(
+        SurfacePlace{place.instance, place.mesh, place.primitive, state_->scene.shaderIds[geometry]});
+}
+
+Result<LinearImage> Renderer::readOutput() {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    auto pixels = readImage<std::array<float, 4>>(*state_, *runner, gpu::kBindingAccumulated);
+    if (!pixels) {
+        return pixels.error();
+    }
+    return LinearImage{state_->size.width, state_->size.height, std::move(*pixels)};
+}
+
 Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     if (!state_->recorded) {
         return frameNotRecorded();

@@ -175,8 +175,10 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
             layout.partInstances, state.instanceOrder->at(scene.instances, layout.partInstances));
         state.statistics.orderMs += millisecondsSince(begin);
     }
-    for (const gpu::GeometryRecord& geometry : layout.geometries) {
-        state.shaderIds.push_back(geometry.shaderId);
+    for (std::size_t i = 0; i < layout.geometries.size(); ++i) {
+        const PrimitiveView& view = scene.primitives[layout.primitives[i]];
+        state.shaderIds.push_back(layout.geometries[i].shaderId);
+        state.places.push_back({layout.geometries[i].instanceIndex, view.mesh, view.primitive});
     }
     std::vector<gpu::LightRecord> lights;
     for (const LightView& light : scene.lights) {

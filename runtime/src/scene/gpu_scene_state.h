@@ -45,6 +45,8 @@ struct GpuScene::State {
     AccelerationStructure tlas;
     Buffer geometries;
     std::vector<std::uint32_t> shaderIds;  // one for each geometry record
+    // One for each geometry record, for Renderer::readPlace(); empty in scenes that are edited.
+    std::vector<GeometryPlace> places;
     Buffer instances;
     Buffer materials;
     Buffer lights;

@@ -45,8 +45,10 @@ void checkEnvironmentOptions(const CLI::App& command) {
 
 void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
     const std::string group = "Picture";
-    addText(command, "--camera", arguments.camera, "NAME|INDEX|auto",
-            "a camera of the scene by name or number from 0;\nauto: one that frames everything\n"
+    addText(command, "--camera", arguments.camera, "NAME|INDEX|auto|PLACE",
+            "a camera of the scene by name or number from 0;\nauto: one that frames everything; PLACE: "
+            "position,\n"
+            "target and vertical field of view in degrees, such as\n1.5,2,3/0,0.5,0/30\n"
             "(default: the first of the scene, else auto)")
         .group(group);
     addText(command, "--exposure", arguments.exposure, "auto|EV",
@@ -121,7 +123,8 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
     arguments.compile.plan.merge = compiler::MergePolicy::None;
 }
 
-// Throws a CLI::ParseError if an option is given that --package decides.
+}  // namespace
+
 void checkPackageChoice(const CLI::App& command) {
     if (command.count("--package") == 0) {
         return;
@@ -138,8 +141,6 @@ void checkPackageChoice(const CLI::App& command) {
         }
     }
 }
-
-}  // namespace
 
 void addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, "SCENE", arguments.scene, "FILE", "the scene, .gltf or .glb").required();

@@ -34,6 +34,9 @@ void addSceneOptions(CLI::App& command, RenderArguments& arguments);
 // Throws a CLI::ParseError if some of them contradict each other.
 void checkSceneOptions(const CLI::App& command, RenderArguments& arguments);
 
+// Throws a CLI::ParseError if an option is given that --package decides.
+void checkPackageChoice(const CLI::App& command);
+
 // Declares every option of glint render. Calls `then` once the line is parsed and found valid.
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
                       const std::function<void()>& then);
