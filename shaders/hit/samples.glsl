@@ -56,6 +56,9 @@ void storeSample(uint target, EffectSample drawn) {
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(drawn.origin, drawn.outcome);
     if (drawn.outcome == kRaySent) {
         GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
+#if GLINT_LAYER_RAYS
+        GLINT_FRAME.rayHits.data[place].distance = 0.0;
+#endif
 #if GLINT_PATHS
         beginPath(place);
 #endif

@@ -57,6 +57,22 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     rows.push_back({"effect rays", Unit::Ray, 0, kWord});
 }
 
+// What a pass reads and writes of its layers. Light is divided by an albedo, which is read.
+TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::string_view name) {
+    TrafficRow row{name, Unit::Pixel, 0, 0};
+    for (const package::LayerEntry& entry : shape.layers) {
+        if (package::passOf(entry) != pass) {
+            continue;
+        }
+        const package::LayerInfo& info = *package::findLayer(entry.layer);
+        const std::uint32_t bytes = package::infoOf(info.format).bytes;
+        row.written += bytes;
+        row.read += shape.accumulates && info.continues ? bytes : 0;
+        row.read += info.name == "demodulated" ? package::infoOf(package::LayerFormat::Half4).bytes : 0;
+    }
+    return row;
+}
+
 void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const std::uint32_t hit = shape.hitRecord == package::HitRecordFormat::Packed
                                   ? sizeof(gpu::PackedHitRecord)
@@ -123,6 +139,10 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
         effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     shape.accumulates = options.accumulate;
     shape.marchesScreen = options.screenMarch && effects.screenStarts != 0;
+    for (const package::PackageLayer& layer : package.layers()) {
+        shape.layers.push_back({layer.info->number, layer.effect});
+    }
+    shape.layerRays = (package::demandsOf(package.layers()) & package::kLayerRays) != 0;
     return shape;
 }
 
@@ -130,6 +150,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     std::vector<TrafficRow> rows;
     rows.push_back({"gbuffer", Unit::Pixel, 0, kIdentity + kWord});  // and the depth
     rows.push_back({"lighting", Unit::Pixel, kIdentity, kPixel + (shape.marchesScreen ? kPixel : 0)});
+    rows.push_back(layersOf(shape, package::LayerPass::Lighting, "lighting"));
     if (shape.effects > 0) {
         addSamples(shape, rows);
         addShading(shape, rows);
@@ -143,6 +164,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
         }
         rows.push_back({"compose", Unit::Sample, shape.paths ? kWord : kStart, 0});
         rows.push_back({"compose", Unit::Sent, kVector + (shape.paths ? kPixel : 0), 0});
+        rows.push_back(layersOf(shape, package::LayerPass::Compose, "compose"));
     }
     const std::uint32_t mean = shape.accumulates ? 2 * kPixel : 0;
     rows.push_back({"compose", Unit::Pixel, kPixel + mean, shape.accumulates ? mean : kPixel});
