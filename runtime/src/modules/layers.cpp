@@ -174,6 +174,36 @@ constexpr LayerInfo kRows[] = {
      .format = Format::Half4,
      .channels = "XYZ",
      .demands = kLayerHistory | kLayerRays},
+    {.number = 19,
+     .name = "bounce-radiance",
+     .what = "as radiance, of one bounce of the paths; the last also has what further ones bring",
+     .subject = Subject::Bounce,
+     .format = Format::Float4,
+     .channels = "RGB",
+     .mean = Mean::Mean,
+     .continues = true},
+    {.number = 20,
+     .name = "bounce-demodulated",
+     .what = "as demodulated, of one bounce",
+     .subject = Subject::Bounce,
+     .format = Format::Float4,
+     .channels = "RGB",
+     .from = "bounce-radiance"},
+    {.number = 21,
+     .name = "bounce-variance",
+     .what = "as variance, of one bounce",
+     .subject = Subject::Bounce,
+     .format = Format::Float1,
+     .channels = "V",
+     .continues = true,
+     .from = "bounce-radiance"},
+    {.number = 22,
+     .name = "bounce-distance",
+     .what = "length of the bounce's ray, metres; 0: no ray, 65504: it left the scene",
+     .subject = Subject::Bounce,
+     .format = Format::Float1,
+     .channels = "Z",
+     .demands = kLayerRays},
 };
 
 }  // namespace
@@ -196,9 +226,12 @@ const LayerInfo* findLayer(std::uint32_t number) {
     return found == std::end(kRows) ? nullptr : found;
 }
 
-std::string layerName(const LayerInfo& info, std::string_view source) {
-    const std::string name(info.name);
-    return info.subject == LayerSubject::Surface ? name : std::string(source) + "." + name;
+std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce) {
+    std::string name(info.name);
+    if (info.subject != LayerSubject::Surface) {
+        name = std::string(source) + "." + name;
+    }
+    return bounce == 0 ? name : name + "." + std::to_string(bounce);
 }
 
 LayerPass passOf(const LayerEntry& entry) {
@@ -213,6 +246,14 @@ std::uint32_t demandsOf(std::span<const PackageLayer> layers) {
         demands |= layer.info->demands;
     }
     return demands;
+}
+
+std::uint32_t layerBounces(std::span<const PackageLayer> layers) {
+    std::uint32_t bounces = 0;
+    for (const PackageLayer& layer : layers) {
+        bounces = std::max(bounces, layer.bounce);
+    }
+    return bounces;
 }
 
 std::uint32_t bytesOf(std::span<const PackageLayer> layers) {
