@@ -36,7 +36,7 @@ TEST_F(RenderCommand, CompileInspectRenderCompare) {
 TEST_F(RenderCommand, LayersAreInTheFileOfThePicture) {
     const Outcome drawn = render("a.exr", {"--layers", "depth,direct.demodulated"});
     ASSERT_EQ(drawn.exit, 0) << drawn.err;
-    std::ifstream file(folder_ / "a.exr", std::ios::binary);
+    std::ifstream file(path("a.exr"), std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), {}};
     for (const char* const channel : {"depth.Z", "direct.radiance.R", "direct.demodulated.G", "albedo.B"}) {
         EXPECT_NE(bytes.find(channel), std::string::npos) << channel;
