@@ -3,6 +3,7 @@
 
 #include <glint/context.h>
 #include <glint/effects.h>
+#include <glint/layers.h>
 #include <glint/memory_report.h>
 #include <glint/package.h>
 #include <glint/package_replacement.h>
@@ -20,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -244,6 +246,28 @@ struct SurfacePlace {
     std::uint32_t shaderId = 0;  // of the case that shades hits on it; their bucket is 1 + shaderId
 };
 
+// An image of a layer (glint/layers.h). Its usage includes storage, sampled and both kinds of transfer.
+struct LayerImage {
+    std::string_view name;                     // PackageLayer::name
+    const package::LayerInfo* info = nullptr;  // its row
+    package::Effect effect = 0;                // of the source of light; 0 for surfaces and the direct light
+    std::uint32_t bounce = 0;                  // from 1, of layers of a bounce; 0 for others
+    VkImage image = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    // It is always in this layout.
+    static constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
+};
+
+// The values of a layer on the host, row by row from the top. One of the two has values.
+struct LayerValues {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t components = 0;  // of a pixel
+    std::vector<float> reals;      // width * height * components
+    std::vector<std::uint32_t> integers;
+};
+
 // The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must
 // outlive it.
 class Renderer {
@@ -298,6 +322,17 @@ public:
     // compute shader writes it last.
     VkImage output() const;
     VkImageView outputView() const;
+
+    // The images of the package's layers, in the order of Package::layers(). They live as long as the
+    // renderer. Shaders of a recording write them last, so commands that read them need a dependency on its
+    // shader writes, and are to complete before those of the next recording, or be ordered before them on the
+    // same queue. The values are those of the picture so far, as LayerInfo::mean says; a draft
+    // (RendererOptions::draft) leaves them as they are. Motion leads to the frame before: the picture that
+    // this renderer began before this one.
+    std::vector<LayerImage> layers() const;
+    // Reads a layer of the last recording back and waits for the device. Errors: "layer-missing" if the
+    // package lacks it, "frame-not-recorded".
+    Result<LayerValues> readLayer(std::string_view name);
 
     // Records and submits samples [0, sampleCount) of the frame, waits for the device and reads the picture
     // back. This is for tools and tests. `afterSample` is called after each completed sample; counters() and

@@ -8,6 +8,9 @@
 #include "hit/resolve.glsl"
 #include "hit/path_ray.glsl"
 #include "generated/cases.glsl"
+#if GLINT_LAYER_RAYS
+#include "layers/traced_hits.glsl"
+#endif
 
 GLINT_RAY_WORKGROUP
 
@@ -18,6 +21,9 @@ void main() {
     }
     RayRecord ray = listedRay(index);
     TracedHit found = traceRay(ray, rayFlags(ray.target));
+#if GLINT_LAYER_RAYS
+    keepTracedHit(ray, found);
+#endif
     if (found.geometry == kMissGeometry) {
         resolveMiss(ray.target, ray.direction);
     } else {

@@ -187,6 +187,10 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
             throw CLI::ValidationError("--coverage", "shows one picture; leave out --frames, or use --time");
         }
+        const Result<image::ImageFormat> format = image::imageFormat(arguments->output);
+        if (!arguments->compile.layers.empty() && format && *format != image::ImageFormat::Exr) {
+            throw CLI::ValidationError("--layers", "needs a file that has room for layers: -o FILE.exr");
+        }
         settleProfileOutput(command, *arguments);
         checkProfile(command, *arguments);
         then();

@@ -129,6 +129,24 @@ public:
         return image;
     }
 
+    // Returns the layers of the last picture, for a file that has room for them.
+    Result<std::vector<image::ExrLayer>> layersFor(const std::string& file) {
+        std::vector<image::ExrLayer> layers;
+        const Result<image::ImageFormat> format = image::imageFormat(file);
+        if (!format || *format != image::ImageFormat::Exr) {
+            return layers;
+        }
+        for (const LayerImage& layer : renderer_->layers()) {
+            Result<LayerValues> values = renderer_->readLayer(layer.name);
+            if (!values) {
+                return values.error();
+            }
+            layers.push_back({std::string(layer.name), std::string(layer.info->channels),
+                              layer.info->format == package::LayerFormat::Half4, std::move(*values)});
+        }
+        return layers;
+    }
+
     // Returns the exposure for the surfaces of the last picture.
     Result<double> exposureOf(const LinearImage& image) {
         const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
@@ -248,7 +266,11 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
                 compiler::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
-        if (Status written = image::writeImage(frame.image, *image, report.exposure); !written) {
+        const Result<std::vector<image::ExrLayer>> layers = loop.layersFor(frame.image);
+        if (!layers) {
+            return layers.error();
+        }
+        if (Status written = image::writeImage(frame.image, *image, report.exposure, *layers); !written) {
             return written;
         }
         if (isSequence) {

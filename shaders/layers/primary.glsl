@@ -1,0 +1,110 @@
+// What layers show of primary surfaces.
+#include "generated/layers.glsl"
+#include "hit/camera.glsl"
+#include "hit/hit.glsl"
+#include "hit/surface.glsl"
+#include "hit/surface_values.glsl"
+#if GLINT_LAYER_HISTORY
+#include "layers/motion.glsl"
+#endif
+
+// An albedo in layers is at least this, so that light over the albedo keeps the little that dark surfaces send.
+const float kLeastAlbedo = 1.0 / 1024.0;
+
+// A primary surface. Of one that is unlit, `surface` has the emission alone.
+struct PrimaryPoint {
+    ivec2 place;
+    HostGeometry geometry;
+    uint number;  // of the geometry
+    uint primitive;
+    CameraRay ray;
+    Hit hit;
+    Surface surface;
+    Features features;
+    bool isLit;
+    float depth;
+};
+
+vec4 primaryDepth(PrimaryPoint at) {
+    return vec4(at.depth, 0.0, 0.0, 0.0);
+}
+
+vec4 primaryPosition(PrimaryPoint at) {
+    return vec4(at.hit.position, 0.0);
+}
+
+vec4 primaryGeometricNormal(PrimaryPoint at) {
+    return vec4(at.hit.geometricNormal, 0.0);
+}
+
+vec4 primaryNormal(PrimaryPoint at) {
+    return vec4(at.isLit ? at.surface.normal : at.hit.normal * facing(at.hit, at.features), 0.0);
+}
+
+vec4 storedAlbedo(vec3 albedo) {
+    return vec4(max(albedo, vec3(kLeastAlbedo)), 0.0);
+}
+
+// The share of light that passes microfacets and layers both ways.
+float passedToDiffuse(PrimaryPoint at) {
+    return diffusePassed(at.surface) * baseShare(at.surface, at.features);
+}
+
+vec3 diffuseAlbedo(PrimaryPoint at) {
+    vec3 both = at.surface.bsdf.diffuse;
+    if (hasLobe(at.features, GLINT_DIFFUSE_TRANSMISSION)) {
+        both += at.surface.bsdf.diffuseTransmitted;
+    }
+    return both * passedToDiffuse(at);
+}
+
+vec3 specularAlbedoWithLayers(PrimaryPoint at) {
+    Bsdf b = at.surface.bsdf;
+    return addAlbedoOfLayers(b.layers, at.features, b.view, specularAlbedo(b, at.features, b.viewLoss, b.viewBias));
+}
+
+vec3 transmissionAlbedo(PrimaryPoint at) {
+    return hasLobe(at.features, GLINT_TRANSMISSION) ? at.surface.bsdf.transmitted * passedToDiffuse(at) : vec3(0.0);
+}
+
+vec4 primaryAlbedo(PrimaryPoint at) {
+    return storedAlbedo(
+        at.isLit ? diffuseAlbedo(at) + specularAlbedoWithLayers(at) + transmissionAlbedo(at) : vec3(0.0));
+}
+
+vec4 primaryDiffuseAlbedo(PrimaryPoint at) {
+    return storedAlbedo(at.isLit ? diffuseAlbedo(at) : vec3(0.0));
+}
+
+vec4 primarySpecularAlbedo(PrimaryPoint at) {
+    return storedAlbedo(at.isLit ? specularAlbedoWithLayers(at) : vec3(0.0));
+}
+
+vec4 primaryTransmissionAlbedo(PrimaryPoint at) {
+    return storedAlbedo(at.isLit ? transmissionAlbedo(at) : vec3(0.0));
+}
+
+vec4 primaryRoughness(PrimaryPoint at) {
+    return vec4(at.isLit ? at.surface.roughness : 1.0, 0.0, 0.0, 0.0);
+}
+
+vec4 primaryEmission(PrimaryPoint at) {
+    return vec4(isFinite(at.surface.emission) ? at.surface.emission : vec3(0.0), 0.0);
+}
+
+uvec4 primaryMaterial(PrimaryPoint at) {
+    return uvec4(at.geometry.materialIndex, 0u, 0u, 0u);
+}
+
+uvec4 primaryShader(PrimaryPoint at) {
+    return uvec4(at.geometry.shaderId, 0u, 0u, 0u);
+}
+
+#if GLINT_LAYER_HISTORY
+vec4 primaryMotion(PrimaryPoint at) {
+    vec3 corners[3] = currentCorners(at.geometry, at.primitive);
+    vec2 barycentrics = rayTriangleBarycentrics(at.ray, corners[0], corners[1] - corners[0], corners[2] - corners[0]);
+    vec3 before = cornerMean(previousCorners(at.geometry, at.number, at.primitive), barycentrics);
+    return motionOf(vec4(cornerMean(corners, barycentrics), 1.0), vec4(before, 1.0));
+}
+#endif
