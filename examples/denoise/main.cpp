@@ -250,7 +250,7 @@ glint::CameraView turned(glint::CameraView camera, double degrees) {
 
 void printRow(const std::string& what, const glint::LinearImage& image, const glint::LinearImage& reference,
               double samplesMs, double filterMs) {
-    const auto difference = valueOf(glint::image::compareImages(image, reference, "the truth"));
+    const auto difference = valueOf(glint::image::compareImages(image, reference, what, "the truth"));
     std::printf("%-24s %10.5f %10.5f %12.1f %12.1f\n", what.c_str(), difference.relMse, difference.rmse,
                 samplesMs, filterMs);
 }

@@ -77,6 +77,52 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
     });
 }
 
+TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
+    const gltf::Scene scene = hallBehindGlass();
+    compiler::CompileSettings settings = everyLayer();
+    settings.maxBounces = 6;
+    const std::uint32_t bounces = package::kMostLayerBounces;
+    forEachWay(scene, settings, [&](const LoadedScene& loaded, const Way& way) {
+        RendererOptions options = optionsOf(way);
+        options.width = 24;
+        options.height = 14;
+        options.bounces = 6;
+        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+        ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
+        FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
+        frame.maxReflectionRoughness = 1.0F;
+        ASSERT_TRUE((*renderer)->render(frame, 2).ok());
+        const LayerSet layers(**renderer);
+        for (const std::string source : {"reflection", "refraction", "indirect-diffuse"}) {
+            const std::string albedo = source == "reflection"   ? "albedo-specular"
+                                       : source == "refraction" ? "albedo-transmission"
+                                                                : "albedo-diffuse";
+            for (std::size_t i = 0; i < std::size_t{options.width} * options.height; ++i) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    double sum = 0.0;
+                    double again = 0.0;
+                    for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
+                        const std::string number = "." + std::to_string(bounce);
+                        sum += layers.at(source + ".bounce-radiance" + number, i, c);
+                        again += layers.at(source + ".bounce-demodulated" + number, i, c) *
+                                 layers.at(albedo, i, c);
+                    }
+                    const double whole = layers.at(source + ".radiance", i, c);
+                    EXPECT_NEAR(sum, whole, 1e-5 * std::max(1.0, whole)) << source << ", " << nameOf(way);
+                    EXPECT_NEAR(again, whole, 1e-5 * std::max(1.0, whole)) << source << ", " << nameOf(way);
+                }
+            }
+        }
+        // Later bounces are there, and have rays of their own.
+        for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
+            const std::string number = "." + std::to_string(bounce);
+            EXPECT_GT(layers.sum("indirect-diffuse.bounce-radiance" + number), 0.0) << bounce;
+            EXPECT_GT(layers.sum("indirect-diffuse.bounce-distance" + number), 0.0) << bounce;
+        }
+        expectNoValidationMessages();
+    });
+}
+
 TEST(Layers, LeaveThePictureAsItIs) {
     const gltf::Scene scene = hallScene();
     const RenderSetup setup = defaultSetup(scene, 48, 28);
