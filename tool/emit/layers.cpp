@@ -50,7 +50,7 @@ std::vector<package::Effect> sourcesOf(const LayerInfo& info, const Plan& plan) 
     if (info.subject != LayerSubject::Ray) {
         sources.push_back(0);
     }
-    if (info.subject != LayerSubject::Surface) {
+    if (package::hasSources(info)) {
         package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
             const package::Effect effect = 1U << number;
             const bool shows = !plan.model->effects[number].shows.empty();
@@ -67,7 +67,9 @@ std::vector<const LayerInfo*> layersNamed(std::string_view word) {
     std::vector<const LayerInfo*> named;
     for (const LayerInfo& info : package::layerTable()) {
         const bool isSurface = info.subject == LayerSubject::Surface;
-        if (word == kEveryLayer || word == info.name || (word == kSurfaceLayers && isSurface)) {
+        const bool inGroup =
+            !info.isDiagnostic && (word == kEveryLayer || (word == kSurfaceLayers && isSurface));
+        if (inGroup || word == info.name) {
             named.push_back(&info);
         }
     }
@@ -101,8 +103,8 @@ Status addOfSource(std::string_view word, const Plan& plan, const std::string& w
     bool found = false;
     for (const LayerInfo& info : package::layerTable()) {
         const std::vector<package::Effect> sources = sourcesOf(info, plan);
-        const bool wanted = info.subject != LayerSubject::Surface && (layer.empty() || layer == info.name);
-        if (wanted && std::ranges::find(sources, effect) != sources.end()) {
+        const bool wanted = layer.empty() ? !info.isDiagnostic : layer == info.name;
+        if (wanted && package::hasSources(info) && std::ranges::find(sources, effect) != sources.end()) {
             entries.push_back({info.number, effect});
             found = true;
         }
@@ -133,15 +135,11 @@ void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
     entries.erase(again.begin(), again.end());
 }
 
-// The fields of one layer.
-mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
-    const LayerInfo& info = infoOf(entry);
-    const package::LayerFormatInfo& format = package::infoOf(info.format);
-    const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
-    // "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.
+// "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.
+std::string variableNamed(std::string_view layer) {
     std::string variable;
     bool raises = false;
-    for (const char character : layerNameOf(entry, *plan.model)) {
+    for (const char character : layer) {
         const bool isLetter = std::isalnum(static_cast<unsigned char>(character)) != 0;
         if (isLetter) {
             variable +=
@@ -149,6 +147,15 @@ mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
         }
         raises = !isLetter;
     }
+    return variable;
+}
+
+// The fields of one layer.
+mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
+    const LayerInfo& info = infoOf(entry);
+    const package::LayerFormatInfo& format = package::infoOf(info.format);
+    const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
+    const std::string variable = variableNamed(layerNameOf(entry, *plan.model));
     mustache::data fields;
     fields.set("binding", fmt::format("kBindingLayers + {}u", place));
     fields.set("qualifier", std::string(format.qualifier));
@@ -230,25 +237,92 @@ std::string layerDefines(const Plan& plan, bool deforms) {
     std::uint32_t demands = 0;
     bool ofSurfaces = false;
     bool ofEffects = false;
+    bool groups = false;
+    std::set<std::string_view> tallies;
     for (const LayerEntry& entry : plan.layers) {
-        demands |= infoOf(entry).demands;
-        const bool lighting = passOf(entry) == package::LayerPass::Lighting;
-        ofSurfaces = ofSurfaces || lighting;
-        ofEffects = ofEffects || !lighting;
+        const LayerInfo& info = infoOf(entry);
+        demands |= info.demands;
+        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::Lighting;
+        ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
+        groups = groups || (!info.tally.empty() && package::hasSources(info));
+        tallies.insert(info.tally);
     }
+    tallies.erase("");
     const bool history = (demands & package::kLayerHistory) != 0;
     const auto flag = [](bool value) { return value ? 1 : 0; };
-    return fmt::format(
+    std::string text = fmt::format(
         "// Layers beside the picture\n"
         "#define GLINT_LAYER_MEMBERS {}\n"
         "#define GLINT_SURFACE_LAYERS {}\n"
         "#define GLINT_EFFECT_LAYERS {}\n"
         "#define GLINT_LAYER_HISTORY {}\n"
         "#define GLINT_LAYER_DEFORMS {}\n"
-        "#define GLINT_LAYER_RAYS {}\n",
+        "#define GLINT_LAYER_RAYS {}\n"
+        "#define GLINT_LAYER_CLOCK {}\n"
+        "#define GLINT_LAYER_BRANCHES {}\n"
+        "#define GLINT_LAYER_GROUPS {}\n"
+        "#define GLINT_TALLIES {}\n",
         flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
-        flag(history && deforms), flag((demands & package::kLayerRays) != 0));
+        flag(history && deforms), flag((demands & package::kLayerRays) != 0),
+        flag((demands & package::kLayerClock) != 0), flag(findEntry(plan, "branches", 0) != nullptr),
+        flag(groups), flag(!tallies.empty()));
+    // What no layer counts leaves no code.
+    for (const LayerInfo& info : package::layerTable()) {
+        if (!info.tally.empty() && !tallies.contains(info.tally)) {
+            text += fmt::format("#define {}({})\n", info.tally,
+                                package::hasSources(info) ? "target, value" : "amount");
+        }
+    }
+    if ((demands & package::kLayerClock) == 0) {
+        text += "#define GLINT_CLOCK_START\n#define GLINT_CLOCK_STOP\n";
+    }
+    return text;
 }
+
+namespace {
+
+// The fields of tallies.glsl.mustache.
+void addTallies(mustache::data& context, const Plan& plan) {
+    mustache::data tallies(mustache::data::type::list);
+    mustache::data added(mustache::data::type::list);
+    std::vector<std::pair<const LayerInfo*, mustache::data>> images;  // of each kind that samples have
+    for (const LayerEntry& entry : plan.layers) {
+        const LayerInfo& info = infoOf(entry);
+        if (info.tally.empty()) {
+            continue;
+        }
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("macro", std::string(info.tally));
+        fields.set("slot", fmt::format("{}", package::effectSlot(plan.effects.effects, entry.effect)));
+        tallies.push_back(fields);
+        if (!package::hasSources(info)) {
+            added.push_back(fields);
+            continue;
+        }
+        auto found = std::ranges::find(images, &info, [](const auto& pair) { return pair.first; });
+        if (found == images.end()) {
+            images.emplace_back(&info, mustache::data(mustache::data::type::list));
+            found = images.end() - 1;
+        }
+        found->second.push_back(fields);
+    }
+    mustache::data kept(mustache::data::type::list);
+    for (const auto& [info, ofSources] : images) {
+        mustache::data fields;
+        fields.set("macro", std::string(info->tally));
+        std::string name = variableNamed(info->name);
+        name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+        fields.set("name", name);
+        fields.set("images", ofSources);
+        kept.push_back(fields);
+    }
+    context.set("tallies", tallies);
+    context.set("added", added);
+    context.set("kept", kept);
+    context.set("hasClock", mustache::data(findEntry(plan, "clocks", 0) != nullptr));
+}
+
+}  // namespace
 
 void addLayers(mustache::data& context, const Plan& plan) {
     mustache::data lighting(mustache::data::type::list);
@@ -286,8 +360,10 @@ void addLayers(mustache::data& context, const Plan& plan) {
             effects.push_back(albedo);
         }
     }
+    addTallies(context, plan);
     context.set("hasRayLayers", mustache::data(std::ranges::any_of(plan.layers, [](const LayerEntry& entry) {
-                    return infoOf(entry).subject == LayerSubject::Ray;
+                    return infoOf(entry).subject == LayerSubject::Ray &&
+                           passOf(entry) == package::LayerPass::Compose;
                 })));
     context.set("hasEffectLayers", mustache::data(effects.is_non_empty_list()));
     context.set("effectLayers", effects);
@@ -298,7 +374,8 @@ void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect
     mustache::data rays;
     bool any = false;
     for (const auto& [name, field] :
-         {std::pair("distance", "distance"), std::pair("virtual-motion", "motion")}) {
+         {std::pair("distance", "distance"), std::pair("virtual-motion", "motion"),
+          std::pair("hit-shader", "shader")}) {
         const LayerEntry* const found = findEntry(plan, name, effect);
         mustache::data own(false);
         if (found != nullptr) {

@@ -384,7 +384,7 @@ Status checkLayers(const Package::State& state, const std::string& where) {
         }
         const bool isOfEffect = std::has_single_bit(entry.effect) && (entry.effect & rays) != 0;
         const bool fits = entry.effect == 0 ? info->subject != package::LayerSubject::Ray
-                                            : isOfEffect && info->subject != package::LayerSubject::Surface;
+                                            : isOfEffect && package::hasSources(*info);
         if (!fits || !seen.emplace(entry.layer, entry.effect).second ||
             state.header.passes != package::Passes::Frame) {
             return altered(where, "the layer " + std::string(info->name) + " is not well formed");
