@@ -148,6 +148,12 @@ struct RayHit {
     vec3 direction;  // of the ray that found it, unit vector
     float distance;  // from the primary surface along the way, metres
 };
+
+// What one bounce of a sample's path brings, for layers. 16 bytes.
+struct BounceLight {
+    vec3 light;      // as the radiance of the sample, of which it is a part
+    float distance;  // of the bounce's ray, metres; 0: none
+};
 GLINT_CONSTANT(kScreenGeometry, 0xFFFFFFFEu);
 // Values of layers (glint/layers.h).
 GLINT_CONSTANT(kLayerNoRay, 0xFFFFFFFFu);
@@ -198,6 +204,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Pre
     PreviousVertices data[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayHitArray { RayHit data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BounceLightArray { BounceLight data[]; };
 #endif
 
 GLINT_INTEROP_BEGIN
@@ -363,6 +370,7 @@ struct FrameConstants {
     GLINT_ADDRESS(PreviousVertices) previousVertices;  // of every geometry, if hasPreviousVertices
     uint hasPreviousVertices;  // 1: some vertices follow joints or morph weights
     GLINT_ADDRESS(RayHit) rayHits;  // of every sample, in the order of the samples
+    GLINT_ADDRESS(BounceLight) bounceLight;  // of every sample and bounce that has layers
 #endif
 };
 

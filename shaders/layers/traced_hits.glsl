@@ -3,9 +3,6 @@
 #include "layers/ray_hits.glsl"
 
 void keepTracedHit(RayRecord ray, TracedHit hit) {
-    if (!findsFirstHits()) {
-        return;
-    }
     if (hit.geometry == kMissGeometry) {
         storeRayMiss(ray.target, ray.direction);
     } else {

@@ -183,19 +183,18 @@ std::string hitLobesText(const inspect::Manifest& manifest) {
                : base::join(manifest.hitLobes);
 }
 
-// The layers as --layers names them.
-std::string layersOf(const Package& package) {
+std::vector<std::string> layerNames(const Package& package) {
     std::vector<std::string> names;
     for (const package::PackageLayer& layer : package.layers()) {
         names.push_back(layer.name);
     }
-    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","));
+    return names;
 }
 
 std::string layersText(const Package& package) {
-    return package.layers().empty()
-               ? "none"
-               : fmt::format("{}; {} bytes a pixel", layersOf(package), package::bytesOf(package.layers()));
+    return package.layers().empty() ? "none"
+                                    : fmt::format("{}; {} bytes a pixel", base::join(layerNames(package)),
+                                                  package::bytesOf(package.layers()));
 }
 
 base::Json layersToJson(const Package& package) {
@@ -233,7 +232,8 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"trustTextures", manifest.trustTextures},
           {"textureLod", manifest.textureLod},
           {"textureLevels", package.textureLevels()},
-          {"layers", layersOf(package)},
+          {"layers",
+           package.layers().empty() ? "none" : fmt::format("{}", fmt::join(layerNames(package), ","))},
           {"precision", package::bitsOf(package.precision())},
           {"shadows", std::string(package::nameOf(package.shape().shadows))},
           {"shadowThrough", std::string(package::nameOf(package.shadowThrough()))},

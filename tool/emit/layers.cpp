@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <interop/frame.h>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -41,25 +42,33 @@ const LayerInfo& albedoOf(package::Effect effect, const materials::MaterialModel
 }
 
 bool demodulates(const LayerInfo& info) {
-    return info.name == "demodulated";
+    return info.name.ends_with("demodulated");
 }
 
-// The sources that a layer may have in the package.
-std::vector<package::Effect> sourcesOf(const LayerInfo& info, const Plan& plan) {
-    std::vector<package::Effect> sources;
-    if (info.subject != LayerSubject::Ray) {
-        sources.push_back(0);
+// The images of a layer that the package may have. `bounces` have layers of their own.
+std::vector<LayerEntry> entriesOf(const LayerInfo& info, const Plan& plan, std::uint32_t bounces) {
+    std::vector<LayerEntry> entries;
+    if (!package::hasSources(info) || info.subject == LayerSubject::Light) {
+        entries.push_back({info.number, 0, 0});
     }
-    if (package::hasSources(info)) {
-        package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
-            const package::Effect effect = 1U << number;
-            const bool shows = !plan.model->effects[number].shows.empty();
-            if (shows || (info.demands & package::kLayerHistory) == 0) {
-                sources.push_back(effect);
+    package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
+        const package::Effect effect = 1U << number;
+        const bool moves = info.subject == LayerSubject::Ray && (info.demands & package::kLayerHistory) != 0;
+        if (info.subject == LayerSubject::Bounce) {
+            for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
+                entries.push_back({info.number, effect, bounce});
             }
-        });
-    }
-    return sources;
+        } else if (package::hasSources(info) && (!moves || !plan.model->effects[number].shows.empty())) {
+            entries.push_back({info.number, effect, 0});
+        }
+    });
+    return entries;
+}
+
+// How many bounces of the package's paths have layers of their own; 0 if paths have one bounce.
+std::uint32_t layerBouncesOf(const Plan& plan, const CompileSettings& settings) {
+    const bool hasPaths = plan.effects.effects.rays != 0 && settings.maxBounces > 1;
+    return hasPaths ? std::min(settings.maxBounces, package::kMostLayerBounces) : 0;
 }
 
 // The layers that a word stands for, with all their sources. Empty if it is "SOURCE.LAYER".
@@ -77,41 +86,44 @@ std::vector<const LayerInfo*> layersNamed(std::string_view word) {
 }
 
 // Resolves "reflection.radiance", or "reflection" for all layers of the effect.
-Status addOfSource(std::string_view word, const Plan& plan, const std::string& where,
+Status addOfSource(std::string_view word, const Plan& plan, std::uint32_t bounces, const std::string& where,
                    std::vector<LayerEntry>& entries) {
     const std::size_t dot = std::min(word.find('.'), word.size());
     const std::string source(word.substr(0, dot));
     const std::string_view layer = word.substr(std::min(dot + 1, word.size()));
-    package::Effect effect = 0;
-    if (source != package::kDirectLight) {
-        std::vector<std::string> known{std::string(package::kDirectLight)};
-        package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
-            known.push_back(plan.model->effects[number].name);
-        });
-        if (std::ranges::find(known, source) == known.end()) {
-            const bool exists = findEffect(plan.model->effects, source) != 0;
-            return makeError(
-                "layer-effect", where,
-                exists ? fmt::format("the package has no effect {} with rays, so there is no layer {}",
-                                     source, word)
-                       : fmt::format("there is no effect {}{}", source, base::suggestion(source, known)),
-                fmt::format("layers are of {}; --effects decides which effects the package has",
-                            fmt::join(known, ", ")));
-        }
-        effect = findEffect(plan.model->effects, source);
+    std::vector<std::string> known{std::string(package::kDirectLight)};
+    package::forEachEffect(plan.effects.effects.rays,
+                           [&](std::uint32_t number) { known.push_back(plan.model->effects[number].name); });
+    if (std::ranges::find(known, source) == known.end()) {
+        const bool exists = findEffect(plan.model->effects, source) != 0;
+        return makeError(
+            "layer-effect", where,
+            exists
+                ? fmt::format("the package has no effect {} with rays, so there is no layer {}", source, word)
+                : fmt::format("there is no effect {}{}", source, base::suggestion(source, known)),
+            fmt::format("layers are of {}; --effects decides which effects the package has",
+                        fmt::join(known, ", ")));
     }
-    bool found = false;
+    // 0 for the direct light, which no effect is called.
+    const package::Effect effect = findEffect(plan.model->effects, source);
+    const std::size_t before = entries.size();
     for (const LayerInfo& info : package::layerTable()) {
-        const std::vector<package::Effect> sources = sourcesOf(info, plan);
         const bool wanted = layer.empty() ? !info.isDiagnostic : layer == info.name;
-        if (wanted && package::hasSources(info) && std::ranges::find(sources, effect) != sources.end()) {
-            entries.push_back({info.number, effect});
-            found = true;
+        if (!wanted || !package::hasSources(info)) {
+            continue;
+        }
+        for (const LayerEntry& entry : entriesOf(info, plan, bounces)) {
+            if (entry.effect == effect) {
+                entries.push_back(entry);
+            }
         }
     }
-    return found ? okStatus()
-                 : Status(makeError("layer-effect", where, fmt::format("{} has no layer {}", source, layer),
-                                    "see docs/layers.md for which layers a source of light has"));
+    return entries.size() > before
+               ? okStatus()
+               : Status(
+                     makeError("layer-effect", where, fmt::format("{} has no layer {}", source, layer),
+                               "see docs/layers.md for which layers a source of light has; those of bounces "
+                               "need --bounces"));
 }
 
 // Adds what others are computed from.
@@ -120,15 +132,15 @@ void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
         const LayerEntry entry = entries[i];
         const LayerInfo& info = infoOf(entry);
         if (!info.from.empty()) {
-            entries.push_back({package::findLayer(info.from)->number, entry.effect});
+            entries.push_back({package::findLayer(info.from)->number, entry.effect, entry.bounce});
         }
         if (demodulates(info)) {
-            entries.push_back({albedoOf(entry.effect, *plan.model).number, 0});
+            entries.push_back({albedoOf(entry.effect, *plan.model).number, 0, 0});
         }
     }
     const auto place = [](const LayerEntry& entry) {
         const auto row = std::ranges::find(package::layerTable(), entry.layer, &LayerInfo::number);
-        return std::tuple(row - package::layerTable().begin(), entry.effect);
+        return std::tuple(row - package::layerTable().begin(), entry.effect, entry.bounce);
     };
     std::ranges::sort(entries, {}, place);
     const auto again = std::ranges::unique(entries);
@@ -168,8 +180,10 @@ mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
     return fields;
 }
 
-const LayerEntry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect) {
-    const auto found = std::ranges::find(plan.layers, LayerEntry{package::findLayer(layer)->number, effect});
+const LayerEntry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect,
+                            std::uint32_t bounce = 0) {
+    const LayerEntry entry{package::findLayer(layer)->number, effect, bounce};
+    const auto found = std::ranges::find(plan.layers, entry);
     return found == plan.layers.end() ? nullptr : &*found;
 }
 
@@ -178,19 +192,20 @@ std::string variableOf(const LayerEntry& entry, const Plan& plan) {
 }
 
 std::string albedoVariable(const Plan& plan, package::Effect effect) {
-    return variableOf({albedoOf(effect, *plan.model).number, 0}, plan);
+    return variableOf({albedoOf(effect, *plan.model).number, 0, 0}, plan);
 }
 
-// The fields of the layers of a source's light; false if it has none.
-mustache::data lightFields(const Plan& plan, package::Effect effect) {
-    const LayerEntry* const radiance = findEntry(plan, "radiance", effect);
+// The fields of the layers of light: of a source, or of one bounce of its paths; false if it has none.
+mustache::data lightFields(const Plan& plan, package::Effect effect, std::uint32_t bounce = 0) {
+    const std::string prefix = bounce == 0 ? "" : "bounce-";
+    const LayerEntry* const radiance = findEntry(plan, prefix + "radiance", effect, bounce);
     if (radiance == nullptr) {
         return false;
     }
     mustache::data fields;
     fields.set("radiance", variableOf(*radiance, plan));
     for (const char* const name : {"demodulated", "variance"}) {
-        const LayerEntry* const entry = findEntry(plan, name, effect);
+        const LayerEntry* const entry = findEntry(plan, prefix + name, effect, bounce);
         mustache::data own(false);
         if (entry != nullptr) {
             own = mustache::data();
@@ -202,22 +217,39 @@ mustache::data lightFields(const Plan& plan, package::Effect effect) {
     return fields;
 }
 
+// The fields of a layer alone; false if the package lacks it.
+mustache::data imageFields(const Plan& plan, std::string_view layer, package::Effect effect,
+                           std::uint32_t bounce = 0) {
+    const LayerEntry* const found = findEntry(plan, layer, effect, bounce);
+    if (found == nullptr) {
+        return false;
+    }
+    mustache::data fields;
+    fields.set("variable", variableOf(*found, plan));
+    fields.set("shows", declarationOf(*plan.model, effect).shows);
+    return fields;
+}
+
 }  // namespace
 
 Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSettings& settings,
                                               const std::string& where) {
     std::vector<LayerEntry> entries;
+    const std::uint32_t bounces = layerBouncesOf(plan, settings);
     for (const std::string& word : settings.layers) {
         const std::vector<const LayerInfo*> named = layersNamed(word);
+        const std::size_t before = entries.size();
         for (const LayerInfo* const info : named) {
-            for (const package::Effect effect : sourcesOf(*info, plan)) {
-                entries.push_back({info->number, effect});
-            }
+            std::ranges::copy(entriesOf(*info, plan, bounces), std::back_inserter(entries));
         }
         if (named.empty()) {
-            if (Status added = addOfSource(word, plan, where, entries); !added) {
+            if (Status added = addOfSource(word, plan, bounces, where, entries); !added) {
                 return added.error();
             }
+        } else if (entries.size() == before) {
+            return makeError("layer-effect", where,
+                             fmt::format("nothing in the package has the layer {}", word),
+                             "add an effect with rays by --effects, and --bounces for layers of bounces");
         }
     }
     if (!entries.empty() && settings.passes != package::Passes::Frame) {
@@ -229,14 +261,16 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
 }
 
 std::string layerNameOf(const LayerEntry& entry, const materials::MaterialModel& model) {
-    return package::layerName(
-        infoOf(entry), entry.effect == 0 ? package::kDirectLight : declarationOf(model, entry.effect).name);
+    const std::string_view source =
+        entry.effect == 0 ? package::kDirectLight : declarationOf(model, entry.effect).name;
+    return package::layerName(infoOf(entry), source, entry.bounce);
 }
 
 std::string layerDefines(const Plan& plan, bool deforms) {
     std::uint32_t demands = 0;
     bool ofSurfaces = false;
     bool ofEffects = false;
+    std::uint32_t bounces = 0;
     bool groups = false;
     std::set<std::string_view> tallies;
     for (const LayerEntry& entry : plan.layers) {
@@ -246,6 +280,7 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
         groups = groups || (!info.tally.empty() && package::hasSources(info));
         tallies.insert(info.tally);
+        bounces = std::max(bounces, entry.bounce);
     }
     tallies.erase("");
     const bool history = (demands & package::kLayerHistory) != 0;
@@ -258,12 +293,13 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         "#define GLINT_LAYER_HISTORY {}\n"
         "#define GLINT_LAYER_DEFORMS {}\n"
         "#define GLINT_LAYER_RAYS {}\n"
+        "#define GLINT_LAYER_BOUNCES {}\n"
         "#define GLINT_LAYER_CLOCK {}\n"
         "#define GLINT_LAYER_BRANCHES {}\n"
         "#define GLINT_LAYER_GROUPS {}\n"
         "#define GLINT_TALLIES {}\n",
         flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
-        flag(history && deforms), flag((demands & package::kLayerRays) != 0),
+        flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
         flag((demands & package::kLayerClock) != 0), flag(findEntry(plan, "branches", 0) != nullptr),
         flag(groups), flag(!tallies.empty()));
     // What no layer counts leaves no code.
@@ -355,7 +391,7 @@ void addLayers(mustache::data& context, const Plan& plan) {
         fields.set("access", info.continues ? "" : "writeonly ");
         effects.push_back(fields);
         if (demodulates(info) && read.insert(albedoVariable(plan, entry.effect)).second) {
-            mustache::data albedo = fieldsOf({albedoOf(entry.effect, *plan.model).number, 0}, plan);
+            mustache::data albedo = fieldsOf({albedoOf(entry.effect, *plan.model).number, 0, 0}, plan);
             albedo.set("access", "readonly ");
             effects.push_back(albedo);
         }
@@ -370,23 +406,35 @@ void addLayers(mustache::data& context, const Plan& plan) {
 }
 
 void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect) {
-    entry.set("lightLayers", lightFields(plan, effect));
-    mustache::data rays;
-    bool any = false;
-    for (const auto& [name, field] :
-         {std::pair("distance", "distance"), std::pair("virtual-motion", "motion"),
-          std::pair("hit-shader", "shader")}) {
-        const LayerEntry* const found = findEntry(plan, name, effect);
-        mustache::data own(false);
-        if (found != nullptr) {
-            own = mustache::data();
-            own.set("variable", variableOf(*found, plan));
-            own.set("shows", declarationOf(*plan.model, effect).shows);
-        }
-        rays.set(field, own);
-        any = any || found != nullptr;
+    const mustache::data light = lightFields(plan, effect);
+    entry.set("lightLayers", light);
+    const mustache::data distance = imageFields(plan, "distance", effect);
+    const mustache::data motion = imageFields(plan, "virtual-motion", effect);
+    const mustache::data shader = imageFields(plan, "hit-shader", effect);
+    mustache::data rays(!distance.is_false() || !motion.is_false() || !shader.is_false());
+    if (rays.is_true()) {
+        rays = mustache::data();
+        rays.set("distance", distance);
+        rays.set("motion", motion);
+        rays.set("shader", shader);
     }
-    entry.set("rayLayers", any ? rays : mustache::data(false));
+    entry.set("rayLayers", rays);
+
+    mustache::data bounces(mustache::data::type::list);
+    for (std::uint32_t bounce = 1; bounce <= package::kMostLayerBounces; ++bounce) {
+        const mustache::data ofBounce = lightFields(plan, effect, bounce);
+        const mustache::data length = imageFields(plan, "bounce-distance", effect, bounce);
+        if (!ofBounce.is_false() || !length.is_false()) {
+            mustache::data fields;
+            fields.set("bounce", fmt::format("{}", bounce));
+            fields.set("slice", fmt::format("{}", bounce - 1));
+            fields.set("light", ofBounce);
+            fields.set("distance", length);
+            bounces.push_back(fields);
+        }
+    }
+    entry.set("bounceLayers", bounces);
+    entry.set("storesLight", mustache::data(!light.is_false() || bounces.is_non_empty_list()));
 }
 
 }  // namespace glint::compiler

@@ -62,6 +62,7 @@ struct TrafficShape {
     bool binsRays = false;
     std::vector<package::LayerEntry> layers{};
     bool layerRays = false;  // they need what rays hit
+    std::uint32_t layerBounces = 0;
 };
 
 // The shape of frames of a package.

@@ -36,11 +36,16 @@ const LayerFormatInfo& infoOf(LayerFormat format);
 // What a layer describes, and so how many images of it a package may have.
 enum class LayerSubject : std::uint32_t {
     Surface,  // the primary surface: one image
-    Light,  // light that leaves the primary surface: one image for the direct light, and one for each effect
-            // with rays
-    Ray,    // what a ray of an effect found: one image for each effect with rays
-    Work,   // what all passes did for the pixel: one image
+    Light,    // light that leaves the primary surface: an image for the direct light and for each effect with
+              // rays
+    Ray,      // what a ray of an effect found: an image for each effect with rays
+    Bounce,   // what a bounce of its paths brings: an image for each such effect and bounce, where there are
+              // several
+    Work,     // what all passes did for the pixel: one image
 };
+
+// Further bounces than these share the last one's layers.
+inline constexpr std::uint32_t kMostLayerBounces = 4;
 
 // Which pass writes a layer.
 enum class LayerPass : std::uint32_t {
@@ -109,28 +114,33 @@ inline constexpr std::string_view kDirectLight = "direct";
 
 // A layer of a package, in tables.bin.
 struct LayerEntry {
-    std::uint32_t layer = 0;  // LayerInfo::number
-    Effect effect = 0;        // of layers of an effect; 0 for surfaces and the direct light
+    std::uint32_t layer = 0;   // LayerInfo::number
+    Effect effect = 0;         // of layers of an effect; 0 for surfaces and the direct light
+    std::uint32_t bounce = 0;  // of layers of a bounce, from 1; 0 for others
 
     friend bool operator==(const LayerEntry&, const LayerEntry&) = default;
 };
-static_assert(sizeof(LayerEntry) == 8);
+static_assert(sizeof(LayerEntry) == 12);
 
 // A layer of a package.
 struct PackageLayer {
     const LayerInfo* info = nullptr;
-    Effect effect = 0;  // as in LayerEntry
-    std::string name;   // "depth", "direct.radiance", "reflection.motion"
+    Effect effect = 0;  // as in LayerEntry, as the next
+    std::uint32_t bounce = 0;
+    std::string
+        name;  // "depth", "direct.radiance", "reflection.virtual-motion", "reflection.bounce-radiance.2"
 };
 
-// Returns "depth" for a layer of surfaces or work, "reflection.radiance" for one of a source of light.
-std::string layerName(const LayerInfo& info, std::string_view source);
+// Returns the name of a layer, whose source of light has the name `source`.
+std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce);
 
 // The pass that writes the layer: lighting what surfaces are and their direct light, several those with a
 // tally, compose the rest.
 LayerPass passOf(const LayerEntry& entry);
 // LayerDemand bits of all of them.
 std::uint32_t demandsOf(std::span<const PackageLayer> layers);
+// How many bounces have layers of their own; 0 if none has.
+std::uint32_t layerBounces(std::span<const PackageLayer> layers);
 // The size of a pixel of all images, bytes.
 std::uint32_t bytesOf(std::span<const PackageLayer> layers);
 

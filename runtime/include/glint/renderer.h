@@ -243,6 +243,7 @@ struct LayerImage {
     std::string_view name;                     // PackageLayer::name
     const package::LayerInfo* info = nullptr;  // its row
     package::Effect effect = 0;                // of the source of light; 0 for surfaces and the direct light
+    std::uint32_t bounce = 0;                  // from 1, of layers of a bounce; 0 for others
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     VkFormat format = VK_FORMAT_UNDEFINED;

@@ -133,8 +133,8 @@ std::vector<LayerImage> Renderer::layers() const {
     for (std::size_t i = 0; i < state_->size.layers.size(); ++i) {
         const package::PackageLayer& layer = state_->size.layers[i];
         const DeviceImage& image = state_->frame.layers[i];
-        images.push_back(
-            {layer.name, layer.info, layer.effect, image.handle.get(), image.view.get(), image.format});
+        images.push_back({layer.name, layer.info, layer.effect, layer.bounce, image.handle.get(),
+                          image.view.get(), image.format});
     }
     return images;
 }

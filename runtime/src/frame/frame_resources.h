@@ -32,7 +32,7 @@ struct FrameResources {
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
     // others is `pool`.
-    static constexpr std::size_t kBufferCount = 24;
+    static constexpr std::size_t kBufferCount = 25;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
@@ -50,6 +50,7 @@ struct FrameResources {
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer skyShares;    // present if the sky is a light of the package
     Buffer rayHits;      // present if layers need what rays hit
+    Buffer bounceLight;  // present if layers need what bounces bring
     Buffer hits;         // full or packed records; present if hits are ordered
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
@@ -80,6 +81,7 @@ struct FrameResources {
                  {"rays of lobes", &lobeRays},
                  {"shares of the sky", &skyShares},
                  {"hits of layers", &rayHits},
+                 {"light of bounces", &bounceLight},
                  {"hits", &hits},
                  {"ordered hits", &orderedHits},
                  {"visited hits", &visitedHits},
@@ -122,6 +124,7 @@ struct FrameSize {
 
     std::vector<package::PackageLayer> layers{};  // images beside the picture
     bool layerRays = false;                       // layers need what rays hit
+    std::uint32_t layerBounces = 0;               // bounces that have layers of their own
 
     bool accumulates = true;     // the picture is a mean over frames
     bool marchesScreen = false;  // frames may look for the ends of rays in screen space

@@ -176,6 +176,36 @@ constexpr LayerInfo kRows[] = {
      .channels = "XYZ",
      .demands = kLayerHistory | kLayerRays},
     {.number = 19,
+     .name = "bounce-radiance",
+     .what = "as radiance, of one bounce of the paths; the last also has what further ones bring",
+     .subject = Subject::Bounce,
+     .format = Format::Float4,
+     .channels = "RGB",
+     .mean = Mean::Mean,
+     .continues = true},
+    {.number = 20,
+     .name = "bounce-demodulated",
+     .what = "as demodulated, of one bounce",
+     .subject = Subject::Bounce,
+     .format = Format::Float4,
+     .channels = "RGB",
+     .from = "bounce-radiance"},
+    {.number = 21,
+     .name = "bounce-variance",
+     .what = "as variance, of one bounce",
+     .subject = Subject::Bounce,
+     .format = Format::Float1,
+     .channels = "V",
+     .continues = true,
+     .from = "bounce-radiance"},
+    {.number = 22,
+     .name = "bounce-distance",
+     .what = "length of the bounce's ray, metres; 0: no ray, 65504: it left the scene",
+     .subject = Subject::Bounce,
+     .format = Format::Float1,
+     .channels = "Z",
+     .demands = kLayerRays},
+    {.number = 23,
      .name = "lobes",
      .what = "bits of the lobes of the surface's key; 4294967295: no surface",
      .subject = Subject::Surface,
@@ -184,7 +214,7 @@ constexpr LayerInfo kRows[] = {
      .function = "primaryLobes",
      .absent = "uvec4(0xFFFFFFFFu)",
      .isDiagnostic = true},
-    {.number = 20,
+    {.number = 24,
      .name = "branches",
      .what = "features, beyond those of all materials, that the lighting pass runs for the pixel's subgroup",
      .subject = Subject::Surface,
@@ -193,7 +223,7 @@ constexpr LayerInfo kRows[] = {
      .function = "primaryBranches",
      .absent = "uvec4(0xFFFFFFFFu)",
      .isDiagnostic = true},
-    {.number = 21,
+    {.number = 25,
      .name = "footprint",
      .what = "width of the pixel on the surface across the view, metres; 0: no surface",
      .subject = Subject::Surface,
@@ -202,7 +232,7 @@ constexpr LayerInfo kRows[] = {
      .function = "primaryFootprint",
      .absent = "vec4(0.0)",
      .isDiagnostic = true},
-    {.number = 22,
+    {.number = 26,
      .name = "texture-level",
      .what = "finest level that the surface reads, below 0: texels are larger than pixels; 65504: no texture",
      .subject = Subject::Surface,
@@ -211,7 +241,7 @@ constexpr LayerInfo kRows[] = {
      .function = "primaryTextureLevel",
      .absent = "vec4(65504.0)",
      .isDiagnostic = true},
-    {.number = 23,
+    {.number = 27,
      .name = "hit-shader",
      .what = "shader ID of what the ray hit; 4294967295: no ray, the two before: it left the scene, or ended "
              "on screen",
@@ -220,7 +250,7 @@ constexpr LayerInfo kRows[] = {
      .channels = "I",
      .demands = kLayerRays,
      .isDiagnostic = true},
-    {.number = 24,
+    {.number = 28,
      .name = "rays",
      .what = "rays that all passes traced for the pixel, over all samples",
      .subject = Subject::Work,
@@ -230,7 +260,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0u)",
      .tally = "GLINT_TALLY_RAYS",
      .isDiagnostic = true},
-    {.number = 25,
+    {.number = 29,
      .name = "candidates",
      .what = "triangles whose alpha these rays tested",
      .subject = Subject::Work,
@@ -241,7 +271,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0u)",
      .tally = "GLINT_TALLY_CANDIDATES",
      .isDiagnostic = true},
-    {.number = 26,
+    {.number = 30,
      .name = "non-finite",
      .what = "samples that are not a number and count as black; those that are infinite count 65536 each",
      .subject = Subject::Work,
@@ -251,7 +281,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0u)",
      .tally = "GLINT_TALLY_NON_FINITE",
      .isDiagnostic = true},
-    {.number = 27,
+    {.number = 31,
      .name = "clocks",
      .what =
          "ticks of the device's clock that lighting, tracing and shading of the pixel took, over all samples",
@@ -263,7 +293,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0u)",
      .tally = "GLINT_TALLY_CLOCKS",
      .isDiagnostic = true},
-    {.number = 28,
+    {.number = 32,
      .name = "workgroup",
      .what = "number of the workgroup that shaded the hit, within its dispatch; 4294967295: no hit, or no "
              "workgroup",
@@ -273,7 +303,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0xFFFFFFFFu)",
      .tally = "GLINT_TALLY_WORKGROUP",
      .isDiagnostic = true},
-    {.number = 29,
+    {.number = 33,
      .name = "cases-run",
      .what = "cases that the subgroup ran one after the other to shade the hit; 4294967295: as workgroup",
      .subject = Subject::Ray,
@@ -305,12 +335,16 @@ const LayerInfo* findLayer(std::uint32_t number) {
 }
 
 bool hasSources(const LayerInfo& info) {
-    return info.subject == LayerSubject::Light || info.subject == LayerSubject::Ray;
+    return info.subject == LayerSubject::Light || info.subject == LayerSubject::Ray ||
+           info.subject == LayerSubject::Bounce;
 }
 
-std::string layerName(const LayerInfo& info, std::string_view source) {
-    const std::string name(info.name);
-    return hasSources(info) ? std::string(source) + "." + name : name;
+std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce) {
+    std::string name(info.name);
+    if (hasSources(info)) {
+        name = std::string(source) + "." + name;
+    }
+    return bounce == 0 ? name : name + "." + std::to_string(bounce);
 }
 
 LayerPass passOf(const LayerEntry& entry) {
@@ -328,6 +362,14 @@ std::uint32_t demandsOf(std::span<const PackageLayer> layers) {
         demands |= layer.info->demands;
     }
     return demands;
+}
+
+std::uint32_t layerBounces(std::span<const PackageLayer> layers) {
+    std::uint32_t bounces = 0;
+    for (const PackageLayer& layer : layers) {
+        bounces = std::max(bounces, layer.bounce);
+    }
+    return bounces;
 }
 
 std::uint32_t bytesOf(std::span<const PackageLayer> layers) {

@@ -214,6 +214,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     size.layers.assign(package.layers().begin(), package.layers().end());
     size.layerRays = (package::demandsOf(size.layers) & package::kLayerRays) != 0;
+    size.layerBounces = package::layerBounces(size.layers);
     size.accumulates = options.accumulate;
     size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
     size.bandRows = chooseBandRows(size, choice.strategy, choice.bands);

@@ -26,9 +26,7 @@ Hit shadedHit(HostGeometry geometry, Features features) {
     Hit hit = fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
                        features);
 #if GLINT_LAYER_RAYS
-    if (findsFirstHits()) {
-        storeRayHit(target, hitGeometry(), uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, gl_HitTEXT);
-    }
+    storeRayHit(target, hitGeometry(), uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, gl_HitTEXT);
 #endif
 #if GLINT_PATHS
     hit.arrival = arrivalOf(samplePlace(target), gl_WorldRayOriginEXT, coneWidth, shaded.radiance.z);

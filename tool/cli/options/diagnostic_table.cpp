@@ -97,6 +97,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"depfile-name", kError,
      "`--depfile`: the name of a file can't be written to a file for Make and Ninja."},
     {"device-features", kError, "The device lacks features that Glint needs."},
+    {"device-layers", kError, "Shaders of the device can't write as many images as the package has layers."},
     {"device-missing", kError, "There is no Vulkan driver, or no suitable device."},
     {"device-tracer", kError, "The device can't trace rays in the way that is asked for."},
     {"draco-attribute", kError, "The Draco data lacks an attribute, or has it in another form."},
@@ -160,6 +161,9 @@ constexpr DiagnosticInfo kTable[] = {
      "The header of a KTX2 image breaks a rule of `KHR_texture_basisu`, a DDS image has alpha that is "
      "premultiplied, or either contradicts the use of the "
      "texture."},
+    {"layer-effect", kError,
+     "`--layers` names a layer of an effect that the package lacks, or that has no such layer."},
+    {"layer-missing", kError, "A program asks a renderer for a layer that its package lacks."},
     {"light-range", kWarning, "A value of a light is outside of its range."},
     {"light-type", kError, "A light's type is unknown."},
     {"lights", kError, "`--lights` asks for a hierarchy over lights that are a host's own."},
@@ -236,7 +240,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"package-truncated", kError, "The tables of a package are cut short."},
     {"package-version", kError, "A package is of another version."},
     {"passes", kError,
-     "`--answer` or `--bindings` was given without `--passes steps`, or `--texture-levels` with it."},
+     "`--answer` or `--bindings` was given without `--passes steps`, or `--texture-levels` or `--layers` "
+     "with it."},
     {"payload-bytes", kNote | kWarning, "`glint lint`: a ray payload is large."},
     {"pipeline-cache", kNote | kError,
      "A pipeline cache is damaged, too large, or of another device or driver: pipelines are made without "
