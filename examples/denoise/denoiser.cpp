@@ -27,6 +27,8 @@ std::string albedoOf(const std::string& source) {
     return found == kAlbedos.end() ? "albedo" : found->second;
 }
 
+}  // namespace
+
 struct Image {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
@@ -67,8 +69,6 @@ struct Signal {
     Image history;                  // what the next frame continues with
     std::array<Image, 2> filtered;  // in turn
 };
-
-}  // namespace
 
 void fail(const std::string& message) {
     std::cerr << "denoise: " << message << "\n";

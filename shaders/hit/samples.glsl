@@ -3,6 +3,9 @@
 #if GLINT_PATHS
 #include "hit/path.glsl"
 #endif
+#if GLINT_TALLIES
+#include "generated/tallies.glsl"
+#endif
 
 // Whether light has an array of its own, because the rest of a sample is still needed, or because it is a host's.
 #if GLINT_PATHS || GLINT_STEPS
@@ -114,6 +117,9 @@ RayRecord listedRay(uint index) {
 #else
     uint target = GLINT_FRAME.listed.data[index];
     uint place = samplePlace(target);
+#if GLINT_TALLIES
+    tallyForSample(target);
+#endif
     SampleAim aim = GLINT_FRAME.sampleAims.data[place];
     return RayRecord(GLINT_FRAME.sampleStarts.data[place].origin_orRadiance, target, aim.direction, aim.coneWidth,
                      GLINT_FRAME.sampleWeights.data[place].coneSpread);

@@ -155,6 +155,11 @@ struct BounceLight {
     float distance;  // of the bounce's ray, metres; 0: none
 };
 GLINT_CONSTANT(kScreenGeometry, 0xFFFFFFFEu);
+// Values of layers (glint/layers.h).
+GLINT_CONSTANT(kLayerNoRay, 0xFFFFFFFFu);
+GLINT_CONSTANT(kLayerLeftScene, 0xFFFFFFFEu);
+GLINT_CONSTANT(kLayerOnScreen, 0xFFFFFFFDu);
+GLINT_CONSTANT(kInfiniteSample, 0x10000u);
 // RayHit::distance of a ray that left the scene: the largest 16-bit float.
 GLINT_CONSTANT(kDistanceOfMiss, 65504u);
 

@@ -100,6 +100,56 @@ uvec4 primaryShader(PrimaryPoint at) {
     return uvec4(at.geometry.shaderId, 0u, 0u, 0u);
 }
 
+uvec4 primaryLobes(PrimaryPoint at) {
+    return uvec4(at.features.lobes);
+}
+
+#if GLINT_LAYER_BRANCHES
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+uvec4 primaryBranches(PrimaryPoint at) {
+    uint lobes = subgroupOr(at.features.lobes & at.features.sometimesLobes);
+    uint inputs = subgroupOr(at.features.inputs & at.features.sometimesInputs);
+    return uvec4(bitCount(lobes) + bitCount(inputs));
+}
+#endif
+
+vec4 primaryFootprint(PrimaryPoint at) {
+    return vec4(GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(at.hit.position, at.ray.origin), 0.0, 0.0,
+                0.0);
+}
+
+// The level that a sampler chooses: Vulkan 1.3, "Scale Factor, Level-of-Detail and Image Level(s) Operations". It is that
+// of the whole image, and below 0 where it is magnified.
+float levelOfGradients(vec4 gradients, vec2 texels, float anisotropy) {
+    vec4 inTexels = gradients * vec4(texels, texels);
+    float first = dot(inTexels.xy, inTexels.xy);
+    float second = dot(inTexels.zw, inTexels.zw);
+    float width = max(max(first, second) / (anisotropy * anisotropy), min(first, second));
+    return width > 0.0 ? 0.5 * log2(width) : 0.0;
+}
+
+const float kNoLevel = 65504.0;  // the surface reads no texture
+
+vec4 primaryTextureLevel(PrimaryPoint at) {
+    float finest = kNoLevel;
+#if GLINT_TEXTURE_SLOTS > 0
+    for (uint slot = 0u; slot < GLINT_TEXTURE_SLOTS; ++slot) {
+        TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(at.hit), slot);
+        // Slots without a texture are 0.
+        if (record.rowU != vec3(0.0) || record.rowV != vec3(0.0)) {
+            vec4 edges = readsSecondSet(at.hit, slot, at.features) ? at.hit.uvEdges[1] : at.hit.uvEdges[0];
+            edges = vec4(dot(record.rowU.xy, edges.xy), dot(record.rowV.xy, edges.xy), dot(record.rowU.xy, edges.zw),
+                         dot(record.rowV.xy, edges.zw));
+            vec3 filtered = hostTextureFilter(record);
+            vec4 gradients = coneGradients(at.hit.footprint, edges, filtered.xy, filtered.z);
+            finest = min(finest, levelOfGradients(gradients, filtered.xy, filtered.z));
+        }
+    }
+#endif
+    return vec4(finest, 0.0, 0.0, 0.0);
+}
+
 #if GLINT_LAYER_HISTORY
 vec4 primaryMotion(PrimaryPoint at) {
     vec3 corners[3] = currentCorners(at.geometry, at.primitive);

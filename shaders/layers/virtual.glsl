@@ -3,6 +3,7 @@
 #include "hit/geometry.glsl"
 #include "hit/images.glsl"
 #include "hit/samples.glsl"
+#include "host/geometry.glsl"
 #if GLINT_LAYER_HISTORY
 #include "layers/motion.glsl"
 #endif
@@ -11,6 +12,17 @@
 vec4 rayDistance(uint target, uint path) {
     float travelled = path == kPathNone ? 0.0 : GLINT_FRAME.rayHits.data[samplePlace(target)].distance;
     return vec4(travelled, 0.0, 0.0, 0.0);
+}
+
+// The shader ID of what a ray hit.
+uvec4 rayShader(uint target, uint path) {
+    if (path == kPathNone) {
+        return uvec4(kLayerNoRay);
+    }
+    uint geometry = GLINT_FRAME.rayHits.data[samplePlace(target)].geometry;
+    return uvec4(geometry == kMissGeometry     ? kLayerLeftScene
+                 : geometry == kScreenGeometry ? kLayerOnScreen
+                                               : hostShaderId(geometry));
 }
 
 #if GLINT_LAYER_HISTORY

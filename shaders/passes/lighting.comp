@@ -91,6 +91,10 @@ void main() {
         return;
     }
     ivec2 place = ivec2(pixel);
+#if GLINT_TALLIES
+    beginTallies(pixel);
+#endif
+    GLINT_CLOCK_START
     uint number = pixel.x + pixel.y * GLINT_FRAME.width;
     uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
     CameraRay ray = cameraRay(pixel);
@@ -139,4 +143,5 @@ void main() {
         imageStore(positionImage, place, position);
     }
 #endif
+    GLINT_CLOCK_STOP
 }

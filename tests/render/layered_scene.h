@@ -42,6 +42,9 @@ public:
     Renderer& renderer() {
         return *renderer_;
     }
+    const Package& package() const {
+        return package_.package();
+    }
     // Draws a frame of one sample with the first camera, after the device has taken over the current pose of
     // `scene`.
     LinearImage render();

@@ -48,7 +48,7 @@ bool demodulates(const LayerInfo& info) {
 // The images of a layer that the package may have. `bounces` have layers of their own.
 std::vector<LayerEntry> entriesOf(const LayerInfo& info, const Plan& plan, std::uint32_t bounces) {
     std::vector<LayerEntry> entries;
-    if (info.subject == LayerSubject::Surface || info.subject == LayerSubject::Light) {
+    if (!package::hasSources(info) || info.subject == LayerSubject::Light) {
         entries.push_back({info.number, 0, 0});
     }
     package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
@@ -58,8 +58,7 @@ std::vector<LayerEntry> entriesOf(const LayerInfo& info, const Plan& plan, std::
             for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
                 entries.push_back({info.number, effect, bounce});
             }
-        } else if (info.subject != LayerSubject::Surface &&
-                   (!moves || !plan.model->effects[number].shows.empty())) {
+        } else if (package::hasSources(info) && (!moves || !plan.model->effects[number].shows.empty())) {
             entries.push_back({info.number, effect, 0});
         }
     });
@@ -77,7 +76,9 @@ std::vector<const LayerInfo*> layersNamed(std::string_view word) {
     std::vector<const LayerInfo*> named;
     for (const LayerInfo& info : package::layerTable()) {
         const bool isSurface = info.subject == LayerSubject::Surface;
-        if (word == kEveryLayer || word == info.name || (word == kSurfaceLayers && isSurface)) {
+        const bool inGroup =
+            !info.isDiagnostic && (word == kEveryLayer || (word == kSurfaceLayers && isSurface));
+        if (inGroup || word == info.name) {
             named.push_back(&info);
         }
     }
@@ -107,7 +108,8 @@ Status addOfSource(std::string_view word, const Plan& plan, std::uint32_t bounce
     const package::Effect effect = findEffect(plan.model->effects, source);
     const std::size_t before = entries.size();
     for (const LayerInfo& info : package::layerTable()) {
-        if (info.subject == LayerSubject::Surface || (!layer.empty() && layer != info.name)) {
+        const bool wanted = layer.empty() ? !info.isDiagnostic : layer == info.name;
+        if (!wanted || !package::hasSources(info)) {
             continue;
         }
         for (const LayerEntry& entry : entriesOf(info, plan, bounces)) {
@@ -145,15 +147,11 @@ void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
     entries.erase(again.begin(), again.end());
 }
 
-// The fields of one layer.
-mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
-    const LayerInfo& info = infoOf(entry);
-    const package::LayerFormatInfo& format = package::infoOf(info.format);
-    const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
-    // "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.
+// "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.
+std::string variableNamed(std::string_view layer) {
     std::string variable;
     bool raises = false;
-    for (const char character : layerNameOf(entry, *plan.model)) {
+    for (const char character : layer) {
         const bool isLetter = std::isalnum(static_cast<unsigned char>(character)) != 0;
         if (isLetter) {
             variable +=
@@ -161,6 +159,15 @@ mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
         }
         raises = !isLetter;
     }
+    return variable;
+}
+
+// The fields of one layer.
+mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
+    const LayerInfo& info = infoOf(entry);
+    const package::LayerFormatInfo& format = package::infoOf(info.format);
+    const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
+    const std::string variable = variableNamed(layerNameOf(entry, *plan.model));
     mustache::data fields;
     fields.set("binding", fmt::format("kBindingLayers + {}u", place));
     fields.set("qualifier", std::string(format.qualifier));
@@ -264,16 +271,21 @@ std::string layerDefines(const Plan& plan, bool deforms) {
     bool ofSurfaces = false;
     bool ofEffects = false;
     std::uint32_t bounces = 0;
+    bool groups = false;
+    std::set<std::string_view> tallies;
     for (const LayerEntry& entry : plan.layers) {
-        demands |= infoOf(entry).demands;
-        const bool lighting = passOf(entry) == package::LayerPass::Lighting;
-        ofSurfaces = ofSurfaces || lighting;
-        ofEffects = ofEffects || !lighting;
+        const LayerInfo& info = infoOf(entry);
+        demands |= info.demands;
+        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::Lighting;
+        ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
+        groups = groups || (!info.tally.empty() && package::hasSources(info));
+        tallies.insert(info.tally);
         bounces = std::max(bounces, entry.bounce);
     }
+    tallies.erase("");
     const bool history = (demands & package::kLayerHistory) != 0;
     const auto flag = [](bool value) { return value ? 1 : 0; };
-    return fmt::format(
+    std::string text = fmt::format(
         "// Layers beside the picture\n"
         "#define GLINT_LAYER_MEMBERS {}\n"
         "#define GLINT_SURFACE_LAYERS {}\n"
@@ -281,11 +293,72 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         "#define GLINT_LAYER_HISTORY {}\n"
         "#define GLINT_LAYER_DEFORMS {}\n"
         "#define GLINT_LAYER_RAYS {}\n"
-        "#define GLINT_LAYER_BOUNCES {}\n",
+        "#define GLINT_LAYER_BOUNCES {}\n"
+        "#define GLINT_LAYER_CLOCK {}\n"
+        "#define GLINT_LAYER_BRANCHES {}\n"
+        "#define GLINT_LAYER_GROUPS {}\n"
+        "#define GLINT_TALLIES {}\n",
         flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
-        flag(history && deforms), flag((demands & package::kLayerRays) != 0),
-        bounces);
+        flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
+        flag((demands & package::kLayerClock) != 0), flag(findEntry(plan, "branches", 0) != nullptr),
+        flag(groups), flag(!tallies.empty()));
+    // What no layer counts leaves no code.
+    for (const LayerInfo& info : package::layerTable()) {
+        if (!info.tally.empty() && !tallies.contains(info.tally)) {
+            text += fmt::format("#define {}({})\n", info.tally,
+                                package::hasSources(info) ? "target, value" : "amount");
+        }
+    }
+    if ((demands & package::kLayerClock) == 0) {
+        text += "#define GLINT_CLOCK_START\n#define GLINT_CLOCK_STOP\n";
+    }
+    return text;
 }
+
+namespace {
+
+// The fields of tallies.glsl.mustache.
+void addTallies(mustache::data& context, const Plan& plan) {
+    mustache::data tallies(mustache::data::type::list);
+    mustache::data added(mustache::data::type::list);
+    std::vector<std::pair<const LayerInfo*, mustache::data>> images;  // of each kind that samples have
+    for (const LayerEntry& entry : plan.layers) {
+        const LayerInfo& info = infoOf(entry);
+        if (info.tally.empty()) {
+            continue;
+        }
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("macro", std::string(info.tally));
+        fields.set("slot", fmt::format("{}", package::effectSlot(plan.effects.effects, entry.effect)));
+        tallies.push_back(fields);
+        if (!package::hasSources(info)) {
+            added.push_back(fields);
+            continue;
+        }
+        auto found = std::ranges::find(images, &info, [](const auto& pair) { return pair.first; });
+        if (found == images.end()) {
+            images.emplace_back(&info, mustache::data(mustache::data::type::list));
+            found = images.end() - 1;
+        }
+        found->second.push_back(fields);
+    }
+    mustache::data kept(mustache::data::type::list);
+    for (const auto& [info, ofSources] : images) {
+        mustache::data fields;
+        fields.set("macro", std::string(info->tally));
+        std::string name = variableNamed(info->name);
+        name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+        fields.set("name", name);
+        fields.set("images", ofSources);
+        kept.push_back(fields);
+    }
+    context.set("tallies", tallies);
+    context.set("added", added);
+    context.set("kept", kept);
+    context.set("hasClock", mustache::data(findEntry(plan, "clocks", 0) != nullptr));
+}
+
+}  // namespace
 
 void addLayers(mustache::data& context, const Plan& plan) {
     mustache::data lighting(mustache::data::type::list);
@@ -323,8 +396,10 @@ void addLayers(mustache::data& context, const Plan& plan) {
             effects.push_back(albedo);
         }
     }
+    addTallies(context, plan);
     context.set("hasRayLayers", mustache::data(std::ranges::any_of(plan.layers, [](const LayerEntry& entry) {
-                    return infoOf(entry).subject == LayerSubject::Ray;
+                    return infoOf(entry).subject == LayerSubject::Ray &&
+                           passOf(entry) == package::LayerPass::Compose;
                 })));
     context.set("hasEffectLayers", mustache::data(effects.is_non_empty_list()));
     context.set("effectLayers", effects);
@@ -335,11 +410,13 @@ void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect
     entry.set("lightLayers", light);
     const mustache::data distance = imageFields(plan, "distance", effect);
     const mustache::data motion = imageFields(plan, "virtual-motion", effect);
-    mustache::data rays(!distance.is_false() || !motion.is_false());
+    const mustache::data shader = imageFields(plan, "hit-shader", effect);
+    mustache::data rays(!distance.is_false() || !motion.is_false() || !shader.is_false());
     if (rays.is_true()) {
         rays = mustache::data();
         rays.set("distance", distance);
         rays.set("motion", motion);
+        rays.set("shader", shader);
     }
     entry.set("rayLayers", rays);
 

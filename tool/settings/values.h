@@ -377,10 +377,11 @@ inline void setLayers(Settings& settings, std::string_view text) {
 }
 
 inline std::vector<SettingWord> layerWords() {
-    std::vector<SettingWord> words{{std::string(kNone), "no layer"},
-                                   {std::string(kAll), "every layer"},
-                                   {"surface", "every layer of primary surfaces"},
-                                   {std::string(package::kDirectLight), "every layer of the direct light"}};
+    std::vector<SettingWord> words{
+        {std::string(kNone), "no layer"},
+        {std::string(kAll), "every layer but the diagnostic ones, which come last"},
+        {"surface", "every layer of primary surfaces"},
+        {std::string(package::kDirectLight), "every layer of the direct light"}};
     for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
         if (effect.kind == package::EffectKind::Rays) {
             words.push_back({effect.name, fmt::format("every layer of the effect {}", effect.name)});
@@ -396,8 +397,7 @@ inline std::vector<SettingWord> layerWords() {
 inline bool isLayerOfSource(std::string_view text) {
     const std::size_t dot = std::min(text.find('.'), text.size());
     const package::LayerInfo* const layer = package::findLayer(text.substr(std::min(dot + 1, text.size())));
-    return layer != nullptr && layer->subject != package::LayerSubject::Surface &&
-           materials::isEffectName(text.substr(0, dot));
+    return layer != nullptr && package::hasSources(*layer) && materials::isEffectName(text.substr(0, dot));
 }
 
 inline constexpr SettingValues kLayers{

@@ -41,24 +41,32 @@ enum class LayerSubject : std::uint32_t {
     Ray,      // what a ray of an effect found: an image for each effect with rays
     Bounce,   // what a bounce of its paths brings: an image for each such effect and bounce, where there are
               // several
+    Work,     // what all passes did for the pixel: one image
 };
 
 // Further bounces than these share the last one's layers.
 inline constexpr std::uint32_t kMostLayerBounces = 4;
 
 // Which pass writes a layer.
-enum class LayerPass : std::uint32_t { Lighting, Compose };
+enum class LayerPass : std::uint32_t {
+    Lighting,
+    Compose,
+    Several,  // lighting begins it, and the passes that do what it counts add to it
+};
 
 // How the samples of a picture become one value.
 enum class LayerMean : std::uint32_t {
     First,  // the layer is that of the picture's first sample
     Mean,   // it is the mean over the samples, as the picture is
+    Sum,    // it is the sum over the samples
 };
 
 // What a layer needs of the renderer beside its image, as bits of a set.
 enum LayerDemand : std::uint32_t {
     kLayerHistory = 1,  // camera, transforms and deformed vertices of the frame before
     kLayerRays = 2,     // what the rays of effects hit
+    kLayerClock = 4,    // shaders read a clock: DeviceHandles::shaderClock
+    kLayerQueries = 8,  // rays are traced by ray queries alone
 };
 
 // A row of the table.
@@ -78,7 +86,22 @@ struct LayerInfo {
     // What the GLSL calls: a function of shaders/layers/, and the value of a pixel without a surface.
     std::string_view function{};
     std::string_view absent{};
+    // With LayerPass::Several: the macro by which passes add to it (subject Work), or store the value of a
+    // sample (subject Ray). `absent` is the value that it begins with.
+    std::string_view tally{};
+    // It is for people who look for a problem. Words for several layers at once leave it out.
+    bool isDiagnostic = false;
 };
+
+// Values of the layer "hit-shader" that are no shader IDs.
+inline constexpr std::uint32_t kNoRay = 0xFFFFFFFF;
+inline constexpr std::uint32_t kRayLeftScene = 0xFFFFFFFE;
+inline constexpr std::uint32_t kRayEndedOnScreen = 0xFFFFFFFD;
+// The layer "non-finite" counts infinite samples in this unit, and those that are not a number in ones.
+inline constexpr std::uint32_t kInfiniteSample = 0x10000;
+
+// Whether sources of light have such layers, rather than the pixel.
+bool hasSources(const LayerInfo& info);
 
 // All rows, in the order in which --help lists them.
 std::span<const LayerInfo> layerTable();
@@ -111,7 +134,8 @@ struct PackageLayer {
 // Returns the name of a layer, whose source of light has the name `source`.
 std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce);
 
-// The pass that writes the layer: lighting what surfaces are and their direct light, compose the rest.
+// The pass that writes the layer: lighting what surfaces are and their direct light, several those with a
+// tally, compose the rest.
 LayerPass passOf(const LayerEntry& entry);
 // LayerDemand bits of all of them.
 std::uint32_t demandsOf(std::span<const PackageLayer> layers);

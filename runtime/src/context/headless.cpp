@@ -195,6 +195,12 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
                 missing.push_back(extension);
             }
         }
+        // A device that has the extension has its feature too (Vulkan 1.3 specification, "Feature
+        // Requirements").
+        if (options.shaderClock && !hasExtension(report, VK_KHR_SHADER_CLOCK_EXTENSION_NAME)) {
+            missing.emplace_back(std::string(VK_KHR_SHADER_CLOCK_EXTENSION_NAME) +
+                                 ", which the layer clocks needs");
+        }
         if (missing.empty()) {
             tracers = common;
             return device;
@@ -229,7 +235,7 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
 Status createDevice(Context::State& state, std::span<const std::string> further) {
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
                                     state.handles.shaderFloat16, state.handles.pipelineStatistics,
-                                    state.handles.opacityMicromaps);
+                                    state.handles.opacityMicromaps, state.handles.shaderClock);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -285,6 +291,7 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
     state->handles.tracers = options.tracers;
     state->handles.positionFetch = options.positionFetch;
     state->handles.shaderFloat16 = options.shaderFloat16;
+    state->handles.shaderClock = options.shaderClock;
     Result<VkPhysicalDevice> device = chooseDevice(*state, options, state->handles.tracers);
     if (!device) {
         return device.error();

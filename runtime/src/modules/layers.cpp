@@ -15,7 +15,8 @@ constexpr LayerFormatInfo kFormats[] = {
     {Format::Integer, 4, "r32ui", 1},
 };
 
-// To add a layer, add a row here, and its function to shaders/layers/ and its line to docs/layers.md.
+// To add a layer, add a row here, and its line to docs/layers.md. A layer with a function needs it in
+// shaders/layers/; one with a tally needs its macro where passes do what it counts.
 constexpr LayerInfo kRows[] = {
     {.number = 1,
      .name = "depth",
@@ -204,6 +205,113 @@ constexpr LayerInfo kRows[] = {
      .format = Format::Float1,
      .channels = "Z",
      .demands = kLayerRays},
+    {.number = 23,
+     .name = "lobes",
+     .what = "bits of the lobes of the surface's key; 4294967295: no surface",
+     .subject = Subject::Surface,
+     .format = Format::Integer,
+     .channels = "I",
+     .function = "primaryLobes",
+     .absent = "uvec4(0xFFFFFFFFu)",
+     .isDiagnostic = true},
+    {.number = 24,
+     .name = "branches",
+     .what = "features, beyond those of all materials, that the lighting pass runs for the pixel's subgroup",
+     .subject = Subject::Surface,
+     .format = Format::Integer,
+     .channels = "I",
+     .function = "primaryBranches",
+     .absent = "uvec4(0xFFFFFFFFu)",
+     .isDiagnostic = true},
+    {.number = 25,
+     .name = "footprint",
+     .what = "width of the pixel on the surface across the view, metres; 0: no surface",
+     .subject = Subject::Surface,
+     .format = Format::Float1,
+     .channels = "R",
+     .function = "primaryFootprint",
+     .absent = "vec4(0.0)",
+     .isDiagnostic = true},
+    {.number = 26,
+     .name = "texture-level",
+     .what = "finest level that the surface reads, below 0: texels are larger than pixels; 65504: no texture",
+     .subject = Subject::Surface,
+     .format = Format::Float1,
+     .channels = "R",
+     .function = "primaryTextureLevel",
+     .absent = "vec4(65504.0)",
+     .isDiagnostic = true},
+    {.number = 27,
+     .name = "hit-shader",
+     .what = "shader ID of what the ray hit; 4294967295: no ray, the two before: it left the scene, or ended "
+             "on screen",
+     .subject = Subject::Ray,
+     .format = Format::Integer,
+     .channels = "I",
+     .demands = kLayerRays,
+     .isDiagnostic = true},
+    {.number = 28,
+     .name = "rays",
+     .what = "rays that all passes traced for the pixel, over all samples",
+     .subject = Subject::Work,
+     .format = Format::Integer,
+     .channels = "I",
+     .mean = Mean::Sum,
+     .absent = "uvec4(0u)",
+     .tally = "GLINT_TALLY_RAYS",
+     .isDiagnostic = true},
+    {.number = 29,
+     .name = "candidates",
+     .what = "triangles whose alpha these rays tested",
+     .subject = Subject::Work,
+     .format = Format::Integer,
+     .channels = "I",
+     .mean = Mean::Sum,
+     .demands = kLayerQueries,
+     .absent = "uvec4(0u)",
+     .tally = "GLINT_TALLY_CANDIDATES",
+     .isDiagnostic = true},
+    {.number = 30,
+     .name = "non-finite",
+     .what = "samples that are not a number and count as black; those that are infinite count 65536 each",
+     .subject = Subject::Work,
+     .format = Format::Integer,
+     .channels = "I",
+     .mean = Mean::Sum,
+     .absent = "uvec4(0u)",
+     .tally = "GLINT_TALLY_NON_FINITE",
+     .isDiagnostic = true},
+    {.number = 31,
+     .name = "clocks",
+     .what =
+         "ticks of the device's clock that lighting, tracing and shading of the pixel took, over all samples",
+     .subject = Subject::Work,
+     .format = Format::Integer,
+     .channels = "I",
+     .mean = Mean::Sum,
+     .demands = kLayerClock,
+     .absent = "uvec4(0u)",
+     .tally = "GLINT_TALLY_CLOCKS",
+     .isDiagnostic = true},
+    {.number = 32,
+     .name = "workgroup",
+     .what = "number of the workgroup that shaded the hit, within its dispatch; 4294967295: no hit, or no "
+             "workgroup",
+     .subject = Subject::Ray,
+     .format = Format::Integer,
+     .channels = "I",
+     .absent = "uvec4(0xFFFFFFFFu)",
+     .tally = "GLINT_TALLY_WORKGROUP",
+     .isDiagnostic = true},
+    {.number = 33,
+     .name = "cases-run",
+     .what = "cases that the subgroup ran one after the other to shade the hit; 4294967295: as workgroup",
+     .subject = Subject::Ray,
+     .format = Format::Integer,
+     .channels = "I",
+     .absent = "uvec4(0xFFFFFFFFu)",
+     .tally = "GLINT_TALLY_CASES",
+     .isDiagnostic = true},
 };
 
 }  // namespace
@@ -226,9 +334,14 @@ const LayerInfo* findLayer(std::uint32_t number) {
     return found == std::end(kRows) ? nullptr : found;
 }
 
+bool hasSources(const LayerInfo& info) {
+    return info.subject == LayerSubject::Light || info.subject == LayerSubject::Ray ||
+           info.subject == LayerSubject::Bounce;
+}
+
 std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce) {
     std::string name(info.name);
-    if (info.subject != LayerSubject::Surface) {
+    if (hasSources(info)) {
         name = std::string(source) + "." + name;
     }
     return bounce == 0 ? name : name + "." + std::to_string(bounce);
@@ -236,6 +349,9 @@ std::string layerName(const LayerInfo& info, std::string_view source, std::uint3
 
 LayerPass passOf(const LayerEntry& entry) {
     const LayerInfo* const info = findLayer(entry.layer);
+    if (info != nullptr && !info->tally.empty()) {
+        return LayerPass::Several;
+    }
     const bool ofSurface = info != nullptr && info->subject == LayerSubject::Surface;
     return ofSurface || entry.effect == 0 ? LayerPass::Lighting : LayerPass::Compose;
 }

@@ -385,9 +385,8 @@ Status checkLayers(const Package::State& state, const std::string& where) {
         using Subject = package::LayerSubject;
         const bool ofBounce = info->subject == Subject::Bounce;
         const bool isOfEffect = std::has_single_bit(entry.effect) && (entry.effect & rays) != 0;
-        const bool fits = entry.effect == 0
-                              ? info->subject == Subject::Surface || info->subject == Subject::Light
-                              : isOfEffect && info->subject != Subject::Surface;
+        const bool fits = entry.effect == 0 ? info->subject != Subject::Ray && !ofBounce
+                                            : isOfEffect && package::hasSources(*info);
         const std::uint32_t mostBounces = std::min(state.header.maxBounces, package::kMostLayerBounces);
         const bool bounceFits =
             ofBounce ? entry.bounce >= 1 && entry.bounce <= mostBounces : entry.bounce == 0;

@@ -20,6 +20,7 @@ void main() {
         return;
     }
     RayRecord ray = listedRay(index);
+    GLINT_CLOCK_START
     TracedHit found = traceRay(ray, rayFlags(ray.target));
 #if GLINT_LAYER_RAYS
     keepTracedHit(ray, found);
@@ -31,4 +32,5 @@ void main() {
         Hit hit = loadHit(recordOf(found), ray, geometry, GLINT_HIT_FEATURES(geometry));
         resolveHit(hit, shadeHit(geometry.shaderId, hit, geometry));
     }
+    GLINT_CLOCK_STOP
 }

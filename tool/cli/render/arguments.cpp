@@ -1,9 +1,12 @@
 #include "cli/render/arguments.h"
 
+#include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
+
+#include <glint/measure/views.h>
 
 #include <fmt/format.h>
 
@@ -74,6 +77,78 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "checks the order\nof hits")
         .group("Device");
     addPipelineOptions(command, arguments.pipelines);
+}
+
+constexpr const char* kView = "--view";
+constexpr const char* kViewReference = "--view-reference";
+
+// "shader, key, …", over several lines.
+std::string viewNames() {
+    constexpr std::size_t kWidth = 50;
+    std::string text;
+    std::size_t line = 0;
+    for (const measure::ViewInfo& view : measure::viewTable()) {
+        const std::string_view separator = text.empty()                       ? ""
+                                           : line + view.name.size() > kWidth ? ",\n"
+                                                                              : ", ";
+        line = separator == ",\n" ? 0 : line;
+        text += fmt::format("{}{}", separator, view.name);
+        line += view.name.size() + 2;
+    }
+    return text;
+}
+
+void addViewOptions(CLI::App& command, RenderArguments& arguments) {
+    addText(command, kView, arguments.view, "NAME",
+            "write a debug picture instead, with a legend below it, and\nits numbers into --stats: " +
+                viewNames() + "; of rays also\nEFFECT.NAME (docs/views.md)")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                std::vector<std::string> known;
+                for (const measure::ViewInfo& view : measure::viewTable()) {
+                    known.emplace_back(view.name);
+                }
+                return measure::parseView(text)
+                           ? std::string()
+                           : "\"" + text + "\" is no view" + base::suggestion(text, known);
+            },
+            ""))
+        ->group("Picture");
+    addText(command, kViewReference, arguments.viewReference, "FILE",
+            "the picture that --view difference compares with, .exr or\n.png; an .exr of --spp 1024 is a "
+            "good one")
+        .group("Picture");
+}
+
+// Adds the layers of the view to those that are compiled. Throws a CLI::ParseError if the line contradicts
+// itself.
+void settleView(const CLI::App& command, RenderArguments& arguments) {
+    const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view);
+    const bool compares = view && view->info->readsReference;
+    if (command.count(kViewReference) > 0 && !compares) {
+        throw CLI::ValidationError(kViewReference, "needs --view difference");
+    }
+    if (!view) {
+        return;
+    }
+    if (compares && arguments.viewReference.empty()) {
+        throw CLI::ValidationError(kView, "difference needs --view-reference FILE");
+    }
+    const Result<image::ImageFormat> format = image::imageFormat(arguments.output);
+    if (format && *format != image::ImageFormat::Png) {
+        const std::vector<std::string> layers = measure::layersFor(*view);
+        throw CLI::ValidationError(
+            kView, layers.empty()
+                       ? std::string("is drawn into a PNG file: -o FILE.png")
+                       : fmt::format("is drawn into a PNG file: -o FILE.png; for the numbers use --layers {} "
+                                     "and no view",
+                                     fmt::join(layers, ",")));
+    }
+    if (arguments.package.empty()) {
+        for (std::string& layer : measure::layersFor(*view)) {
+            arguments.compile.layers.push_back(std::move(layer));
+        }
+    }
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
@@ -176,6 +251,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             "(excludes --host, --profile, and all settings that are\n"
             "decided for the package: docs/cli.md)")
         .group("Shaders");
+    addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);
     command.callback([arguments, then, &command] {
         checkPackageChoice(command);
@@ -191,6 +267,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         if (!arguments->compile.layers.empty() && format && *format != image::ImageFormat::Exr) {
             throw CLI::ValidationError("--layers", "needs a file that has room for layers: -o FILE.exr");
         }
+        settleView(command, *arguments);
         settleProfileOutput(command, *arguments);
         checkProfile(command, *arguments);
         then();
