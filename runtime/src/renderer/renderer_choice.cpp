@@ -116,7 +116,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
             "package-tracer", "",
             "the package's layer candidates counts what ray queries test, and the tracer is " +
                 std::string(nameOf(*tracer)),
-            "use the tracer ray-query and another strategy than hit-shaders, or leave out the layer");
+            "use the tracer ray-query, with a strategy that has it, or leave out the layer");
     }
     if ((demands & package::kLayerClock) != 0 && !context.handles.shaderClock) {
         return makeError(
