@@ -37,7 +37,8 @@ constexpr std::string_view kUsage =
     "Draws frames of one sample, filters them, writes the last, and compares it with pictures without the "
     "filter.\n"
     "\n"
-    "  --frames N            frames that are filtered (4)\n"
+    "  --frames N            frames that are filtered, each with those before it (1)\n"
+    "  --samples N           samples of a pixel in each frame (4)\n"
     "  --many N              samples of the picture that they are compared with (64)\n"
     "  --reference N         samples of the picture that is taken for the truth (1024); 0: no comparison\n"
     "  --turn DEGREES        the camera turns by that much from frame to frame (0)\n"
@@ -50,7 +51,8 @@ constexpr std::string_view kUsage =
 struct Options {
     std::string scene, shaders, output;
     glint::compiler::Settings settings;
-    std::uint32_t frames = 4;
+    std::uint32_t frames = 1;
+    std::uint32_t samples = 4;
     std::uint32_t many = 64;
     std::uint32_t reference = 1024;
     double turn = 0.0;
@@ -60,8 +62,10 @@ struct Options {
 
 bool setOption(Options& options, std::string_view name, const std::string& value) {
     std::int64_t whole = 0;
-    const std::pair<std::string_view, std::uint32_t*> numbers[] = {
-        {"--frames", &options.frames}, {"--many", &options.many}, {"--reference", &options.reference}};
+    const std::pair<std::string_view, std::uint32_t*> numbers[] = {{"--frames", &options.frames},
+                                                                   {"--samples", &options.samples},
+                                                                   {"--many", &options.many},
+                                                                   {"--reference", &options.reference}};
     for (const auto& [option, number] : numbers) {
         if (name == option) {
             const bool valid =
@@ -282,9 +286,9 @@ void run(Options& options) {
     const auto sky = glint::measure::chooseSky(settings, scene, data);
     const auto uploaded = valueOf(glint::GpuScene::upload(*context, package, data.view()));
 
-    // Each frame is one sample of its own.
+    // Each frame is a picture of its own. Its layers are means over its samples.
     glint::RendererOptions rendererOptions = glint::measure::rendererOptions(settings);
-    rendererOptions.accumulate = false;
+    rendererOptions.accumulate = options.samples > 1;
     const auto renderer = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
     denoise::Denoiser denoiser(context->handles(), *renderer, width, height, options.shaders, options.filter);
     Queue queue(context->handles());
@@ -295,13 +299,15 @@ void run(Options& options) {
         frame.camera = turned(camera.view, options.turn * (static_cast<double>(i) - (options.frames - 1)));
         // The seed shifts the pixels' samples and all random numbers.
         frame.seed = i + 1;
-        frame.averagedSamples = options.frames;
-        samplesMs += queue.run([&](VkCommandBuffer commands) {
-            const glint::Status recorded = renderer->record(commands, frame);
-            if (!recorded) {
-                fail(toString(recorded.error()));
-            }
-        });
+        frame.averagedSamples = options.samples;
+        for (frame.sampleIndex = 0; frame.sampleIndex < options.samples; ++frame.sampleIndex) {
+            samplesMs += queue.run([&](VkCommandBuffer commands) {
+                const glint::Status recorded = renderer->record(commands, frame);
+                if (!recorded) {
+                    fail(toString(recorded.error()));
+                }
+            });
+        }
         filterMs += queue.run([&](VkCommandBuffer commands) { denoiser.record(commands); });
     }
     const glint::LinearImage filtered = queue.read(denoiser.output(), width, height);
@@ -325,9 +331,9 @@ void run(Options& options) {
         double milliseconds = 0.0;
         const glint::LinearImage truth = mean(options.reference, 7777, milliseconds);
         std::printf("%-24s %10s %10s %12s %12s\n", "picture", "relMSE", "RMSE", "samples ms", "filter ms");
-        const std::string few = std::to_string(options.frames) + " samples";
+        const std::string few = std::to_string(options.samples) + " samples";
         printRow(few + ", filtered", filtered, truth, samplesMs, filterMs);
-        const glint::LinearImage plain = mean(options.frames, 1, milliseconds);
+        const glint::LinearImage plain = mean(options.samples, 1, milliseconds);
         printRow(few, plain, truth, milliseconds, 0.0);
         const glint::LinearImage many = mean(options.many, 1, milliseconds);
         printRow(std::to_string(options.many) + " samples", many, truth, milliseconds, 0.0);

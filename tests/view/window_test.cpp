@@ -269,6 +269,7 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
         wait complete
         report half.json
         key m m m
+        size 760 606
         wait complete
         # the camera
         key c
@@ -298,7 +299,7 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
         key b
         wait complete
         click tab Settings
-        choose sun off
+        choose effects none
         number skip-below 0.5
         wait complete
         click Measure

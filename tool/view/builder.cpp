@@ -22,6 +22,12 @@
 
 namespace glint::view {
 
+bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b) {
+    return a.variant == b.variant && std::ranges::equal(a.files, b.files, [](const auto& x, const auto& y) {
+               return x.path == y.path && x.bytes == y.bytes && x.hash == y.hash;
+           });
+}
+
 Builder::Builder(const Request& request, const Context& context)
     : request_(request), context_(context), thread_([this] { work(); }) {}
 
@@ -134,11 +140,14 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
         if (!scene) {
             return scene.error();
         }
+        // What pictures hold depends on their files alone.
+        if (!scene_ || !haveSameFiles(*scene_, *scene)) {
+            textures_.reset();
+        }
         const std::lock_guard lock(mutex_);
         messages_.insert(messages_.end(), scene->warnings.begin(), scene->warnings.end());
         scene_ = std::make_shared<const gltf::Scene>(std::move(*scene));
         sceneKey_ = key;
-        textures_.reset();
     }
     build.scene = scene_;
     for (const gltf::SourceFile& file : scene_->files) {

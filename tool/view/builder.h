@@ -45,6 +45,10 @@ struct Build {
 // The pictures that are built: the one that is always there, and the one that it is compared with.
 inline constexpr std::size_t kPictures = 2;
 
+// Whether two scenes were read from files with the same contents. Their materials may still be planned with
+// other packs.
+bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b);
+
 struct BuildOrder {
     std::size_t picture = 0;
     compiler::Settings settings;

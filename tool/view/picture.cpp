@@ -111,8 +111,11 @@ Result<Picture::Device> Picture::upload(const Build& build, const RendererOption
 
 // Returns whether the scene on the device goes on with the new package.
 Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
-    const bool isSameScene = renderer_ && build.scene == build_.scene && build.textures == build_.textures &&
-                             uploadsAlike(build.settings, build_.settings);
+    // A scene that moves has its materials from the scene that it was read with.
+    const bool isSameScene =
+        renderer_ &&
+        (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
+        build.textures == build_.textures && uploadsAlike(build.settings, build_.settings);
     if (!isSameScene) {
         return false;
     }
@@ -154,8 +157,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height,
         return replaced.error();
     }
     if (!*replaced) {
-        const bool isOtherScene = build.scene != build_.scene;
-        if (isOtherScene) {
+        if (build.scene != build_.scene) {
             posed_.reset();
             moment_.reset();
         }
@@ -166,6 +168,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height,
         renderer_ = std::move(made->renderer);
         gpuScene_ = std::move(made->scene);
         data_ = std::move(made->data);
+        uploaded_ = build.scene;
         inFlight_.clear();
         lastChange_ = fmt::format("scene uploaded in {:.0f} ms", base::millisecondsSince(start));
     }

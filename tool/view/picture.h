@@ -130,6 +130,7 @@ private:
     std::string environmentKey_;
     scene_view::SkyChoice sky_;
     // Destroyed in reverse order.
+    std::shared_ptr<const gltf::Scene> uploaded_;  // to which `data_` points, unless the scene moves
     std::unique_ptr<scene_view::SceneViewData> data_;
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;

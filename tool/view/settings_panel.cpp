@@ -236,6 +236,11 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
     if (!next || *next == present) {
         return false;
     }
+    complaint_.clear();
+    if (row.values.form == ValueForm::Switch) {
+        row.values.set(settings, *next);
+        return true;
+    }
     for (const std::string& word :
          row.values.form == ValueForm::List ? splitList(*next) : std::vector<std::string>{*next}) {
         complaint_ = complaintAbout(row, word);

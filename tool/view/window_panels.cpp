@@ -310,7 +310,13 @@ void Window::drawCompare() {
         controls_.mark(fmt::format("edit {}", kNames[i]));
     }
     ImGui::SameLine(0.0F, 24.0F);
-    ImGui::TextUnformatted("show");
+    if (ImGui::Button("Measure")) {
+        measureDifference();
+    }
+    controls_.mark("Measure");
+    tip("how far B is from A: as seen (FLIP), and in linear light");
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("show       ");
     constexpr const char* kShown[] = {"A", "B", "A|B", "difference"};
     for (std::uint32_t i = 0; i < std::size(kShown); ++i) {
         ImGui::SameLine();
@@ -324,15 +330,8 @@ void Window::drawCompare() {
         ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9.0F);
         ImGui::SliderFloat("times##gain", &gain_, 1.0F, 64.0F, "%.0f", ImGuiSliderFlags_Logarithmic);
         controls_.mark("gain");
-        ImGui::SameLine();
     }
-    if (ImGui::Button("Measure")) {
-        measureDifference();
-    }
-    controls_.mark("Measure");
-    tip("how far B is from A: as seen (FLIP), and in linear light");
     if (!difference_.empty()) {
-        ImGui::SameLine();
         ImGui::TextUnformatted(difference_.c_str());
     }
 }
