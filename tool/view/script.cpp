@@ -316,6 +316,13 @@ Status Script::parseLine(const std::vector<std::string>& words, const std::strin
             glfwSetWindowSize(host_.window, static_cast<int>(numbers[0]), static_cast<int>(numbers[1]));
             return true;
         });
+        // Clicks before the window has its size would hit something else.
+        act([this, numbers]() -> Result<bool> {
+            int width = 0;
+            int height = 0;
+            glfwGetWindowSize(host_.window, &width, &height);
+            return width == static_cast<int>(numbers[0]) && height == static_cast<int>(numbers[1]);
+        });
         frames(kSettle);
         return okStatus();
     } else if (what == "minimise" && withArguments(0)) {

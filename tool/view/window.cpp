@@ -166,7 +166,7 @@ Status Window::open() {
     if (!request_.script.empty()) {
         const ScriptHost host{window_,
                               &controls_,
-                              [this] { return isComplete(); },
+                              [this] { return isComplete() && hasWantedSize(); },
                               [this] { return error_.has_value(); },
                               [this](const std::string& file) { onDrop(file); },
                               [this](const std::string& file) { return writeReport(file); },
@@ -232,6 +232,13 @@ bool Window::isComplete() const {
     }
     const bool isSettled = base::millisecondsSince(resized_) > 2.0 * kRestMs;
     return (sides_[0]->picture.isReady() || error_) && isSettled && !wantsShot_ && !exposureIsNew_;
+}
+
+// A size that the panel asks for is there once the window has it.
+bool Window::hasWantedSize() const {
+    const Side& one = *sides_[0];
+    return !one.picture.isReady() || (one.wanted.renderer.width == one.picture.settings().renderer.width &&
+                                      one.wanted.renderer.height == one.picture.settings().renderer.height);
 }
 
 bool Window::isIdle() const {

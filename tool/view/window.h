@@ -87,6 +87,7 @@ private:
     void say(const std::string& text);
     void fail(const Diagnostic& error);
     bool isIdle() const;
+    bool hasWantedSize() const;
     bool isComplete() const;
     CameraView cameraView() const;
     Side& side() {
