@@ -44,6 +44,7 @@ struct Push {
     float alpha = 0.0F;
     std::uint32_t isFirst = 0;
     std::uint32_t isVirtual = 0;
+    std::uint32_t samples = 1;
 };
 
 // A compute shader with its bindings: sampled images, then storage images.
@@ -63,6 +64,7 @@ struct Signal {
     VkImageView light = VK_NULL_HANDLE;
     VkImageView motion = VK_NULL_HANDLE;
     VkImageView albedo = VK_NULL_HANDLE;
+    VkImageView variance = VK_NULL_HANDLE;
     bool isVirtual = false;
     Image mean;                     // over the frames
     std::array<Image, 2> moments;   // of this frame and of the one before, in turn
@@ -76,7 +78,7 @@ void fail(const std::string& message) {
 }
 
 std::vector<std::string> wantedLayers() {
-    return {"depth", "normal", "motion", "emission", "demodulated", "virtual-motion"};
+    return {"depth", "normal", "motion", "emission", "demodulated", "variance", "virtual-motion"};
 }
 
 struct Denoiser::State {
@@ -305,7 +307,9 @@ struct Denoiser::State {
             {signal.light, signal.motion, depth, normal, lastDepth.view, lastNormal.view, signal.history.view,
              signal.moments[1 - turn].view, signal.mean.view, moments.view},
             constants);
-        run(commands, variance, {signal.mean.view, moments.view, depth, normal, signal.filtered[0].view},
+        run(commands, variance,
+            {signal.mean.view, moments.view, depth, normal, signal.variance, signal.albedo,
+             signal.filtered[0].view},
             constants);
         std::size_t source = 0;
         for (std::uint32_t i = 0; i < settings.wavelets; ++i) {
@@ -337,11 +341,12 @@ Denoiser::Denoiser(const glint::DeviceHandles& device, const glint::Renderer& re
     state.push.width = static_cast<std::int32_t>(width);
     state.push.height = static_cast<std::int32_t>(height);
     state.push.alpha = settings.alpha;
+    state.push.samples = settings.samples;
     for (const glint::LayerImage& layer : renderer.layers()) {
         state.layers.emplace(layer.name, layer);
     }
     state.make(state.temporal, shaders / "temporal.comp.spv", 8, 2);
-    state.make(state.variance, shaders / "variance.comp.spv", 4, 1);
+    state.make(state.variance, shaders / "variance.comp.spv", 6, 1);
     state.make(state.wavelet, shaders / "wavelet.comp.spv", 3, 1);
     state.make(state.modulate, shaders / "modulate.comp.spv", 3, 1);
     state.makePool();
@@ -354,6 +359,7 @@ Denoiser::Denoiser(const glint::DeviceHandles& device, const glint::Renderer& re
         Signal signal;
         signal.light = image.view;
         signal.albedo = state.layer(albedoOf(source));
+        signal.variance = state.layer(source + ".variance");
         signal.isVirtual = state.layers.contains(source + ".virtual-motion");
         signal.motion = state.layer(signal.isVirtual ? source + ".virtual-motion" : "motion");
         state.signals.push_back(std::move(signal));

@@ -21,6 +21,7 @@ std::vector<std::string> wantedLayers();
 
 struct FilterSettings {
     float alpha = 0.2F;              // least weight of a new frame: the paper's, for motion and light
+    std::uint32_t samples = 1;       // of a pixel in a frame
     std::uint32_t wavelets = 5;      // passes, each with twice the stride
     std::uint32_t historyAfter = 1;  // the pass whose result the next frame continues with
 };
@@ -37,7 +38,7 @@ public:
     Denoiser(const Denoiser&) = delete;
     Denoiser& operator=(const Denoiser&) = delete;
 
-    // Records the filter after a recording of the renderer, whose frames are not averaged.
+    // Records the filter after the last sample of a frame.
     void record(VkCommandBuffer commands);
     // Forgets the frames before.
     void restart();

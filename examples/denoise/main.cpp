@@ -290,6 +290,7 @@ void run(Options& options) {
     glint::RendererOptions rendererOptions = glint::measure::rendererOptions(settings);
     rendererOptions.accumulate = options.samples > 1;
     const auto renderer = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
+    options.filter.samples = options.samples;
     denoise::Denoiser denoiser(context->handles(), *renderer, width, height, options.shaders, options.filter);
     Queue queue(context->handles());
     glint::FrameOptions frame = glint::measure::frameOptions(settings, camera.view, sky, nullptr);

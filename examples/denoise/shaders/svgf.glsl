@@ -10,6 +10,7 @@ layout(push_constant) uniform Push {
     float alpha;    // least weight of a new frame
     uint isFirst;   // there is no frame before, or no sum before
     uint isVirtual; // motion is that of what a surface shows, not its own
+    uint samples;   // of a pixel in a frame
 };
 
 // The constants of section 4.4.
