@@ -105,11 +105,18 @@ uvec4 primaryLobes(PrimaryPoint at) {
 }
 
 #if GLINT_LAYER_BRANCHES
+#if !GLINT_RAY_GENERATION
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#endif
+// Ray generation shaders may lack subgroup operations, so that there it is the pixel's own features.
 uvec4 primaryBranches(PrimaryPoint at) {
-    uint lobes = subgroupOr(at.features.lobes & at.features.sometimesLobes);
-    uint inputs = subgroupOr(at.features.inputs & at.features.sometimesInputs);
+    uint lobes = at.features.lobes & at.features.sometimesLobes;
+    uint inputs = at.features.inputs & at.features.sometimesInputs;
+#if !GLINT_RAY_GENERATION
+    lobes = subgroupOr(lobes);
+    inputs = subgroupOr(inputs);
+#endif
     return uvec4(bitCount(lobes) + bitCount(inputs));
 }
 #endif

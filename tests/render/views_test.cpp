@@ -115,7 +115,7 @@ TEST(Views, CountInfiniteSamples) {
 TEST(Views, EveryStrategyGivesTheSame) {
     const gltf::Scene scene = hallScene();
     compiler::CompileSettings settings;
-    const std::vector<std::string> same{"shader", "lobes", "material", "branches", "reflection.hit-shader",
+    const std::vector<std::string> same{"shader", "lobes", "material", "reflection.hit-shader",
                                         "rays"};
     settings.layers = same;
     settings.layers.insert(settings.layers.end(), {"cases-run", "workgroup"});

@@ -100,8 +100,8 @@ std::string viewNames() {
 
 void addViewOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, kView, arguments.view, "NAME",
-            "write a debug picture instead, with a legend below it, and\nits numbers into --stats: " +
-                viewNames() + "; of rays also\nEFFECT.NAME (docs/views.md)")
+            "write a debug picture instead, with a legend below it, and\nits numbers into --stats:\n" +
+                viewNames() + ";\nof rays also EFFECT.NAME (docs/views.md)")
         .check(CLI::Validator(
             [](const std::string& text) {
                 std::vector<std::string> known;
