@@ -4,7 +4,8 @@
     benchmarks/measure_paths.py SCENE [--glint FILE] [--bounces 1,2,4,8] [--strategies LIST] [--size WxH] [--rounds N]
                                 [--tracer NAME] [--merge POLICY]
 
-All strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
+Renders everything once, all at the same time, to fill the driver's cache, and says on stderr how long each took. Then
+all strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
 package that has those bounces. The sky is no light (--sky-light off). Prints Markdown: the device time of all passes of
 a sample, as the median with its least and greatest value, and the ratio of each strategy to uber in the same round. If
 it is stopped by SIGTERM, as timeout(1) does, it prints what it has measured until then.
@@ -13,7 +14,6 @@ SCENE is a file, or box:K for a closed box that is made here: its walls are squa
 benchmarks/make_synthetic_scene.py, so that no path leaves it.
 """
 import argparse
-import concurrent.futures
 import json
 import pathlib
 import random
@@ -68,26 +68,45 @@ def compile_packages(arguments, folder):
                        check=True, capture_output=True)
 
 
+def stats_of(folder, strategy, bounces):
+    return folder / f"stats-{strategy}-{bounces}.json"
+
+
+def start_render(arguments, folder, strategy, bounces):
+    """Starts the render and returns its process."""
+    stats = stats_of(folder, strategy, bounces)
+    return subprocess.Popen([arguments.glint, "render", arguments.scene, "-o", stats.with_suffix(".png"), "--package",
+                             folder / str(bounces), "--bounces", str(bounces), "--strategy", strategy, "--tracer",
+                             arguments.tracer, "--size", arguments.size, "--spp", str(arguments.spp),
+                             "--max-roughness", "1", "--stats", stats], stdout=subprocess.DEVNULL)
+
+
+def finish(process):
+    if process.wait() != 0:
+        sys.exit("measure_paths.py: a render failed")
+
+
 def device_time(arguments, folder, strategy, bounces):
     """Returns the milliseconds of the last sample's passes."""
-    stats = folder / f"stats-{strategy}-{bounces}.json"
-    subprocess.run([arguments.glint, "render", arguments.scene, "-o", stats.with_suffix(".png"), "--package",
-                    folder / str(bounces), "--bounces", str(bounces), "--strategy", strategy, "--tracer",
-                    arguments.tracer, "--size", arguments.size, "--spp", str(arguments.spp), "--max-roughness", "1",
-                    "--stats", stats], check=True, capture_output=True)
+    stats = stats_of(folder, strategy, bounces)
+    finish(start_render(arguments, folder, strategy, bounces))
     return sum(entry["milliseconds"] for entry in json.loads(stats.read_text())["passes"])
 
 
 def fill_driver_cache(arguments, folder, cases):
     """Renders each case once, all at the same time: a driver may take minutes for one uber shader, on one thread."""
-    def render(case):
-        start = time.monotonic()
-        device_time(arguments, folder, *case)
-        print(f"{case[0]}, {case[1]} bounces: first render after {time.monotonic() - start:.0f} s", file=sys.stderr,
-              flush=True)
-
-    with concurrent.futures.ThreadPoolExecutor(len(cases)) as pool:
-        list(pool.map(render, cases))
+    start = time.monotonic()
+    running = {case: start_render(arguments, folder, *case) for case in cases}
+    try:
+        while running:
+            time.sleep(0.1)
+            for case in [case for case, process in running.items() if process.poll() is not None]:
+                finish(running.pop(case))
+                print(f"{case[0]}, {case[1]} bounces: first render after {time.monotonic() - start:.0f} s",
+                      file=sys.stderr, flush=True)
+    finally:
+        for process in running.values():
+            process.kill()
 
 
 def spread(values):

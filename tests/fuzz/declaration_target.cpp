@@ -13,8 +13,8 @@ namespace {
 using glint::materials::DeclarationFile;
 using glint::materials::MaterialModel;
 
-// Features that packs name. To read all of Glint's own takes a hundred times as long as to read one pack, so
-// most inputs are read beside these.
+// Features that packs name. All of Glint's own take more than ten times as long to read, so most inputs are
+// read beside these.
 constexpr DeclarationFile kNeighbours[] = {
     {"materials/attributes/attributes.json",
      R"({"name": "attributes", "stage": "attributes", "features": [

@@ -19,20 +19,20 @@ namespace {
 constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "geometry.glsl", "material.glsl"};
 constexpr std::string_view kSkyFiles[] = {"lights.glsl", "sky.glsl"};
 
-bool castsShadows(std::span<const gltf::Scene> scenes, CompileSettings settings) {
+// The effects of a package with a light.
+package::EffectSet effectsOfLit(const gltf::SceneList& scenes, CompileSettings settings) {
     settings.addsLight = true;
-    return planEffects(gltf::SceneList(scenes), settings).effects.lights != 0;
+    return planEffects(scenes, settings).effects;
 }
 
 // Whether rays bring the sky's light, and that of surfaces in front of it, to surfaces that scatter it. Where
 // none do, the ambient term stands for both: samples of the sky would replace it by the first alone.
-bool tracesScattered(std::span<const gltf::Scene> scenes, CompileSettings settings) {
-    settings.addsLight = true;
+bool tracesScattered(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
     const gltf::SceneList list(scenes);
     if (list.materials().empty()) {
         return false;
     }
-    const std::uint32_t rays = planEffects(list, settings).effects.rays;
+    const std::uint32_t rays = effectsOfLit(list, settings).rays;
     const std::vector<materials::EffectDeclaration>& declared = list.materials().front().model().effects;
     return std::ranges::any_of(declared, [&](const materials::EffectDeclaration& effect) {
         return (rays & materials::findEffect(declared, effect.name)) != 0 && !effect.refines.empty();
@@ -54,7 +54,9 @@ Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const Compile
     if (ofHost) {
         return fmt::format("{} are the host's", whose);
     }
-    return std::string(castsShadows(scenes, settings) ? "" : "the package has no effect shadow");
+    return std::string(effectsOfLit(gltf::SceneList(scenes), settings).lights != 0
+                           ? ""
+                           : "the package has no effect shadow");
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ constexpr std::span<const Named<EmissiveLights>> namesOf(EmissiveLights /*type*/
 // Whether the sky is a light that surfaces sample.
 enum class SkyLight : std::uint8_t { Auto, Off, On };
 inline constexpr Named<SkyLight> kSkyLightNames[] = {
-    {SkyLight::Auto, "auto", "in packages for several bounces with the effect shadow"},
+    {SkyLight::Auto, "auto", "in packages for several bounces with the effects shadow and indirect-diffuse"},
     {SkyLight::Off, "off", "rays find its light, and without occlusion it stands in for further ones"},
     {SkyLight::On, "on", "surfaces send shadow rays to it"},
 };
