@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize] [--viewer]
+usage: scripts/setup.sh [--check] [--browser] [--lint] [--portable] [--sanitize] [--viewer] [--window]
 
 Installs the packages that Glint needs on Debian 12, Debian 13 and Ubuntu 24.04.
 On Debian 12, whose Mesa has no ray queries, mesa-vulkan-drivers comes from backports.
@@ -17,6 +17,7 @@ they can't be fetched, the script says so, and Glint is built without them.
   --portable  also the packages for scripts/portable.sh, which is for Debian 12
   --sanitize  also the packages for scripts/sanitize.sh and scripts/fuzz.sh
   --viewer    also the packages for scripts/viewer_compare.sh: those of --browser, and npm
+  --window    also Xvfb, an X server without a screen, in which the tests use the window of glint view
 TEXT
 }
 
@@ -56,6 +57,9 @@ kNeeds=(
     "file /usr/include/embree*/rtcore.h|libembree-dev"
     "file /usr/include/gtest/gtest.h|libgtest-dev"
     "file /usr/include/valijson/schema.hpp|libvalijson-dev"
+    "file /usr/include/GLFW/glfw3.h|libglfw3-dev"
+    "file /usr/include/imgui/imgui.h|libimgui-dev"
+    "file /usr/include/X11/extensions/XTest.h|libxtst-dev"
     "file /usr/lib/python3/dist-packages/numpy/__init__.py|python3-numpy"
     "file /usr/lib/python3/dist-packages/xxhash/__init__.py|python3-xxhash"
 )
@@ -252,6 +256,7 @@ for argument in "$@"; do
         --portable) needs+=("${kPortableNeeds[@]}") ;;
         --sanitize) sanitize=true ;;
         --viewer) viewer=true ;;
+        --window) needs+=("command Xvfb|xvfb") ;;
         -h | --help)
             usage
             exit 0

@@ -16,7 +16,7 @@ Installs missing packages, builds Glint and runs every test. Files that scripts/
 TEXT
 }
 
-setup=(--browser)
+setup=(--browser --window)
 sanitize=false
 werror=()
 for argument in "$@"; do

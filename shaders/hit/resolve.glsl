@@ -5,9 +5,15 @@
 #include "hit/record.glsl"
 #include "generated/shade.glsl"
 #include "light/shadow.glsl"
+#if GLINT_LAYER_GROUPS
+#include "layers/hit_group.glsl"
+#endif
 
 Hit loadHit(HitRecord record, RayRecord ray, HostGeometry geometry, Features features) {
     vec2 barycentrics = vec2(record.barycentricU, record.barycentricV);
+#if GLINT_LAYER_GROUPS && !GLINT_RAY_GENERATION
+    noteHitGroup(ray.target, geometry.shaderId);
+#endif
     Hit hit = fetchHit(geometry, record.primitive, barycentrics, ray.direction, record.coneWidth, ray.target, features);
 #if GLINT_PATHS
     hit.arrival = arrivalOf(samplePlace(ray.target), ray.origin, record.coneWidth, ray.coneSpread);

@@ -3,6 +3,9 @@
 #if GLINT_PATHS
 #include "hit/path.glsl"
 #endif
+#if GLINT_TALLIES
+#include "generated/tallies.glsl"
+#endif
 
 // Whether light has an array of its own, because the rest of a sample is still needed, or because it is a host's.
 #if GLINT_PATHS || GLINT_STEPS
@@ -51,11 +54,33 @@ void storeSampleRay(uint place, EffectSample drawn) {
     GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
 }
 
+#if GLINT_LAYER_BOUNCES
+const uint kLayerBounces = GLINT_LAYER_BOUNCES;
+
+// Adds light to what the bounce at hand brings.
+void addToBounce(uint place, vec3 light) {
+    uint bounce = clamp(GLINT_FRAME.bounce, 1u, kLayerBounces) - 1u;
+    GLINT_FRAME.bounceLight.data[place * kLayerBounces + bounce].light += light;
+}
+
+void clearBounces(uint place) {
+    for (uint i = 0u; i < kLayerBounces; ++i) {
+        GLINT_FRAME.bounceLight.data[place * kLayerBounces + i] = BounceLight(vec3(0.0), 0.0);
+    }
+}
+#endif
+
 void storeSample(uint target, EffectSample drawn) {
     uint place = samplePlace(target);
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(drawn.origin, drawn.outcome);
     if (drawn.outcome == kRaySent) {
         GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
+#if GLINT_LAYER_RAYS
+        GLINT_FRAME.rayHits.data[place].distance = 0.0;
+#endif
+#if GLINT_LAYER_BOUNCES
+        clearBounces(place);
+#endif
 #if GLINT_PATHS
         beginPath(place);
 #endif
@@ -92,6 +117,9 @@ RayRecord listedRay(uint index) {
 #else
     uint target = GLINT_FRAME.listed.data[index];
     uint place = samplePlace(target);
+#if GLINT_TALLIES
+    tallyForSample(target);
+#endif
     SampleAim aim = GLINT_FRAME.sampleAims.data[place];
     return RayRecord(GLINT_FRAME.sampleStarts.data[place].origin_orRadiance, target, aim.direction, aim.coneWidth,
                      GLINT_FRAME.sampleWeights.data[place].coneSpread);
@@ -129,6 +157,9 @@ float storedSkyShare(uint target) {
 // path is one of kPath*. It is that of the first bounce; further bounces add their light.
 void storeRadiance(uint target, vec3 radiance, uint path) {
     uint place = samplePlace(target);
+#if GLINT_LAYER_BOUNCES
+    addToBounce(place, radiance);
+#endif
 #if GLINT_PATHS
     if (GLINT_FRAME.bounce > 1u) {
         // A sample has one ray at a time, so no other thread writes here.
@@ -147,6 +178,9 @@ void storeRadiance(uint target, vec3 radiance, uint path) {
 void endSample(uint target, vec3 weight, vec3 radiance) {
     uint place = samplePlace(target);
     GLINT_FRAME.sampleWeights.data[place].weight = weight;
+#if GLINT_LAYER_BOUNCES
+    addToBounce(place, radiance);
+#endif
 #if GLINT_RADIANCE_APART
     GLINT_FRAME.sampleStarts.data[place].state = kRayEnded;
     GLINT_FRAME.radiance.data[place] = vec4(radiance, float(kPathMiss));
@@ -159,6 +193,9 @@ void endSample(uint target, vec3 weight, vec3 radiance) {
 // so no other thread writes there.
 void addRadiance(uint target, vec3 light) {
     uint place = samplePlace(target);
+#if GLINT_LAYER_BOUNCES
+    addToBounce(place, light);
+#endif
 #if GLINT_RADIANCE_APART
     vec4 radiance = GLINT_FRAME.radiance.data[place];
     GLINT_FRAME.radiance.data[place] = vec4(radiance.rgb + light, radiance.w);

@@ -5,6 +5,9 @@
 #include "hit/payload.glsl"
 #include "hit/stage.glsl"
 #include "hit/tlas.glsl"
+#if GLINT_TALLIES
+#include "generated/tallies.glsl"
+#endif
 
 // What a ray meets first.
 struct TracedHit {
@@ -39,6 +42,7 @@ HitRecord recordOf(TracedHit hit) {
 const uint kOpacityFlags = gl_RayFlagsSkipAABBEXT;
 #define GLINT_PROCEED(query, origin, direction)                                                                 \
     while (rayQueryProceedEXT(query)) {                                                                         \
+        GLINT_TALLY_CANDIDATES(1u);                                                                             \
         uint candidate = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, false),                      \
                                        rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),             \
                                        rayQueryGetIntersectionGeometryIndexEXT(query, false));                  \
@@ -55,6 +59,7 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT;
 
 // Returns the closest hit of a ray.
 TracedHit traceRay(RayRecord ray, uint flags) {
+    GLINT_TALLY_RAYS(1u);
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, ray.origin, 0.0,
                           ray.direction, kFarDistance);
@@ -78,6 +83,7 @@ TracedHit traceRay(RayRecord ray, uint flags) {
 // Returns whether nothing stands in the way, seen from either side. What light keeps on its way from a light is for
 // lightArrives() (light/ray.glsl).
 bool isVisible(vec3 origin, vec3 direction, float distance) {
+    GLINT_TALLY_RAYS(1u);
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT,
                           GLINT_RAY_MASK, origin, 0.0, direction, distance);
@@ -88,6 +94,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 #if GLINT_SHARED_LIGHTS
 // The same for what sees other surfaces (kShadow*).
 bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
+    GLINT_TALLY_RAYS(1u);
     uint culled = sees == kShadowOfShared ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags | gl_RayFlagsTerminateOnFirstHitEXT | culled,
@@ -99,6 +106,7 @@ bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
 
 // Returns the distance to the closest surface within `most`, seen from either side, or `most` if there is none.
 float closestDistance(vec3 origin, vec3 direction, float most) {
+    GLINT_TALLY_RAYS(1u);
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, kOpacityFlags, GLINT_RAY_MASK, origin, 0.0, direction, most);
     GLINT_PROCEED(query, origin, direction);
@@ -123,12 +131,14 @@ const uint kOpacityFlags = gl_RayFlagsOpaqueEXT;
 
 // Does the same as the function for ray queries above.
 TracedHit traceRay(RayRecord ray, uint flags) {
+    GLINT_TALLY_RAYS(1u);
     traceRayEXT(GLINT_TLAS, kOpacityFlags | flags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, ray.origin,
                 0.0, ray.direction, kFarDistance, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? tracedMiss() : tracedHit(ray, traced);
 }
 
 bool isVisible(vec3 origin, vec3 direction, float distance) {
+    GLINT_TALLY_RAYS(1u);
     // A ray that hits leaves this value unchanged.
     traced.geometry = 0u;
     traceRayEXT(GLINT_TLAS,
@@ -139,6 +149,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 
 #if GLINT_SHARED_LIGHTS
 bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
+    GLINT_TALLY_RAYS(1u);
     uint culled = sees == kShadowOfShared ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;
     traced.geometry = 0u;
 #if defined(GLINT_LIGHT_IN_HIT_PAYLOAD) && (GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE)
@@ -154,6 +165,7 @@ bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
 
 // Does the same as the function for ray queries above.
 float closestDistance(vec3 origin, vec3 direction, float most) {
+    GLINT_TALLY_RAYS(1u);
     traceRayEXT(GLINT_TLAS, kOpacityFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0,
                 direction, most, GLINT_TRACE_LOCATION);
     return traced.geometry == kMissGeometry ? most : traced.distance;

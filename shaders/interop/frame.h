@@ -135,6 +135,34 @@ struct SurfaceRecord {
 GLINT_CONSTANT(kSurfaceMiss, 0xFFFFFFFFu);
 GLINT_CONSTANT(kSurfaceUnknown, 0xFFFFFFFEu);
 
+// The positions of a geometry in the frame before, in the form that GeometryRecord::flags says.
+struct PreviousVertices {
+    GLINT_ADDRESS(Vec3) positions;
+};
+
+// What the first ray of a sample hit, for layers. 32 bytes.
+struct RayHit {
+    uint geometry;   // as in HitRecord; kScreenGeometry if the end was found in screen space
+    uint primitive;  // kScreenGeometry: the number of the pixel whose surface it is
+    vec2 barycentrics;
+    vec3 direction;  // of the ray that found it, unit vector
+    float distance;  // from the primary surface along the way, metres
+};
+
+// What one bounce of a sample's path brings, for layers. 16 bytes.
+struct BounceLight {
+    vec3 light;      // as the radiance of the sample, of which it is a part
+    float distance;  // of the bounce's ray, metres; 0: none
+};
+GLINT_CONSTANT(kScreenGeometry, 0xFFFFFFFEu);
+// Values of layers (glint/layers.h).
+GLINT_CONSTANT(kLayerNoRay, 0xFFFFFFFFu);
+GLINT_CONSTANT(kLayerLeftScene, 0xFFFFFFFEu);
+GLINT_CONSTANT(kLayerOnScreen, 0xFFFFFFFDu);
+GLINT_CONSTANT(kInfiniteSample, 0x10000u);
+// RayHit::distance of a ray that left the scene: the largest 16-bit float.
+GLINT_CONSTANT(kDistanceOfMiss, 65504u);
+
 // FrameConstants::recordsBy: how instances of a host lead to GeometryRecords.
 GLINT_CONSTANT(kRecordsByCustomIndex, 0u);       // the custom index is the number of the first record
 GLINT_CONSTANT(kRecordsByCustomIndexTable, 1u);  // firstRecords[custom index] is
@@ -172,6 +200,11 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) buffer KeyArray { 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer CounterArray { uint data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SurfaceArray { SurfaceRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer OrderedArray { uint data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer PreviousVerticesArray {
+    PreviousVertices data[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayHitArray { RayHit data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BounceLightArray { BounceLight data[]; };
 #endif
 
 GLINT_INTEROP_BEGIN
@@ -218,11 +251,11 @@ GLINT_CONSTANT(kBinningSign, 1u);        // signs of the direction: 8 bins
 GLINT_CONSTANT(kBinningOctahedral, 2u);  // cells of the octahedral map of the direction: 8 x 8 bins
 GLINT_CONSTANT(kMaxDirectionBins, 64u);
 
-// Shaders have the members of the sky's light only in packages that have it, so that others do not change.
+// Shaders have the last members only in packages that need them, so that others do not change. Those that follow a
+// group of members need this group, too.
 #ifdef __cplusplus
 #define GLINT_SKY_LIGHT_MEMBERS 1
-#else
-#define GLINT_SKY_LIGHT_MEMBERS GLINT_SKY_LIGHT
+#define GLINT_LAYER_MEMBERS 1
 #endif
 
 // The constants of one frame of one sample.
@@ -330,6 +363,15 @@ struct FrameConstants {
     uint skyColumns;
     uint skyRows;
 #endif
+#if GLINT_LAYER_MEMBERS
+    // In packages with layers (glint/layers.h). `previousInstances` are those of the frame before here, too.
+    vec4 previousView[4];  // the camera of the frame before, rows: clip x and y without jitter, the distance along its
+                           // axis, clip w
+    GLINT_ADDRESS(PreviousVertices) previousVertices;  // of every geometry, if hasPreviousVertices
+    uint hasPreviousVertices;  // 1: some vertices follow joints or morph weights
+    GLINT_ADDRESS(RayHit) rayHits;  // of every sample, in the order of the samples
+    GLINT_ADDRESS(BounceLight) bounceLight;  // of every sample and bounce that has layers
+#endif
 };
 
 GLINT_INTEROP_END
@@ -366,6 +408,7 @@ GLINT_CONSTANT(kBindingPosition, 4u);     // rgba32f: ray origin off the surface
 GLINT_CONSTANT(kFrameImageCount, 5u);
 // The set also holds:
 GLINT_CONSTANT(kBindingEnvironment, 5u);  // sampler2D: the environment map
+GLINT_CONSTANT(kBindingLayers, 6u);       // the first of the package's layers, one image each
 
 // How the radiance of a sample was found.
 GLINT_CONSTANT(kPathNone, 0u);    // no ray

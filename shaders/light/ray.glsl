@@ -17,11 +17,13 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 #elif GLINT_TRACER == 1
 
 bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
+    GLINT_TALLY_RAYS(1u);
     rayQueryEXT query;
     rayQueryInitializeEXT(query, GLINT_TLAS, gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipAABBEXT,
                           GLINT_RAY_MASK, origin, 0.0, direction, distance);
     LightPassage passage = wholePassage();
     while (rayQueryProceedEXT(query)) {
+        GLINT_TALLY_CANDIDATES(1u);
         uint geometry = geometryOfHit(rayQueryGetIntersectionInstanceIdEXT(query, false),
                                       rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
                                       rayQueryGetIntersectionGeometryIndexEXT(query, false));
@@ -40,6 +42,7 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 
 // The any-hit shader sees by the flags and by the payload that the ray goes to a light.
 bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
+    GLINT_TALLY_RAYS(1u);
     const uint kFlags = gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
 #ifdef GLINT_LIGHT_IN_HIT_PAYLOAD
     // The payload of rays in the list is free by now, and its miss shader sets a negative distance.

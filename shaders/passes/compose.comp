@@ -16,6 +16,10 @@ void main() {
     // A single sample that is not a number would stay in the mean forever.
     if (!isFinite(radiance)) {
         atomicAdd(GLINT_FRAME.counters.data[kCounterNonFinite], 1u);
+#if GLINT_TALLIES
+        tallyForPixel(pixel.x + pixel.y * GLINT_FRAME.width);
+#endif
+        GLINT_TALLY_NON_FINITE(any(isnan(radiance)) ? 1u : kInfiniteSample);
         radiance = vec3(0.0);
     }
     RunningMean mean = RunningMean(radiance, vec3(0.0));

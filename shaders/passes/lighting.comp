@@ -10,6 +10,9 @@
 #include "hit/shade.glsl"
 #include "hit/stage.glsl"
 #include "passes/primary_surface.glsl"
+#if GLINT_SURFACE_LAYERS
+#include "generated/surface_layers.glsl"
+#endif
 
 GLINT_PIXEL_WORKGROUP
 
@@ -88,6 +91,10 @@ void main() {
         return;
     }
     ivec2 place = ivec2(pixel);
+#if GLINT_TALLIES
+    beginTallies(pixel);
+#endif
+    GLINT_CLOCK_START
     uint number = pixel.x + pixel.y * GLINT_FRAME.width;
     uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
     CameraRay ray = cameraRay(pixel);
@@ -96,6 +103,9 @@ void main() {
 
     if (surfaceId.x == kNoSurface) {
         skipEffects(number, kRayNoSurface);
+#if GLINT_SURFACE_LAYERS
+        storeSkyLayers(place, ray.direction, radianceDepth.rgb);
+#endif
     } else {
         HostGeometry geometry = hostGeometry(surfaceId.x);
         Features features = GLINT_PRIMARY_FEATURES(geometry);
@@ -104,15 +114,28 @@ void main() {
         position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
         radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
         Surface surface = surfaceOfPrimary(hit, features.lobes, features.inputs);
+#if GLINT_SURFACE_LAYERS
+        vec3 direct = vec3(0.0);
+#endif
         if (hasLobe(features, GLINT_UNLIT)) {
             radianceDepth.rgb = surface.emission;
             skipEffects(number, kRayUnlit);
         } else {
             SkyShares sky = wholeSky();
             sampleEffects(hit, surface, features, sky);
+#if GLINT_SURFACE_LAYERS
+            direct = directLight(hit, surface, features, sky) + ambientLight(surface, features, hit.view, sky);
+            radianceDepth.rgb = surface.emission + direct;
+#else
             radianceDepth.rgb = surface.emission + directLight(hit, surface, features, sky) +
                                 ambientLight(surface, features, hit.view, sky);
+#endif
         }
+#if GLINT_SURFACE_LAYERS
+        storeSurfaceLayers(PrimaryPoint(place, geometry, surfaceId.x, surfaceId.y, ray, hit, surface, features,
+                                        !hasLobe(features, GLINT_UNLIT), radianceDepth.w),
+                           direct);
+#endif
     }
     imageStore(radianceImage, place, radianceDepth);
 #if GLINT_STARTS_ON_SCREEN
@@ -120,4 +143,5 @@ void main() {
         imageStore(positionImage, place, position);
     }
 #endif
+    GLINT_CLOCK_STOP
 }

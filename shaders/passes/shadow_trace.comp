@@ -13,9 +13,14 @@ void main() {
         return;
     }
     ShadowRecord shadow = GLINT_FRAME.shadows.data[index];
+#if GLINT_TALLIES
+    tallyForSample(shadow.target);
+#endif
+    GLINT_CLOCK_START
     bool visible = lightArrivesTo(shadow.sees, shadow.origin, shadow.direction, shadow.distance, shadow.light);
     countRays(kEffectShadow, 1u, visible ? 1u : 0u);
     if (visible) {
         addRadiance(shadow.target, shadow.light);
     }
+    GLINT_CLOCK_STOP
 }

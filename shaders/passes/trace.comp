@@ -9,6 +9,9 @@
 #include "hit/record.glsl"
 #include "hit/trace.glsl"
 #include "hit/path_ray.glsl"
+#if GLINT_LAYER_RAYS
+#include "layers/traced_hits.glsl"
+#endif
 
 GLINT_RAY_WORKGROUP
 
@@ -16,8 +19,13 @@ void main() {
     uint index = listIndex();
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
         RayRecord ray = listedRay(index);
+        GLINT_CLOCK_START
         TracedHit hit = traceRay(ray, rayFlags(ray.target));
+#if GLINT_LAYER_RAYS
+        keepTracedHit(ray, hit);
+#endif
         storeHit(index, recordOf(hit));
         storeKey(index, bucketOfGeometry(hit.geometry));
+        GLINT_CLOCK_STOP
     }
 }

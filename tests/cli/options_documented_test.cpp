@@ -32,8 +32,8 @@ protected:
 };
 
 const std::vector<std::string> kOptionsDocumentedCommands{
-    "compile", "compile-module", "explain", "inspect",         "diff",      "lint",
-    "render",  "bench",          "compare", "check-materials", "completion"};
+    "compile", "compile-module", "explain", "inspect",         "diff",      "lint", "render",
+    "view",    "bench",          "compare", "check-materials", "completion"};
 
 // Returns the text below each heading of the second level.
 std::map<std::string, std::string> sectionsOf(const std::string& document) {

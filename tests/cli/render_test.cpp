@@ -33,6 +33,28 @@ TEST_F(RenderCommand, CompileInspectRenderCompare) {
     EXPECT_EQ(same.exit, 0) << same.out << same.err;
 }
 
+TEST_F(RenderCommand, LayersAreInTheFileOfThePicture) {
+    const Outcome drawn = render("a.exr", {"--layers", "depth,direct.demodulated"});
+    ASSERT_EQ(drawn.exit, 0) << drawn.err;
+    std::ifstream file(path("a.exr"), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    for (const char* const channel : {"depth.Z", "direct.radiance.R", "direct.demodulated.G", "albedo.B"}) {
+        EXPECT_NE(bytes.find(channel), std::string::npos) << channel;
+    }
+    const Outcome withoutRoom = render("a.png", {"--layers", "depth"});
+    EXPECT_EQ(withoutRoom.exit, 2);
+    EXPECT_NE(withoutRoom.err.find(".exr"), std::string::npos) << withoutRoom.err;
+    const Outcome misspelt = render("a.exr", {"--layers", "depht"});
+    EXPECT_EQ(misspelt.exit, 2);
+    EXPECT_NE(misspelt.err.find("did you mean depth?"), std::string::npos) << misspelt.err;
+    const Outcome unknown = render("a.exr", {"--layers", "reflexion.radiance"});
+    EXPECT_EQ(unknown.exit, 1);
+    EXPECT_NE(unknown.err.find("did you mean reflection?"), std::string::npos) << unknown.err;
+    const Outcome none = render("a.exr", {"--layers", "bounce-radiance"});
+    EXPECT_EQ(none.exit, 1);
+    EXPECT_NE(none.err.find("--bounces"), std::string::npos) << none.err;
+}
+
 class GalleryPackage : public RenderCommand {
 protected:
     // Renders the gallery from a package compiled with `options`, and compares the strategies.

@@ -125,7 +125,7 @@ TEST_F(Schemas, HoldFailures) {
         {"compile", "none.gltf", "-o", "x"},    {"explain", "none.gltf"},      {"inspect", "none"},
         {"compile-module", "none", "-o", "x"},  {"diff", "none", "none"},      {"lint", "none.spv"},
         {"render", "none.gltf", "-o", "a.png"}, {"compare", "a.png", "b.png"}, {"check-materials", "none"},
-        {"bench", "none.gltf", "-o", "x"}};
+        {"bench", "none.gltf", "-o", "x"},      {"view", "none.gltf"}};
     for (const std::vector<std::string>& line : lines) {
         const Json failed = json(line, 1);
         expectFits(line[0], failed);
@@ -178,7 +178,7 @@ TEST(SchemaFiles, DescribeEveryMember) {
         names.insert(name);
     }
     for (const char* command : {"compile", "compile-module", "explain", "explain-plan", "inspect", "diff",
-                                "lint", "render", "bench", "compare", "check-materials"}) {
+                                "lint", "render", "view", "bench", "compare", "check-materials"}) {
         EXPECT_TRUE(names.contains(command)) << command;
     }
 }

@@ -26,15 +26,16 @@ namespace package = glint::package;
 // before it.
 constexpr std::string_view kParts[] = {"base",      "materials",  "plan",     "gltf", "scene",   "spirv",
                                        "prove",     "cache",      "settings", "emit", "inspect", "image",
-                                       "synthetic", "scene_view", "measure",  "cli"};
+                                       "synthetic", "scene_view", "measure",  "view", "cli"};
 // The first part that may use the runtime and Vulkan, and not only the headers that say what a package is and
 // what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";
 constexpr std::string_view kPlainHeaders[] = {
-    "glint/effects.h",         "glint/alpha_states.h",     "glint/embedded_file.h",
-    "glint/names.h",           "glint/opacity_micromap.h", "glint/package_format.h",
-    "glint/package_modules.h", "glint/renderer_options.h", "glint/result.h",
-    "glint/scene_view.h",      "glint/strategies.h",       "glint/texel_format.h"};
+    "glint/effects.h",        "glint/alpha_states.h",    "glint/embedded_file.h",
+    "glint/layers.h",         "glint/names.h",           "glint/opacity_micromap.h",
+    "glint/package_format.h", "glint/package_modules.h", "glint/renderer_options.h",
+    "glint/result.h",         "glint/scene_view.h",      "glint/strategies.h",
+    "glint/texel_format.h"};
 
 std::optional<std::size_t> rankOf(std::string_view part) {
     const auto* const found = std::ranges::find(kParts, part);

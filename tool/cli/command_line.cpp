@@ -71,7 +71,7 @@ int act(const Action& chosen, const ReportArguments& report) {
 
 }  // namespace
 
-int runCommandLine(int argc, const char* const* argv) {
+int runCommandLine(int argc, const char* const* argv, ShowWindow showWindow) {
     CLI::App app;
     Action chosen;
     describe(app);
@@ -83,6 +83,7 @@ int runCommandLine(int argc, const char* const* argv) {
     addDiff(app, chosen);
     addLint(app, chosen);
     addRender(app, chosen);
+    addView(app, chosen, arguments, showWindow);
     addBench(app, chosen);
     addCompare(app, chosen);
     addCheckMaterials(app, chosen);

@@ -1,6 +1,7 @@
 // The subcommands. Each declares its options. If the command line names it, it sets `chosen` to its work.
 #pragma once
 
+#include "cli/command_line.h"
 #include "cli/options/options.h"
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,8 @@ void addInspect(CLI::App& app, Action& chosen);
 void addDiff(CLI::App& app, Action& chosen);
 void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
+// `line` and `showWindow` are as in runCommandLine().
+void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, ShowWindow showWindow);
 void addBench(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
 void addCheckMaterials(CLI::App& app, Action& chosen);

@@ -3,6 +3,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/cache.h"
+#include "cli/explain/material_text.h"
 #include "cli/explain/motion_text.h"
 #include "cli/explain/plan_text.h"
 #include "cli/options/effect_options.h"
@@ -44,155 +45,11 @@ struct Planned {
     compiler::Plan plan;
 };
 
-using Drop = std::pair<std::string, std::string>;  // feature, reason
-
-// Returns the features that a material asks for and does not get, over all of its primitives.
-std::set<Drop> dropsOf(const Planned& planned, int material) {
-    std::set<Drop> drops;
-    for (const materials::PrimitiveInputs& inputs : planned.scenes.primitives()) {
-        if (inputs.material == material) {
-            std::vector<Drop> found;
-            compiler::makeKey(planned.scenes.materials()[static_cast<std::size_t>(material)], inputs,
-                              planned.options.keys, &found);
-            drops.insert(found.begin(), found.end());
-        }
-    }
-    return drops;
-}
-
-std::vector<const compiler::Key*> keysOf(const Planned& planned, int material) {
-    std::vector<const compiler::Key*> keys;
-    for (const compiler::Key& key : planned.plan.keys) {
-        if (std::binary_search(key.materials.begin(), key.materials.end(), material)) {
-            keys.push_back(&key);
-        }
-    }
-    return keys;
-}
-
-// Returns JSON pointers of the primitives of one material that have this key.
-std::vector<std::string> primitivesOf(const Planned& planned, const compiler::Key& key, int material) {
-    std::vector<std::string> pointers;
-    for (const int index : key.primitives) {
-        const materials::PrimitiveInputs& inputs =
-            planned.scenes.primitives()[static_cast<std::size_t>(index)];
-        if (inputs.material == material) {
-            pointers.push_back(fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive));
-        }
-    }
-    return pointers;
-}
-
-const compiler::Case& caseOf(const Planned& planned, const compiler::Key& key) {
-    return planned.plan.cases[static_cast<std::size_t>(key.shaderId)];
-}
-
-// Returns the masks of primary surfaces of one material whose hits have this key. If hits keep all lobes, it
-// is only the key itself.
-std::set<materials::FeatureMask> primaryMasksOf(const Planned& planned, const compiler::Key& key,
-                                                int material) {
-    std::set<materials::FeatureMask> masks;
-    for (const int index : key.primitives) {
-        const auto primitive = static_cast<std::size_t>(index);
-        if (planned.scenes.primitives()[primitive].material == material) {
-            masks.insert(planned.plan.primaryMaskOfPrimitive[primitive]);
-        }
-    }
-    return masks;
-}
-
-base::Json primaryToJson(const Planned& planned, const compiler::Key& key, int material) {
-    base::Json list = base::Json::array();
-    for (const materials::FeatureMask mask : primaryMasksOf(planned, key, material)) {
-        list.push_back(featuresToJson(*planned.plan.model, mask));
-    }
-    return list;
-}
-
-// What animations change of the material: planning drops no feature for a value that passes.
-std::vector<std::string> changesOf(const gltf::SceneList& scenes, int material) {
-    const gltf::SceneList::Place place = scenes.place(material);
-    const std::vector<gltf::AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;
-    const auto found = std::ranges::find(all, place.index, &gltf::AnimatedMaterial::material);
-    return found == all.end() ? std::vector<std::string>() : found->changes;
-}
-
-base::Json toJson(const Planned& planned, int material) {
-    base::Json keys = base::Json::array();
-    for (const compiler::Key* key : keysOf(planned, material)) {
-        const compiler::Case& shader = caseOf(planned, *key);
-        keys.push_back(base::Json{{"mask", fmt::format("0x{:016x}", key->mask)},
-                                  {"features", featuresToJson(*planned.plan.model, key->mask)},
-                                  {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
-                                  {"share", compiler::shareToJson(key->share)},
-                                  {"case",
-                                   {{"id", shader.shaderId},
-                                    {"name", shader.name},
-                                    {"keys", shader.keys.size()},
-                                    {"share", compiler::shareToJson(shader.share)},
-                                    {"reason", toString(shader.reason)},
-                                    {"always", featuresToJson(*planned.plan.model, shader.always)},
-                                    {"sometimes", featuresToJson(*planned.plan.model, shader.sometimes)}}},
-                                  {"primitives", primitivesOf(planned, *key, material)}});
-    }
-    base::Json dropped = base::Json::array();
-    for (const auto& [feature, reason] : dropsOf(planned, material)) {
-        dropped.push_back(base::Json{{"feature", feature}, {"reason", reason}});
-    }
-    return {{"index", material},
-            {"name", planned.scenes.materialName(material)},
-            {"keys", keys},
-            {"dropped", dropped},
-            {"animated", changesOf(planned.scenes, material)}};
-}
-
-std::string whyText(const compiler::Case& shader) {
-    const std::size_t keys = shader.keys.size();
-    return fmt::format("{}: {}{}", toString(shader.reason), explain(shader.reason),
-                       keys > 1 ? fmt::format(" ({} keys)", keys) : std::string());
-}
-
-std::string sharesText(const Planned& planned, const compiler::Key& key, const compiler::Case& shader) {
-    const bool counted = countsHits(planned.options);
-    const std::string ofCase =
-        shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
-    return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
-                       counted ? "counted by the profile" : "expected from areas");
-}
-
-std::string toText(const Planned& planned, int material, Detail detail) {
-    std::string text = fmt::format("material {}: {}\n", material, planned.scenes.materialName(material));
-    const std::vector<const compiler::Key*> keys = keysOf(planned, material);
-    if (keys.empty()) {
-        return text + "  no primitive uses it: no key, no shader\n";
-    }
-    std::vector<std::vector<std::string>> rows;
-    for (const compiler::Key* key : keys) {
-        const compiler::Case& shader = caseOf(planned, *key);
-        const std::vector<std::string> primitives = primitivesOf(planned, *key, material);
-        const std::string more =
-            primitives.size() > 1 ? fmt::format(" and {} more", primitives.size() - 1) : std::string();
-        rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
-        rows.push_back({"    features", featureList(*planned.plan.model, key->mask)});
-        for (const materials::FeatureMask mask : primaryMasksOf(planned, *key, material)) {
-            if (mask != key->mask) {
-                rows.push_back({"    primary only", featureList(*planned.plan.model, mask & ~key->mask)});
-            }
-        }
-        rows.push_back(
-            {"    case", shaderTitle(static_cast<std::uint64_t>(shader.shaderId), shader.name, detail)});
-        rows.push_back({"    why", whyText(shader)});
-        rows.push_back({"    hits", sharesText(planned, *key, shader)});
-        rows.push_back({"    branches on", featureList(*planned.plan.model, shader.sometimes)});
-        rows.push_back({"    primitives", primitives.front() + more});
-    }
-    for (const auto& [feature, reason] : dropsOf(planned, material)) {
-        rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
-    }
-    for (const std::string& change : changesOf(planned.scenes, material)) {
-        rows.push_back({"  animated", fmt::format("{}: kept for all values between", change)});
-    }
-    return text + formatFields(rows, detail);
+std::string toText(const PlannedScenes& planned, int material, Detail detail) {
+    const std::string text =
+        fmt::format("material {}: {}\n", material, planned.scenes.materialName(material));
+    const std::vector<std::vector<std::string>> rows = materialRows(planned, material, detail);
+    return text + (rows.empty() ? "  no primitive uses it: no key, no shader\n" : formatFields(rows, detail));
 }
 
 // Returns an empty text if the scene has no variants.
@@ -340,7 +197,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
             result["motion"] = motionToJson(*scene);
             result["materials"] = base::Json::array();
             for (const int material : *materials) {
-                result["materials"].push_back(toJson(planned, material));
+                result["materials"].push_back(materialToJson(whole, material));
             }
         }
         console.result(result);
@@ -354,7 +211,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.print(sameImagesText(*scene));
     }
     for (const int material : *materials) {
-        console.print(toText(planned, material, detail));
+        console.print(toText(whole, material, detail));
     }
     if (materials->empty()) {
         console.print("no materials\n");

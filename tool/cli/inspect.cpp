@@ -10,6 +10,7 @@
 #include "settings/values.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <memory>
@@ -182,6 +183,32 @@ std::string hitLobesText(const inspect::Manifest& manifest) {
                : base::join(manifest.hitLobes);
 }
 
+std::vector<std::string> layerNames(const Package& package) {
+    std::vector<std::string> names;
+    for (const package::PackageLayer& layer : package.layers()) {
+        names.push_back(layer.name);
+    }
+    return names;
+}
+
+std::string layersText(const Package& package) {
+    return package.layers().empty() ? "none"
+                                    : fmt::format("{}; {} bytes a pixel", base::join(layerNames(package)),
+                                                  package::bytesOf(package.layers()));
+}
+
+base::Json layersToJson(const Package& package) {
+    base::Json list = base::Json::array();
+    for (const package::PackageLayer& layer : package.layers()) {
+        const package::LayerFormatInfo& format = package::infoOf(layer.info->format);
+        list.push_back(base::Json{{"name", layer.name},
+                                  {"channels", std::string(layer.info->channels)},
+                                  {"format", std::string(format.qualifier)},
+                                  {"bytes", format.bytes}});
+    }
+    return list;
+}
+
 base::Json toJson(const inspect::InspectedPackage& inspected) {
     const Package& package = inspected.package;
     const inspect::Manifest& manifest = inspected.manifest;
@@ -205,6 +232,8 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"trustTextures", manifest.trustTextures},
           {"textureLod", manifest.textureLod},
           {"textureLevels", package.textureLevels()},
+          {"layers",
+           package.layers().empty() ? "none" : fmt::format("{}", fmt::join(layerNames(package), ","))},
           {"precision", package::bitsOf(package.precision())},
           {"shadows", std::string(package::nameOf(package.shape().shadows))},
           {"shadowThrough", std::string(package::nameOf(package.shadowThrough()))},
@@ -222,6 +251,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"bytesPerMaterial", package.scene(0).materials.recordBytes},
           {"modules", package.modules().size()},
           {"uniqueSpirv", inspected.uniqueFiles()}}},
+        {"layers", layersToJson(package)},
         {"traffic",
          package.passes() == package::Passes::Frame ? trafficToJson(package) : base::Json::array()},
         {"spirvBytes", inspected.spirvBytes()},
@@ -257,6 +287,7 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"trust textures", manifest.trustTextures ? "on" : "off"},
          {"texture LOD", manifest.textureLod},
          {"precision", fmt::format("{}", package::bitsOf(package.precision()))},
+         {"layers", layersText(package)},
          {"bytes a material", fmt::format("{}", inspected.package.scene(0).materials.recordBytes)},
          {"cases", fmt::format("{}", inspected.caseCount())},
          {"SPIR-V", fmt::format("{} modules, {} unique, {}", package.modules().size(),

@@ -79,6 +79,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
     if (given && *given) {
         const Package& package = **given;
         options.positionFetch = package.positionFetch();
+        options.shaderClock = (package::demandsOf(package.layers()) & package::kLayerClock) != 0;
         options.shaderFloat16 = package.precision() == package::ShadingPrecision::Half;
     }
     return Context::createHeadless(options);

@@ -5,6 +5,7 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/glsl/readable.h"
+#include "emit/layers.h"
 #include "emit/library.h"
 #include "emit/lights.h"
 #include "emit/material_code.h"
@@ -137,6 +138,11 @@ Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& setting
     }
     Plan plan = made ? std::move(*made) : makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     plan.effects = planEffects(scenes, settings);
+    Result<std::vector<package::LayerEntry>> layers = resolveLayers(plan, settings, scenes.path());
+    if (!layers) {
+        return layers.error();
+    }
+    plan.layers = std::move(*layers);
     settings.shadowThrough = shadowThroughOf(scenes, plan, settings);
     if (const auto excess = describeExcess(plan, settings.plan)) {
         return makeError("max-shaders", scenes.path(), *excess);

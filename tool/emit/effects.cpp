@@ -1,5 +1,7 @@
 #include "emit/effects.h"
 
+#include "emit/layers.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -85,13 +87,14 @@ void addEffect(mustache::data& context, const materials::MaterialModel& model,
     context.set("slot", fmt::format("{}", package::effectSlot(effects, infoOf(effect, number).effect)));
 }
 
-void addEffects(mustache::data& context, const materials::MaterialModel& model,
-                const package::EffectSet& effects) {
+void addEffects(mustache::data& context, const Plan& plan) {
+    const package::EffectSet& effects = plan.effects.effects;
     const auto list = [&](std::uint32_t bits) {
         mustache::data entries(mustache::data::type::list);
         package::forEachEffect(bits, [&](std::uint32_t number) {
             mustache::data entry;
-            addEffect(entry, model, effects, number);
+            addEffect(entry, *plan.model, effects, number);
+            addLayersOf(entry, plan, 1U << number);
             entries.push_back(entry);
         });
         return entries;

@@ -32,6 +32,7 @@ constexpr std::string_view kAdapters = "library/host/";
 // Puts the library's forms in the place of the files that read resources.
 Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, CompileSettings settings) {
     plan.effects.effects = {};
+    plan.layers.clear();
     settings.host.clear();
     settings.precision = package::ShadingPrecision::Single;
     settings.answer = package::HitAnswer::Radiance;

@@ -185,6 +185,7 @@ std::string recordDeclarations(const MaterialLayout& layout) {
     text += "#define GLINT_TEXTURE(record, slot) ";
     text += layout.textures.empty() ? "TextureRecord(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec2(0.0), 0.0)\n"
                                     : "(record).textures[slot]\n";
+    text += fmt::format("#define GLINT_TEXTURE_SLOTS {}\n", layout.textures.size());
     text += "// The record of the material of a Hit or a SurfacePoint.\n";
     text += "#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]\n";
     text += "// The values of a hit's material. No key of the package reads those that are constants here.\n";

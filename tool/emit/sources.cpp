@@ -4,10 +4,12 @@
 #include "emit/context.h"
 #include "emit/effects.h"
 #include "emit/host.h"
+#include "emit/layers.h"
 #include "emit/lights.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
 #include "emit/modules.h"
+#include "scene/deformed.h"
 
 #include <fmt/format.h>
 
@@ -30,8 +32,8 @@ namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
 // The files of generated/ that are made from templates.
-constexpr std::string_view kGenerated[] = {"cases.glsl", "effects.glsl", "compose_effects.glsl",
-                                           "hit_effects.glsl"};
+constexpr std::string_view kGenerated[] = {"cases.glsl",       "effects.glsl",        "compose_effects.glsl",
+                                           "hit_effects.glsl", "surface_layers.glsl", "tallies.glsl"};
 
 void defineFeatures(std::string& text, std::string_view prefix, materials::FeatureMask always,
                     materials::FeatureMask sometimes) {
@@ -142,6 +144,8 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_PATHS {}\n", flag(package::hasPaths(shapeOf(scenes, plan, settings))));
     text += fmt::format("#define GLINT_FALLBACK {}\n", flag(settings.plan.fallback));
     text += fmt::format("#define GLINT_TEXTURE_LEVELS {}\n", flag(settings.textureLevels));
+    text += fmt::format("#define GLINT_SKY_LIGHT_MEMBERS {}\n", flag(sky || !plan.layers.empty()));
+    text += layerDefines(plan, std::ranges::any_of(scenes.scenes(), hasDeformedMesh));
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
@@ -206,7 +210,8 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     }
     sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    addEffects(context, *plan.model, plan.effects.effects);
+    addEffects(context, plan);
+    addLayers(context, plan);
     for (const std::string_view name : kGenerated) {
         Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", name), context);
         if (!text) {

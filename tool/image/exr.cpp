@@ -15,7 +15,10 @@
 #include <array>
 #include <cstring>
 #include <exception>
+#include <half.h>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 namespace glint::image {
 
@@ -133,21 +136,65 @@ Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
     return image;
 }
 
+// The channels of a layer in a file. Half floats are converted here, because OpenEXR converts no channel
+// types.
+struct ExrChannels {
+    std::vector<Imath::half> halves;
+    const ExrLayer* layer = nullptr;
+
+    explicit ExrChannels(const ExrLayer& source) : layer(&source) {
+        if (source.isHalf) {
+            halves.assign(source.values.reals.begin(), source.values.reals.end());
+        }
+    }
+
+    Imf::PixelType type() const {
+        return !layer->values.integers.empty() ? Imf::UINT : layer->isHalf ? Imf::HALF : Imf::FLOAT;
+    }
+    std::string name(std::size_t channel) const {
+        return layer->name + "." + layer->channels[channel];
+    }
+    Imf::Slice slice(std::size_t channel) const {
+        const std::size_t bytes = type() == Imf::HALF ? sizeof(Imath::half) : sizeof(float);
+        const void* const first =
+            type() == Imf::UINT   ? static_cast<const void*>(layer->values.integers.data())
+            : type() == Imf::HALF ? static_cast<const void*>(halves.data())
+                                  : static_cast<const void*>(layer->values.reals.data());
+        // OpenEXR's frame buffer is not const even for writing, although it is then only read.
+        char* const base = const_cast<char*>(static_cast<const char*>(first)) + channel * bytes;
+        const std::size_t stride = bytes * layer->values.components;
+        return {type(), base, stride, stride * layer->values.width};
+    }
+};
+
 }  // namespace
 
-Result<base::Bytes> encodeExr(const LinearImage& image, const std::string& where) {
+Result<base::Bytes> encodeExr(const LinearImage& image, const std::string& where,
+                              std::span<const ExrLayer> layers) {
     try {
         Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
         header.compression() = Imf::ZIP_COMPRESSION;
         for (const char* name : kChannelNames) {
             header.channels().insert(name, Imf::Channel(Imf::FLOAT));
         }
+        const std::vector<ExrChannels> beside(layers.begin(), layers.end());
+        for (const ExrChannels& channels : beside) {
+            for (std::size_t i = 0; i < channels.layer->channels.size(); ++i) {
+                header.channels().insert(channels.name(i), Imf::Channel(channels.type()));
+            }
+        }
         MemoryOutput stream(where);
         {
             // OpenEXR's frame buffer is not const even for writing, although it is then only read.
             std::vector<std::array<float, 4>> pixels = image.pixels;
             Imf::OutputFile file(stream, header, 0);
-            file.setFrameBuffer(frameBuffer(pixels.data(), image.width, 0, 0));
+            Imf::FrameBuffer buffer = frameBuffer(pixels.data(), image.width, 0, 0);
+            for (const ExrChannels& channels : beside) {
+                for (std::size_t i = 0; i < channels.layer->channels.size(); ++i) {
+                    buffer.insert(channels.name(i), channels.slice(i));
+                }
+            }
+            file.setFrameBuffer(buffer);
             file.writePixels(static_cast<int>(image.height));
         }
         return stream.take();

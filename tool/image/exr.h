@@ -11,8 +11,18 @@
 
 namespace glint::image {
 
+// An image in a file beside the picture. Its channels are called "NAME.C", by the conventions of OpenEXR for
+// layers.
+struct ExrLayer {
+    std::string name;
+    std::string channels;  // one letter each
+    bool isHalf = false;   // reals are written as 16-bit floats
+    LayerValues values;    // of the size of the picture; components beyond the channels are left out
+};
+
 // Encodes 32-bit float RGBA, ZIP compressed, scan lines from the top. Nothing is lost. Error "exr-encode".
-Result<base::Bytes> encodeExr(const LinearImage& image, const std::string& where);
+Result<base::Bytes> encodeExr(const LinearImage& image, const std::string& where,
+                              std::span<const ExrLayer> layers = {});
 
 // Decodes the data window of a single-part scan-line or tiled file. It has channels R, G, B and optionally A
 // (1 if it is missing), of any pixel type. Errors "image-format", "image-size".

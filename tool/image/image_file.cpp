@@ -101,13 +101,14 @@ Result<LinearImage> readRadiance(const std::filesystem::path& path) {
                                           : decodeExr(*bytes, path.string());
 }
 
-Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure) {
+Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure,
+                  std::span<const ExrLayer> layers) {
     const Result<ImageFormat> format = imageFormat(path);
     if (!format) {
         return format.error();
     }
     if (*format == ImageFormat::Exr) {
-        return writeEncoded(path, encodeExr(image, path.string()));
+        return writeEncoded(path, encodeExr(image, path.string(), layers));
     }
     return writeImage(path, toDisplayImage(image, exposure));
 }

@@ -2,6 +2,7 @@
 // It also reads radiance from .hdr.
 #pragma once
 
+#include "image/exr.h"
 #include "image/png.h"
 
 #include <glint/renderer.h>
@@ -9,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace glint::image {
@@ -31,9 +33,10 @@ Result<RadianceFormat> radianceFormat(const std::filesystem::path& path);
 // Has the errors of readFile(), decodeHdr() and decodeExr().
 Result<LinearImage> readRadiance(const std::filesystem::path& path);
 
-// Writes a PNG exposed by `exposure` stops and tone mapped, or an EXR as it is, without exposure. An existing
-// file is replaced as a whole or not at all.
-Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure);
+// Writes a PNG exposed by `exposure` stops and tone mapped, or an EXR as it is, without exposure. An EXR also
+// has the layers; a PNG has room for none. An existing file is replaced as a whole or not at all.
+Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure,
+                  std::span<const ExrLayer> layers = {});
 // Writes PNG only. Errors "image-extension" for other extensions, "png-encode", "file-write".
 Status writeImage(const std::filesystem::path& path, const DisplayImage& image);
 

@@ -45,6 +45,11 @@ struct EffectDeclaration {
     // Of the kind Rays: the sampled direction has a density, so that samples of emissive lights share the
     // light of its lobes. `sample` then also has density…() and share…().
     bool sharesLights = false;
+    // Of the kind Rays, for layers: which lobes bring its light, "diffuse", "specular" or "transmission", or
+    // empty for all of them; and what surfaces show by it: "mirrored" or "refracted" points, or empty for
+    // light alone.
+    std::string albedo{};
+    std::string shows{};
     // Names of files as an #include gives them, empty where there are none. Each has a function whose name
     // ends with function(). light: shaders/hit/ calls it. apply: changes the sky's shares. sample: makes a
     // ray and its weight. compose: what the found light adds to the pixel; without it, the product with the

@@ -2,6 +2,10 @@
 
 #include "materials/material_model.h"
 
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
 #include <tuple>
 
 namespace glint::materials {
@@ -10,9 +14,9 @@ namespace {
 
 using package::EffectKind;
 
-constexpr std::string_view kMembers[] = {"$schema",  "name",      "about",     "kind",
-                                         "order",    "glsl",      "calledFor", "refines",
-                                         "settings", "coherence", "absent",    "sharesLights"};
+constexpr std::string_view kMembers[] = {"$schema", "name",         "about",   "kind",     "order",
+                                         "glsl",    "calledFor",    "refines", "settings", "coherence",
+                                         "absent",  "sharesLights", "albedo",  "shows"};
 
 constexpr struct {
     std::string_view name;
@@ -28,6 +32,25 @@ constexpr struct {
               {"transmits", false, Behaviour::Transmits},
               {"scatters", false, Behaviour::Scatters},
               {"emits", false, Behaviour::Emits}};
+
+constexpr std::string_view kAlbedos[] = {"diffuse", "specular", "transmission"};
+constexpr std::string_view kShown[] = {"mirrored", "refracted"};
+
+// Reads a member that only effects with rays have, and whose value is one of the words.
+std::string readWord(const Members& members, std::string_view name, std::span<const std::string_view> words,
+                     EffectKind kind) {
+    if (!members.has(name)) {
+        return {};
+    }
+    const std::string word = members.text(name);
+    if (kind != EffectKind::Rays) {
+        failAt(members.at(name), "only an effect of the kind rays can have it");
+    }
+    if (std::ranges::find(words, word) == words.end()) {
+        failAt(members.at(name), fmt::format("\"{}\" is none of {}", word, fmt::join(words, ", ")));
+    }
+    return word;
+}
 
 // The files of GLSL, and the kind of effect that has each.
 constexpr struct {
@@ -137,6 +160,8 @@ EffectDeclaration readEffect(const Members& members, std::string_view file, bool
     if (effect.sharesLights && effect.kind != EffectKind::Rays) {
         failAt(members.at("sharesLights"), "only an effect of the kind rays can share light");
     }
+    effect.albedo = readWord(members, "albedo", kAlbedos, effect.kind);
+    effect.shows = readWord(members, "shows", kShown, effect.kind);
     readFiles(members, file, effect);
     return effect;
 }

@@ -98,6 +98,8 @@ HeadlessOptions deviceOptions(const compiler::Settings& settings) {
     options.validation = settings.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = settings.device;
     options.positionFetch = settings.compile.positionFetch;
+    options.shaderClock =
+        std::ranges::find(settings.compile.layers, "clocks") != settings.compile.layers.end();
     options.shaderFloat16 = settings.compile.precision == package::ShadingPrecision::Half;
     return options;
 }

@@ -5,6 +5,8 @@
 #include "plan/lock_ids.h"
 #include "plan/merge.h"
 
+#include <glint/layers.h>
+
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -78,8 +80,9 @@ struct Plan {
     materials::FeatureMask sometimes = 0;  // features that only some keys have
     materials::FeatureMask primaryAlways = 0;
     materials::FeatureMask primarySometimes = 0;
-    double keysPossible = 0.0;  // 2^n, where n is the number of features that occur in keys
-    EffectPlan effects;         // The compiler fills this in.
+    double keysPossible = 0.0;                  // 2^n, where n is the number of features that occur in keys
+    EffectPlan effects;                         // The compiler fills this in, and the next.
+    std::vector<package::LayerEntry> layers{};  // by the index of their images
 };
 
 // Returns the canonical key of one primitive. If `dropped` is not null, (feature name, reason) pairs are

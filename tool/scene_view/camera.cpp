@@ -5,10 +5,14 @@
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/pose.h>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -145,7 +149,7 @@ Diagnostic unknownCamera(const gltf::Scene& scene, const std::string& wanted) {
     names.emplace_back("auto");
     return makeError("camera-unknown", scene.path,
                      "has no camera \"" + wanted + "\"" + known + base::suggestion(wanted, names),
-                     "use --camera auto, a name, or a number from 0");
+                     "use --camera auto, a name, a number from 0, or a place such as 1,2,3/0,0,0/30");
 }
 
 }  // namespace
@@ -270,6 +274,54 @@ Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, doub
     return view;
 }
 
+std::optional<PlacedCamera> parsePlacedCamera(std::string_view text) {
+    std::vector<double> numbers;
+    std::string separators;
+    for (const char *at = text.data(), *const end = at + text.size(); at <= end;) {
+        double number = 0.0;
+        const auto parsed = std::from_chars(at, end, number);
+        if (parsed.ec != std::errc() || !(std::abs(number) < 1e9)) {
+            return std::nullopt;
+        }
+        numbers.push_back(number);
+        if (parsed.ptr == end) {
+            break;
+        }
+        separators += *parsed.ptr;
+        at = parsed.ptr + 1;
+    }
+    if (separators != ",,/,,/" && separators != ",,/,,") {
+        return std::nullopt;
+    }
+    PlacedCamera camera{{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+    camera.degrees = numbers.size() == 7 ? numbers[6] : camera.degrees;
+    const bool looksAside = camera.position[0] != camera.target[0] || camera.position[2] != camera.target[2];
+    const bool opens = camera.degrees > 0.0 && camera.degrees < 180.0;
+    return looksAside && opens ? std::optional(camera) : std::nullopt;
+}
+
+std::string toText(const PlacedCamera& camera) {
+    return fmt::format("{}/{}/{}", fmt::join(camera.position, ","), fmt::join(camera.target, ","),
+                       camera.degrees);
+}
+
+CameraView viewOf(const PlacedCamera& camera, double aspect) {
+    constexpr double kNearShare = 1e-3;
+    const glm::dvec3 position = base::toVector(camera.position);
+    const glm::dvec3 toTarget = base::toVector(camera.target) - position;
+    const glm::dvec3 forward = glm::normalize(toTarget);
+    const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3{0.0, 1.0, 0.0}));
+    const double halfHeight = std::tan(camera.degrees * std::numbers::pi / 360.0);
+    CameraView view;
+    view.position = base::toFloat3(position);
+    view.forward = base::toFloat3(forward);
+    view.up = base::toFloat3(glm::cross(right, forward));
+    view.halfHeight = static_cast<float>(halfHeight);
+    view.halfWidth = static_cast<float>(halfHeight * aspect);
+    view.near = static_cast<float>(kNearShare * glm::length(toTarget));
+    return view;
+}
+
 bool framesEverything(const gltf::Scene& scene, const std::string& wanted) {
     return wanted == "auto" || (wanted.empty() && scene.cameras.empty());
 }
@@ -287,6 +339,10 @@ Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& 
     }
     const std::optional<std::size_t> index =
         wanted.empty() ? std::optional<std::size_t>(0) : findCamera(scene, wanted);
+    const std::optional<PlacedCamera> placed = index ? std::nullopt : parsePlacedCamera(wanted);
+    if (placed) {
+        return CameraChoice{viewOf(*placed, aspect), toText(*placed)};
+    }
     if (!index) {
         return unknownCamera(scene, wanted);
     }

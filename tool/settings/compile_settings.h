@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace glint::compiler {
 
@@ -79,7 +80,8 @@ struct CompileSettings {
     // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures). Packages with a
     // fallback or a host do not, because their textures may change at run time.
     bool trustTextures = true;
-    bool textureLevels = false;  // shaders note the finest level that they read of each texture
+    bool textureLevels = false;         // shaders note the finest level that they read of each texture
+    std::vector<std::string> layers{};  // images beside the picture, as --layers names them
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
     int jobs = 0;               // threads; 0 means one for each core
     bool emitHeader = true;     // glint_tables.h

@@ -27,7 +27,7 @@ enum class SettingStage : std::uint8_t {
 enum SettingCommand : std::uint32_t {
     kOfCompile = 1,
     kOfExplain = 2,
-    kOfRender = 4,  // also bench, which makes pictures in the same way
+    kOfRender = 4,  // also view and bench, which make pictures in the same way
 };
 
 enum class ValueForm : std::uint8_t {

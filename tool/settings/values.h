@@ -4,6 +4,8 @@
 
 #include "settings/table.h"
 
+#include <glint/layers.h>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -359,6 +361,53 @@ inline constexpr SettingValues kEffects{.form = ValueForm::List,
                                         .type = "auto|none|all|LIST",
                                         .accepts = materials::isEffectName,
                                         .further = "effects of packs (--materials)"};
+
+inline std::string layersOf(const Settings& settings) {
+    const std::vector<std::string>& layers = settings.compile.layers;
+    return layers.empty() ? std::string(kNone) : fmt::format("{}", fmt::join(layers, ","));
+}
+
+inline void setLayers(Settings& settings, std::string_view text) {
+    settings.compile.layers.clear();
+    eachWord(text, [&](std::string_view word) {
+        if (word != kNone) {
+            settings.compile.layers.emplace_back(word);
+        }
+    });
+}
+
+inline std::vector<SettingWord> layerWords() {
+    std::vector<SettingWord> words{
+        {std::string(kNone), "no layer"},
+        {std::string(kAll), "every layer but the diagnostic ones, which come last"},
+        {"surface", "every layer of primary surfaces"},
+        {std::string(package::kDirectLight), "every layer of the direct light"}};
+    for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
+        if (effect.kind == package::EffectKind::Rays) {
+            words.push_back({effect.name, fmt::format("every layer of the effect {}", effect.name)});
+        }
+    }
+    for (const package::LayerInfo& layer : package::layerTable()) {
+        words.push_back({std::string(layer.name), std::string(layer.what)});
+    }
+    return words;
+}
+
+// "EFFECT.LAYER", where the effect may be one of a pack.
+inline bool isLayerOfSource(std::string_view text) {
+    const std::size_t dot = std::min(text.find('.'), text.size());
+    const package::LayerInfo* const layer = package::findLayer(text.substr(std::min(dot + 1, text.size())));
+    return layer != nullptr && package::hasSources(*layer) && materials::isEffectName(text.substr(0, dot));
+}
+
+inline constexpr SettingValues kLayers{
+    .form = ValueForm::List,
+    .text = layersOf,
+    .set = setLayers,
+    .words = layerWords,
+    .type = "none|all|LIST",
+    .accepts = isLayerOfSource,
+    .further = "a layer of one source of light, such as reflection.radiance"};
 
 inline constexpr SettingValues kHitLobes{.form = ValueForm::List,
                                          .text = hitLobesOf,

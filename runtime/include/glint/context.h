@@ -38,6 +38,9 @@ struct DeviceHandles {
     // Whether VK_EXT_opacity_micromap and its feature `micromap` are enabled on the device. Scenes then get
     // micromaps for the triangles that need an alpha test (docs/alpha.md).
     bool opacityMicromaps = false;
+    // Whether VK_KHR_shader_clock and its feature shaderSubgroupClock are enabled on the device. Packages
+    // with the layer "clocks" need it.
+    bool shaderClock = false;
     // The package::Tracer bits whose extensions and features are enabled on the device. They are the bits
     // that its DeviceRequirements were made with.
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -64,6 +67,13 @@ struct HeadlessOptions {
     // Enables VK_EXT_opacity_micromap if the device supports it; DeviceHandles::opacityMicromaps then says
     // whether it does.
     bool opacityMicromaps = true;
+    // Further extensions to enable, for programs that show pictures in windows. Devices without those of
+    // devices are not chosen; Vulkan's error for a missing extension of the instance is returned.
+    std::vector<std::string> instanceExtensions{};
+    std::vector<std::string> deviceExtensions{};
+    // Enables VK_KHR_shader_clock, which packages with the layer "clocks" need. Error "device-features" if
+    // the device lacks it.
+    bool shaderClock = false;
 };
 
 // Returns the package::Tracer bits that a device can be created with. 0 means that Glint does not run on it.
@@ -86,7 +96,7 @@ struct DeviceRequirements {
     // Renderer::pipelineStatistics() needs `pipelineStatistics`.
     explicit DeviceRequirements(std::uint32_t tracers = package::kTracerRayQuery, bool positionFetch = false,
                                 bool shaderFloat16 = false, bool pipelineStatistics = false,
-                                bool opacityMicromaps = false);
+                                bool opacityMicromaps = false, bool shaderClock = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
 
@@ -102,6 +112,7 @@ struct DeviceRequirements {
     PositionFetchFeatures positionFetch;                        // in the chain if it is asked for
     VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR pipelineExecutables;  // in the chain if asked for
     VkPhysicalDeviceOpacityMicromapFeaturesEXT opacityMicromap;                   // in the chain if asked for
+    VkPhysicalDeviceShaderClockFeaturesKHR clock;                                 // in the chain if asked for
 };
 
 // Returns the name of every extension and feature that `device` lacks. The list is empty if Glint runs on the
@@ -113,7 +124,7 @@ public:
     // Uses the caller's device. Errors: "context-handles", "context-queue", "device-features" (it names each
     // feature or extension that the physical device lacks), and those of loading Vulkan's functions.
     static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles);
-    // Makes an instance, a device and a queue without a surface. Errors: "validation-layer",
+    // Makes an instance, a device and a queue. Makes no surface. Errors: "validation-layer",
     // "device-missing", "device-features", and those of the loader and of Vulkan's calls.
     static Result<std::unique_ptr<Context>> createHeadless(const HeadlessOptions& options = {});
 

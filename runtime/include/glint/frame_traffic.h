@@ -4,6 +4,7 @@
 // bytes of counters and buckets are not in them, and caches and tiles on the chip may save part of them.
 #pragma once
 
+#include <glint/layers.h>
 #include <glint/names.h>
 #include <glint/package_format.h>
 #include <glint/strategies.h>
@@ -59,6 +60,9 @@ struct TrafficShape {
     bool accumulates = false;  // the frame adds its sample to a mean
     bool marchesScreen = false;
     bool binsRays = false;
+    std::vector<package::LayerEntry> layers{};
+    bool layerRays = false;  // they need what rays hit
+    std::uint32_t layerBounces = 0;
 };
 
 // The shape of frames of a package.

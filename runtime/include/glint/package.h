@@ -2,6 +2,7 @@
 #pragma once
 
 #include <glint/embedded_file.h>
+#include <glint/layers.h>
 #include <glint/package_modules.h>
 #include <glint/result.h>
 
@@ -118,6 +119,8 @@ public:
     std::span<const package::AttributeEntry> attributes() const;
     // The effects that the package has, by ascending bits. Their names are valid as long as the package.
     std::span<const package::EffectInfo> effects() const;
+    // The layers that frames of the package have beside the picture, by the index of their images.
+    std::span<const package::PackageLayer> layers() const;
     // Returns the bit of the effect of that name, or 0 if the package lacks it.
     package::Effect effect(std::string_view name) const;
     // Returns the number of scenes, which is at least 1.

@@ -158,6 +158,7 @@ enum class SectionKind : std::uint32_t {
     Emission = 11,   // one EmissionEntry, in packages with emissive lights
     Features = 12,   // FeatureEntry: every feature of materials that the compiler knew, by ascending bits
     Opacity = 13,    // one OpacityEntry, in packages that test alpha by Glint's own code
+    Layers = 14,     // LayerEntry (glint/layers.h), by the index of their images, in packages with layers
 };
 
 struct PackageSection {

@@ -3,6 +3,7 @@
 
 #include <glint/context.h>
 #include <glint/effects.h>
+#include <glint/layers.h>
 #include <glint/memory_report.h>
 #include <glint/package.h>
 #include <glint/package_replacement.h>
@@ -20,6 +21,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -236,6 +238,36 @@ struct LinearImage {
     std::vector<std::array<float, 4>> pixels;
 };
 
+// The surface that a pixel sees.
+struct SurfacePlace {
+    std::uint32_t instance = 0;  // index into SceneView::instances
+    std::uint32_t mesh = 0;      // the numbers of PrimitiveView
+    std::uint32_t primitive = 0;
+    std::uint32_t shaderId = 0;  // of the case that shades hits on it; their bucket is 1 + shaderId
+};
+
+// An image of a layer (glint/layers.h). Its usage includes storage, sampled and both kinds of transfer.
+struct LayerImage {
+    std::string_view name;                     // PackageLayer::name
+    const package::LayerInfo* info = nullptr;  // its row
+    package::Effect effect = 0;                // of the source of light; 0 for surfaces and the direct light
+    std::uint32_t bounce = 0;                  // from 1, of layers of a bounce; 0 for others
+    VkImage image = VK_NULL_HANDLE;
+    VkImageView view = VK_NULL_HANDLE;
+    VkFormat format = VK_FORMAT_UNDEFINED;
+    // It is always in this layout.
+    static constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
+};
+
+// The values of a layer on the host, row by row from the top. One of the two has values.
+struct LayerValues {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t components = 0;  // of a pixel
+    std::vector<float> reals;      // width * height * components
+    std::vector<std::uint32_t> integers;
+};
+
 // The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must
 // outlive it.
 class Renderer {
@@ -291,6 +323,17 @@ public:
     VkImage output() const;
     VkImageView outputView() const;
 
+    // The images of the package's layers, in the order of Package::layers(). They live as long as the
+    // renderer. Shaders of a recording write them last, so commands that read them need a dependency on its
+    // shader writes, and are to complete before those of the next recording, or be ordered before them on the
+    // same queue. The values are those of the picture so far, as LayerInfo::mean says; a draft
+    // (RendererOptions::draft) leaves them as they are. Motion leads to the frame before: the picture that
+    // this renderer began before this one.
+    std::vector<LayerImage> layers() const;
+    // Reads a layer of the last recording back and waits for the device. Errors: "layer-missing" if the
+    // package lacks it, "frame-not-recorded".
+    Result<LayerValues> readLayer(std::string_view name);
+
     // Records and submits samples [0, sampleCount) of the frame, waits for the device and reads the picture
     // back. This is for tools and tests. `afterSample` is called after each completed sample; counters() and
     // timings() are then those of that sample. An error that it returns ends the work. FrameOptions::timing
@@ -313,6 +356,12 @@ public:
     // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
     // by row from the top. Waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();
+    // Returns the surface that a pixel sees in the last sample, or no value if it sees the sky. (0, 0) is the
+    // pixel at the top left. Waits for the device. Errors: "render-size" for a pixel outside of the picture,
+    // "scene-edited" for scenes with SceneView::editable, whose editor knows their instances.
+    Result<std::optional<SurfacePlace>> readPlace(std::uint32_t x, std::uint32_t y);
+    // Reads output() back. Waits for the device.
+    Result<LinearImage> readOutput();
 
     // What the renderer uses, also where RendererOptions left the choice to it.
     package::Tracer tracer() const;

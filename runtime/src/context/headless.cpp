@@ -63,8 +63,12 @@ bool hasInstanceExtension(const GlobalTable& table, const char* name) {
 }
 
 // Creates the instance and, with validation, the messenger.
-Status createInstance(const GlobalTable& table, Validation validation, Context::State& state) {
+Status createInstance(const GlobalTable& table, const HeadlessOptions& options, Context::State& state) {
+    const Validation validation = options.validation;
     std::vector<const char*> extensions;
+    for (const std::string& extension : options.instanceExtensions) {
+        extensions.push_back(extension.c_str());
+    }
     std::vector<const char*> layers;
     const bool labels = hasInstanceExtension(table, VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     if (validation != Validation::Off) {
@@ -186,6 +190,17 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
         if (options.shaderFloat16 && report.features.vulkan12.shaderFloat16 == VK_FALSE) {
             missing.emplace_back("shaderFloat16, which --precision 16 needs");
         }
+        for (const std::string& extension : options.deviceExtensions) {
+            if (!hasExtension(report, extension.c_str())) {
+                missing.push_back(extension);
+            }
+        }
+        // A device that has the extension has its feature too (Vulkan 1.3 specification, "Feature
+        // Requirements").
+        if (options.shaderClock && !hasExtension(report, VK_KHR_SHADER_CLOCK_EXTENSION_NAME)) {
+            missing.emplace_back(std::string(VK_KHR_SHADER_CLOCK_EXTENSION_NAME) +
+                                 ", which the layer clocks needs");
+        }
         if (missing.empty()) {
             tracers = common;
             return device;
@@ -217,10 +232,10 @@ std::uint32_t chooseQueueFamily(const Context::State& state) {
     return static_cast<std::uint32_t>(found - families.begin());
 }
 
-Status createDevice(Context::State& state) {
+Status createDevice(Context::State& state, std::span<const std::string> further) {
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
                                     state.handles.shaderFloat16, state.handles.pipelineStatistics,
-                                    state.handles.opacityMicromaps);
+                                    state.handles.opacityMicromaps, state.handles.shaderClock);
     VkPhysicalDeviceFeatures2 available{};
     available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
     state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
@@ -238,6 +253,9 @@ Status createDevice(Context::State& state) {
     info.pNext = &requirements.features;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
+    for (const std::string& extension : further) {
+        requirements.extensions.push_back(extension.c_str());
+    }
     info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());
     info.ppEnabledExtensionNames = requirements.extensions.data();
     const VkResult result =
@@ -267,12 +285,13 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
     if (!table) {
         return table.error();
     }
-    if (Status status = createInstance(*table, options.validation, *state); !status) {
+    if (Status status = createInstance(*table, options, *state); !status) {
         return status.error();
     }
     state->handles.tracers = options.tracers;
     state->handles.positionFetch = options.positionFetch;
     state->handles.shaderFloat16 = options.shaderFloat16;
+    state->handles.shaderClock = options.shaderClock;
     Result<VkPhysicalDevice> device = chooseDevice(*state, options, state->handles.tracers);
     if (!device) {
         return device.error();
@@ -291,7 +310,7 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
         state->handles.opacityMicromaps =
             options.opacityMicromaps && hasExtension(report, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
     }
-    if (Status status = createDevice(*state); !status) {
+    if (Status status = createDevice(*state, options.deviceExtensions); !status) {
         return status.error();
     }
     return std::unique_ptr<Context>(new Context(std::move(state)));

@@ -1,6 +1,7 @@
 #include "context/memory_report.h"
 
 #include "edit/editor_state.h"
+#include "frame/motion_history.h"
 #include "motion/deformer.h"
 #include "motion/scene_motion.h"
 #include "renderer/renderer_state.h"
@@ -50,9 +51,15 @@ std::vector<MemoryItem> Renderer::memory() const {
     for (std::size_t binding = 0; binding < frame.images.size(); ++binding) {
         addTo(items, std::string(kImageNames[binding]), frame.images[binding]);
     }
+    for (std::size_t i = 0; i < frame.layers.size(); ++i) {
+        addTo(items, "layer " + state_->size.layers[i].name, frame.layers[i]);
+    }
     addTo(items, "depth", frame.depth);
     for (const auto& [name, buffer] : frame.buffers()) {
         addTo(items, name, *buffer);
+    }
+    if (state_->history != nullptr) {
+        state_->history->addMemory(items);
     }
     for (const Buffer& table : state_->pipelines.tables) {
         addTo(items, "shader binding tables", table);
@@ -67,7 +74,8 @@ Renderer::Footprint Renderer::footprint() const {
         (item.isImage ? footprint.images : footprint.buffers) += item.count;
         footprint.bytes += item.bytes;
     }
-    footprint.allocatedBytes = glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
+    footprint.allocatedBytes = (state_->history != nullptr ? state_->history->allocatedBytes() : 0) +
+                               glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
     return footprint;
 }
 

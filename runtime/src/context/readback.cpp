@@ -2,10 +2,13 @@
 
 #include "renderer/pass_dependencies.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <span>
 #include <string>
 
 namespace glint {
@@ -14,14 +17,14 @@ namespace {
 constexpr MemoryDependency kWriteToCopy{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
                                         VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
 
-void recordCopy(const Renderer::State& state, VkCommandBuffer commands, std::uint32_t binding,
+void recordCopy(const Renderer::State& state, VkCommandBuffer commands, const DeviceImage& image,
                 const Buffer& target) {
     recordDependency(state.context, commands, kWriteToCopy);
     VkBufferImageCopy region{};
     region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     region.imageExtent = {state.size.width, state.size.height, 1};
-    state.context.vk.CmdCopyImageToBuffer(commands, imageOf(state.frame, binding).handle.get(),
-                                          VK_IMAGE_LAYOUT_GENERAL, target.handle.get(), 1, &region);
+    state.context.vk.CmdCopyImageToBuffer(commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL,
+                                          target.handle.get(), 1, &region);
     recordDependency(state.context, commands, kCopyToHost);
 }
 
@@ -44,9 +47,9 @@ namespace {
 
 template <typename Pixel>
 Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner& runner,
-                                     std::uint32_t binding) {
+                                     const DeviceImage& image, std::size_t count) {
     MemoryPool pool(state.context);
-    std::vector<Pixel> pixels(std::size_t{state.size.width} * state.size.height);
+    std::vector<Pixel> pixels(count);
     const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
     Result<Buffer> buffer =
         createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
@@ -57,7 +60,7 @@ Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner
     if (!commands) {
         return commands.error();
     }
-    recordCopy(state, *commands, binding, *buffer);
+    recordCopy(state, *commands, image, *buffer);
     if (Status status = runner.submitAndWait(); !status) {
         return status.error();
     }
@@ -65,11 +68,42 @@ Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner
     return pixels;
 }
 
+// Widens the values of a layer to 32 bits.
+LayerValues toValues(std::span<const std::uint8_t> bytes, const package::LayerFormatInfo& format,
+                     LayerValues values) {
+    const auto valuesOf = [&]<typename Stored>(Stored /*type*/, const auto& widen) {
+        std::vector<Stored> stored(bytes.size() / sizeof(Stored));
+        std::memcpy(stored.data(), bytes.data(), stored.size() * sizeof(Stored));
+        values.reals.resize(stored.size());
+        std::ranges::transform(stored, values.reals.begin(), widen);
+    };
+    switch (format.format) {
+        case package::LayerFormat::Float1:
+        case package::LayerFormat::Float4:
+            valuesOf(float{}, [](float value) { return value; });
+            break;
+        case package::LayerFormat::Half4:
+            valuesOf(std::uint16_t{}, [](std::uint16_t value) { return glm::unpackHalf1x16(value); });
+            break;
+        case package::LayerFormat::Snorm4:
+            valuesOf(std::int16_t{}, [](std::int16_t value) {
+                return std::max(static_cast<float>(value) / 32767.0F, -1.0F);
+            });
+            break;
+        case package::LayerFormat::Integer:
+            values.integers.resize(bytes.size() / sizeof(std::uint32_t));
+            std::memcpy(values.integers.data(), bytes.data(), bytes.size());
+            break;
+    }
+    return values;
+}
+
 }  // namespace
 
 Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
                                                          std::uint32_t binding) {
-    return readImage<std::array<float, 4>>(state, runner, binding);
+    return readImage<std::array<float, 4>>(state, runner, imageOf(state.frame, binding),
+                                           std::size_t{state.size.width} * state.size.height);
 }
 
 Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
@@ -94,6 +128,42 @@ Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, Comman
     return std::vector<std::uint8_t>(target->mapped, target->mapped + buffer.bytes);
 }
 
+std::vector<LayerImage> Renderer::layers() const {
+    std::vector<LayerImage> images;
+    for (std::size_t i = 0; i < state_->size.layers.size(); ++i) {
+        const package::PackageLayer& layer = state_->size.layers[i];
+        const DeviceImage& image = state_->frame.layers[i];
+        images.push_back({layer.name, layer.info, layer.effect, layer.bounce, image.handle.get(),
+                          image.view.get(), image.format});
+    }
+    return images;
+}
+
+Result<LayerValues> Renderer::readLayer(std::string_view name) {
+    const auto found = std::ranges::find(state_->size.layers, name, &package::PackageLayer::name);
+    if (found == state_->size.layers.end()) {
+        return makeError("layer-missing", "", "the package has no layer " + std::string(name),
+                         "compile the package with --layers");
+    }
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    const DeviceImage& image =
+        state_->frame.layers[static_cast<std::size_t>(found - state_->size.layers.begin())];
+    const package::LayerFormatInfo& format = package::infoOf(found->info->format);
+    const std::size_t count = std::size_t{state_->size.width} * state_->size.height;
+    Result<std::vector<std::uint8_t>> bytes =
+        readImage<std::uint8_t>(*state_, *runner, image, count * format.bytes);
+    if (!bytes) {
+        return bytes.error();
+    }
+    return toValues(*bytes, format, {state_->size.width, state_->size.height, format.components, {}, {}});
+}
+
 Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     if (!state_->recorded) {
         return frameNotRecorded();
@@ -103,7 +173,9 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
         return runner.error();
     }
     using Identity = std::array<std::uint32_t, 2>;
-    const auto identities = readImage<Identity>(*state_, *runner, gpu::kBindingSurface);
+    const auto identities =
+        readImage<Identity>(*state_, *runner, imageOf(state_->frame, gpu::kBindingSurface),
+                            std::size_t{state_->size.width} * state_->size.height);
     if (!identities) {
         return identities.error();
     }
@@ -112,6 +184,52 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
         return static_cast<std::uint8_t>(pixel[0] != gpu::kNoSurface ? 1 : 0);
     });
     return surfaces;
+}
+
+Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    if (x >= state_->size.width || y >= state_->size.height) {
+        return makeError("render-size", "", "the picture has no such pixel",
+                         "name one within its width and height");
+    }
+    if (state_->scene.places.empty()) {
+        return makeError("scene-edited", "", "the scene is edited, so the numbers of its upload may be stale",
+                         "ask its SceneEditor, or upload the scene without SceneView::editable");
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    using Identity = std::array<std::uint32_t, 2>;
+    const auto identities = readImage<Identity>(*state_, *runner, imageOf(state_->frame, gpu::kBindingSurface),
+                            std::size_t{state_->size.width} * state_->size.height);
+    if (!identities) {
+        return identities.error();
+    }
+    const std::uint32_t geometry = (*identities)[std::size_t{y} * state_->size.width + x][0];
+    if (geometry == gpu::kNoSurface) {
+        return std::optional<SurfacePlace>();
+    }
+    const GeometryPlace& place = state_->scene.places[geometry];
+    return std::optional(
+        SurfacePlace{place.instance, place.mesh, place.primitive, state_->scene.shaderIds[geometry]});
+}
+
+Result<LinearImage> Renderer::readOutput() {
+    if (!state_->recorded) {
+        return frameNotRecorded();
+    }
+    Result<CommandRunner> runner = CommandRunner::create(state_->context);
+    if (!runner) {
+        return runner.error();
+    }
+    auto pixels = readFrameImage(*state_, *runner, gpu::kBindingAccumulated);
+    if (!pixels) {
+        return pixels.error();
+    }
+    return LinearImage{state_->size.width, state_->size.height, std::move(*pixels)};
 }
 
 Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {

@@ -92,7 +92,7 @@ constexpr auto kPositionFetchFeatures = static_cast<VkStructureType>(1000481000)
 }  // namespace
 
 DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositions, bool computesHalf,
-                                       bool tellsOfPipelines, bool usesMicromaps)
+                                       bool tellsOfPipelines, bool usesMicromaps, bool readsClock)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
       vulkan11{},
@@ -103,7 +103,8 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
       rayPipeline{},
       positionFetch{},
       pipelineExecutables{},
-      opacityMicromap{} {
+      opacityMicromap{},
+      clock{} {
     vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
     vulkan11.pNext = &vulkan12;
     vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
@@ -136,6 +137,12 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         opacityMicromap.pNext = std::exchange(accelerationStructure.pNext, &opacityMicromap);
         opacityMicromap.micromap = VK_TRUE;
         extensions.push_back(VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
+    }
+    clock.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_CLOCK_FEATURES_KHR;
+    if (readsClock) {
+        clock.pNext = std::exchange(accelerationStructure.pNext, &clock);
+        clock.shaderSubgroupClock = VK_TRUE;
+        extensions.push_back(VK_KHR_SHADER_CLOCK_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
     // This is an umbrella bit. The specification requires it if its parts are used with SPIR-V 1.5 modules.

@@ -85,6 +85,8 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.paths = frame.paths.address;
     constants.lobeRays = frame.lobeRays.address;
     constants.skyShares = frame.skyShares.address;
+    constants.rayHits = frame.rayHits.address;
+    constants.bounceLight = frame.bounceLight.address;
     constants.hits = frame.hits.address;
     constants.packedHits = frame.hits.address;
     constants.shadows = frame.shadows.address;

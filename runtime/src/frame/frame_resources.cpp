@@ -48,6 +48,14 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const VkPhysicalDeviceLimits& limits = context.limits.core;
     const std::uint32_t maxWidth = std::min(limits.maxImageDimension2D, limits.maxFramebufferWidth);
     const std::uint32_t maxHeight = std::min(limits.maxImageDimension2D, limits.maxFramebufferHeight);
+    const std::size_t images = gpu::kFrameImageCount + size.layers.size();
+    if (images > std::min(limits.maxPerStageDescriptorStorageImages, limits.maxDescriptorSetStorageImages)) {
+        return makeError("device-layers", "",
+                         "the package has " + std::to_string(size.layers.size()) +
+                             " layers, and shaders of the device can write no more than " +
+                             std::to_string(limits.maxPerStageDescriptorStorageImages) + " images",
+                         "compile the package with fewer --layers");
+    }
     const std::string asked = std::to_string(size.width) + " x " + std::to_string(size.height);
     if (size.width == 0 || size.height == 0 || size.width > maxWidth || size.height > maxHeight) {
         return makeError("render-size", "", "an image of " + asked + " pixels cannot be rendered",
@@ -114,6 +122,18 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
         }
         frame.images[binding] = std::move(*image);
     }
+    for (const package::PackageLayer& layer : size.layers) {
+        ImageInfo info;
+        info.extent = {size.width, size.height};
+        info.format = vulkanFormat(layer.info->format);
+        info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                     VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        Result<DeviceImage> image = createImage(context, frame.pool, info);
+        if (!image) {
+            return image.error();
+        }
+        frame.layers.push_back(std::move(*image));
+    }
     ImageInfo info;
     info.extent = {size.width, size.height};
     info.format = kDepthFormat;
@@ -170,6 +190,9 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {&Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
          MemoryUse::Device},
         {&Frame::skyShares, size.skyLight ? samples * sizeof(float) : 0, kStorage, MemoryUse::Device},
+        {&Frame::rayHits, size.layerRays ? samples * sizeof(gpu::RayHit) : 0, kStorage, MemoryUse::Device},
+        {&Frame::bounceLight, samples * size.layerBounces * sizeof(gpu::BounceLight), kStorage,
+         MemoryUse::Device},
         {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
         {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
@@ -207,6 +230,10 @@ Status createSet(Context::State& context, const FrameSize& size, FrameResources&
         if (bindsImage(size, binding)) {
             bindings.push_back({binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
         }
+    }
+    for (std::uint32_t i = 0; i < size.layers.size(); ++i) {
+        bindings.push_back(
+            {gpu::kBindingLayers + i, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
     }
     std::vector<VkDescriptorPoolSize> poolSizes{
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, static_cast<std::uint32_t>(bindings.size())}};
@@ -252,12 +279,8 @@ Status createSet(Context::State& context, const FrameSize& size, FrameResources&
 }
 
 void fillSet(Context::State& context, const FrameSize& size, const FrameResources& frame) {
-    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        if (!bindsImage(size, binding)) {
-            continue;
-        }
-        const VkDescriptorImageInfo image{VK_NULL_HANDLE, imageOf(frame, binding).view.get(),
-                                          VK_IMAGE_LAYOUT_GENERAL};
+    const auto bind = [&](std::uint32_t binding, const DeviceImage& own) {
+        const VkDescriptorImageInfo image{VK_NULL_HANDLE, own.view.get(), VK_IMAGE_LAYOUT_GENERAL};
         VkWriteDescriptorSet write{};
         write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
         write.dstSet = frame.set;
@@ -266,6 +289,14 @@ void fillSet(Context::State& context, const FrameSize& size, const FrameResource
         write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
         write.pImageInfo = &image;
         context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+    };
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        if (bindsImage(size, binding)) {
+            bind(binding, imageOf(frame, binding));
+        }
+    }
+    for (std::uint32_t i = 0; i < frame.layers.size(); ++i) {
+        bind(gpu::kBindingLayers + i, frame.layers[i]);
     }
 }
 
@@ -279,9 +310,9 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
     if (!commands) {
         return commands.error();
     }
-    for (const DeviceImage& image : frame.images) {
+    const auto clear = [&](const DeviceImage& image) {
         if (image.handle.get() == VK_NULL_HANDLE) {
-            continue;
+            return;
         }
         recordTransition(
             context, *commands,
@@ -293,7 +324,9 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
         const VkImageSubresourceRange range = wholeImage();
         context.vk.CmdClearColorImage(*commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL, &black, 1,
                                       &range);
-    }
+    };
+    std::ranges::for_each(frame.images, clear);
+    std::ranges::for_each(frame.layers, clear);
     ImageTransition depth;
     depth.image = frame.depth.handle.get();
     depth.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
@@ -305,6 +338,22 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
 }
 
 }  // namespace
+
+VkFormat vulkanFormat(package::LayerFormat format) {
+    switch (format) {
+        case package::LayerFormat::Float1:
+            return VK_FORMAT_R32_SFLOAT;
+        case package::LayerFormat::Float4:
+            return VK_FORMAT_R32G32B32A32_SFLOAT;
+        case package::LayerFormat::Half4:
+            return VK_FORMAT_R16G16B16A16_SFLOAT;
+        case package::LayerFormat::Snorm4:
+            return VK_FORMAT_R16G16B16A16_SNORM;
+        case package::LayerFormat::Integer:
+            return VK_FORMAT_R32_UINT;
+    }
+    return VK_FORMAT_UNDEFINED;
+}
 
 const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding) {
     const DeviceImage& own = frame.images[binding];
@@ -339,6 +388,7 @@ VkDeviceSize frameBytes(const FrameSize& size) {
             ofPixel += binding == gpu::kBindingSurface ? 2 * sizeof(std::uint32_t) : sizeof(gpu::vec4);
         }
     }
+    ofPixel += package::bytesOf(size.layers);
     return bytes + ofPixel * size.width * size.height;
 }
 
@@ -348,7 +398,9 @@ bool haveSameImages(const FrameSize& first, const FrameSize& second) {
                hasImage(first, binding) == hasImage(second, binding);
     };
     bool same = first.width == second.width && first.height == second.height &&
-                first.environmentMap == second.environmentMap;
+                first.environmentMap == second.environmentMap &&
+                std::ranges::equal(first.layers, second.layers, {}, &package::PackageLayer::name,
+                                   &package::PackageLayer::name);
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
         same = same && sameImage(binding);
     }

@@ -6,6 +6,7 @@
 #include "sky/environment_state.h"
 
 #include <glint/effects.h>
+#include <glint/layers.h>
 
 #include <array>
 #include <cstddef>
@@ -31,12 +32,13 @@ struct FrameResources {
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
     // others is `pool`.
-    static constexpr std::size_t kBufferCount = 23;
+    static constexpr std::size_t kBufferCount = 25;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
-    DeviceImage depth;  // layout DEPTH_ATTACHMENT_OPTIMAL
-    Buffer constants;   // FrameConstants; every pass reads them, so this is not host memory
+    std::vector<DeviceImage> layers;  // FrameSize::layers; layout GENERAL
+    DeviceImage depth;                // layout DEPTH_ATTACHMENT_OPTIMAL
+    Buffer constants;                 // FrameConstants; every pass reads them, so this is not host memory
     // These buffers and those below serve all effects with rays. Samples are those of a band.
     Buffer sampleStarts;
     Buffer sampleAims;
@@ -47,6 +49,8 @@ struct FrameResources {
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer skyShares;    // present if the sky is a light of the package
+    Buffer rayHits;      // present if layers need what rays hit
+    Buffer bounceLight;  // present if layers need what bounces bring
     Buffer hits;         // full or packed records; present if hits are ordered
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
@@ -76,6 +80,8 @@ struct FrameResources {
                  {"paths", &paths},
                  {"rays of lobes", &lobeRays},
                  {"shares of the sky", &skyShares},
+                 {"hits of layers", &rayHits},
+                 {"light of bounces", &bounceLight},
                  {"hits", &hits},
                  {"ordered hits", &orderedHits},
                  {"visited hits", &visitedHits},
@@ -115,6 +121,10 @@ struct FrameSize {
     bool emissiveLights = false;
     bool skyLight = false;
     std::uint32_t bounces = 1;  // the most of a path
+
+    std::vector<package::PackageLayer> layers{};  // images beside the picture
+    bool layerRays = false;                       // layers need what rays hit
+    std::uint32_t layerBounces = 0;               // bounces that have layers of their own
 
     bool accumulates = true;     // the picture is a mean over frames
     bool marchesScreen = false;  // frames may look for the ends of rays in screen space
@@ -165,6 +175,9 @@ VkDeviceSize listSlots(const FrameSize& size);
 
 // Returns the largest number of rays that one dispatch of a list can have.
 std::uint64_t maxRayDispatch(const DeviceLimits& limits);
+
+// Returns the format of a layer's images.
+VkFormat vulkanFormat(package::LayerFormat format);
 
 // Returns the image that a binding leads to: its own, or that of the picture. Frames that do not accumulate
 // write the light of the primary surfaces there, and compose() adds to it.

@@ -22,6 +22,8 @@ constexpr std::uint32_t kStart = sizeof(gpu::SampleStart);
 constexpr std::uint32_t kAim = sizeof(gpu::SampleAim);
 constexpr std::uint32_t kWeight = sizeof(gpu::SampleWeight);
 constexpr std::uint32_t kPath = sizeof(gpu::PathState);
+constexpr std::uint32_t kRayHit = sizeof(gpu::RayHit);
+constexpr std::uint32_t kBounce = sizeof(gpu::BounceLight);
 // A ray as listedRay() reads it: its number, the origin, the aim, and how its cone grows.
 constexpr std::uint32_t kRay = kWord + kVector + kAim + kWord;
 
@@ -50,11 +52,29 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
         rows.push_back({"effect walk", Unit::Sample, kWord, 0});
         rows.push_back({"effect walk", Unit::Sent, kIdentity + kWord, kStart + kAim + kWeight});
     }
+    rows.push_back({"lighting", Unit::Sent, 0, (shape.layerRays ? kWord : 0) + shape.layerBounces * kBounce});
     rows.push_back({"effect rays", Unit::Sample, kWord, 0});
     rows.push_back({"effect rays", Unit::Sent,
                     (shape.binsRays || shape.marchesScreen ? kAim : 0) + (shape.marchesScreen ? kVector : 0),
                     0});
     rows.push_back({"effect rays", Unit::Ray, 0, kWord});
+}
+
+// What a pass reads and writes of its layers. Light is divided by an albedo, which is read.
+TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::string_view name) {
+    TrafficRow row{name, Unit::Pixel, 0, 0};
+    for (const package::LayerEntry& entry : shape.layers) {
+        if (package::passOf(entry) != pass) {
+            continue;
+        }
+        const package::LayerInfo& info = *package::findLayer(entry.layer);
+        const std::uint32_t bytes = package::infoOf(info.format).bytes;
+        row.written += bytes;
+        row.read += shape.accumulates && info.continues ? bytes : 0;
+        row.read +=
+            info.name.ends_with("demodulated") ? package::infoOf(package::LayerFormat::Half4).bytes : 0;
+    }
+    return row;
 }
 
 void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
@@ -76,6 +96,11 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const TrafficRow shaded{"", Unit::Hit, kWord + hit + arrivalBytes(shape), answer};
     const TrafficRow traced{
         "", Unit::Ray, kRay + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0), answer};
+    // What layers need of hits is stored by the pass that finds them. Each bounce adds its light.
+    const std::uint32_t bounce = shape.layerBounces > 0 ? kBounce : 0;
+    rows.push_back({strategy.ordersHits ? std::string_view("trace") : strategy.modules.front().pass,
+                    Unit::Ray, (shape.layerRays ? kWord : 0) + bounce,
+                    (shape.layerRays ? kRayHit : 0) + bounce});
     const bool missesApart = std::ranges::any_of(strategy.modules, [](const package::StrategyModule& module) {
         return module.over == package::Over::Misses;
     });
@@ -123,6 +148,11 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
         effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     shape.accumulates = options.accumulate;
     shape.marchesScreen = options.screenMarch && effects.screenStarts != 0;
+    for (const package::PackageLayer& layer : package.layers()) {
+        shape.layers.push_back({layer.info->number, layer.effect, layer.bounce});
+    }
+    shape.layerRays = (package::demandsOf(package.layers()) & package::kLayerRays) != 0;
+    shape.layerBounces = package::layerBounces(package.layers());
     return shape;
 }
 
@@ -130,6 +160,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     std::vector<TrafficRow> rows;
     rows.push_back({"gbuffer", Unit::Pixel, 0, kIdentity + kWord});  // and the depth
     rows.push_back({"lighting", Unit::Pixel, kIdentity, kPixel + (shape.marchesScreen ? kPixel : 0)});
+    rows.push_back(layersOf(shape, package::LayerPass::Lighting, "lighting"));
     if (shape.effects > 0) {
         addSamples(shape, rows);
         addShading(shape, rows);
@@ -143,6 +174,9 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
         }
         rows.push_back({"compose", Unit::Sample, shape.paths ? kWord : kStart, 0});
         rows.push_back({"compose", Unit::Sent, kVector + (shape.paths ? kPixel : 0), 0});
+        rows.push_back(layersOf(shape, package::LayerPass::Compose, "compose"));
+        rows.push_back(
+            {"compose", Unit::Sent, (shape.layerRays ? kRayHit : 0) + shape.layerBounces * kBounce, 0});
     }
     const std::uint32_t mean = shape.accumulates ? 2 * kPixel : 0;
     rows.push_back({"compose", Unit::Pixel, kPixel + mean, shape.accumulates ? mean : kPixel});

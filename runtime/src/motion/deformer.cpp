@@ -233,7 +233,7 @@ Status Deformer::createRecords(const SceneView& scene, std::span<const GpuPrimit
             Result<Buffer> buffer =
                 createBuffer(*context_, targetPool, targetBytes(primitives[i]),
                              VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
             if (!buffer) {
                 return buffer.error();
             }

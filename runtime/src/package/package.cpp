@@ -152,6 +152,10 @@ std::span<const package::EffectInfo> Package::effects() const {
     return state_->effects;
 }
 
+std::span<const package::PackageLayer> Package::layers() const {
+    return state_->layers;
+}
+
 package::Effect Package::effect(std::string_view name) const {
     const auto found = std::ranges::find(state_->effects, name, &package::EffectInfo::name);
     return found == state_->effects.end() ? 0 : found->effect;

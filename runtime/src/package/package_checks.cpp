@@ -370,6 +370,46 @@ Status checkEffects(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+// Requires state.effects.
+Status checkLayers(const Package::State& state, const std::string& where) {
+    std::uint32_t rays = 0;
+    for (const package::EffectInfo& effect : state.effects) {
+        rays |= effect.kind == package::EffectKind::Rays ? effect.effect : 0U;
+    }
+    std::set<std::tuple<std::uint32_t, package::Effect, std::uint32_t>> seen;
+    for (const package::LayerEntry& entry : state.layerEntries) {
+        const package::LayerInfo* const info = package::findLayer(entry.layer);
+        if (info == nullptr) {
+            return altered(where, "layer " + std::to_string(entry.layer) + " is unknown");
+        }
+        using Subject = package::LayerSubject;
+        const bool ofBounce = info->subject == Subject::Bounce;
+        const bool isOfEffect = std::has_single_bit(entry.effect) && (entry.effect & rays) != 0;
+        const bool fits = entry.effect == 0 ? info->subject != Subject::Ray && !ofBounce
+                                            : isOfEffect && package::hasSources(*info);
+        const std::uint32_t mostBounces = std::min(state.header.maxBounces, package::kMostLayerBounces);
+        const bool bounceFits =
+            ofBounce ? entry.bounce >= 1 && entry.bounce <= mostBounces : entry.bounce == 0;
+        if (!fits || !bounceFits || !seen.emplace(entry.layer, entry.effect, entry.bounce).second ||
+            state.header.passes != package::Passes::Frame) {
+            return altered(where, "the layer " + std::string(info->name) + " is not well formed");
+        }
+    }
+    return okStatus();
+}
+
+// Requires entries that checkLayers() accepts.
+std::vector<package::PackageLayer> layersOf(const Package::State& state) {
+    std::vector<package::PackageLayer> layers;
+    for (const package::LayerEntry& entry : state.layerEntries) {
+        const package::LayerInfo& info = *package::findLayer(entry.layer);
+        const auto effect = std::ranges::find(state.effects, entry.effect, &package::EffectInfo::effect);
+        const std::string_view source = effect == state.effects.end() ? package::kDirectLight : effect->name;
+        layers.push_back({&info, entry.effect, entry.bounce, package::layerName(info, source, entry.bounce)});
+    }
+    return layers;
+}
+
 }  // namespace
 
 package::PackageShape shapeOf(const Package::State& state) {
@@ -401,11 +441,12 @@ Status checkTables(Package::State& state, const std::string& where) {
         state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
     }
     for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkOpacity,
-                             checkSamplers, checkAttributes, checkFeatures}) {
+                             checkSamplers, checkAttributes, checkFeatures, checkLayers}) {
         if (Status status = check(state, where); !status) {
             return status;
         }
     }
+    state.layers = layersOf(state);
     return okStatus();
 }
 

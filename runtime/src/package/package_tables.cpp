@@ -129,6 +129,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.emission);
         case package::SectionKind::Opacity:
             return readSection(state, section, where, state.opacity);
+        case package::SectionKind::Layers:
+            return readSection(state, section, where, state.layerEntries);
         case package::SectionKind::Features:
             return readSection(state, section, where, state.features);
     }
@@ -168,6 +170,7 @@ Status readTables(Package::State& state, const std::string& where) {
     seen.erase(package::SectionKind::Emission);
     seen.erase(package::SectionKind::Opacity);
     seen.erase(package::SectionKind::Features);
+    seen.erase(package::SectionKind::Layers);
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,
                          "the package has " + std::to_string(seen.size()) + " of " +

@@ -42,6 +42,11 @@ public:
             recordBand(frame, constants);
         }
         passes_.endStretch(whole);
+        // Layers of motion are those of a picture's first sample, and so is what they need of the frame
+        // before.
+        if (state_.history != nullptr && constants.averaged == 0) {
+            state_.history->record(commands_);
+        }
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
         keepDepth();

@@ -185,6 +185,13 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     if (Status status = createFrameResources(contextState, size, state->frame); !status) {
         return status.error();
     }
+    if ((package::demandsOf(size.layers) & package::kLayerHistory) != 0) {
+        Result<std::unique_ptr<MotionHistory>> history = MotionHistory::create(state->scene);
+        if (!history) {
+            return history.error();
+        }
+        state->history = std::move(*history);
+    }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
     Result<Pipelines> pipelines =
         createPipelines(contextState, package, *choice, {options.pipelineThreads, options.pipelineStatistics},
@@ -227,7 +234,13 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
         switchPackage(*state_, commands);
     }
     beginPicture(*state_, frame.sampleIndex);
-    recordFrame(*state_, commands, frame, makeConstants(*state_, frame));
+    gpu::FrameConstants constants = makeConstants(*state_, frame);
+    if (state_->history != nullptr) {
+        if (Status status = state_->history->fill(constants); !status) {
+            return status;
+        }
+    }
+    recordFrame(*state_, commands, frame, constants);
     state_->recorded = true;
     ++state_->recordings;
     return okStatus();

@@ -110,6 +110,22 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     if (!tracer) {
         return tracer.error();
     }
+    const std::uint32_t demands = package::demandsOf(package.layers());
+    if ((demands & package::kLayerQueries) != 0 && *tracer != package::kTracerRayQuery) {
+        return makeError(
+            "package-tracer", "",
+            "the package's layer candidates counts what ray queries test, and the tracer is " +
+                std::string(nameOf(*tracer)),
+            "use the tracer ray-query, with a strategy that has it, or leave out the layer");
+    }
+    if ((demands & package::kLayerClock) != 0 && !context.handles.shaderClock) {
+        return makeError(
+            "device-layers", "",
+            "the package's layer clocks reads a clock, which the device does not allow or was not "
+            "created for",
+            "create it with VK_KHR_shader_clock and set DeviceHandles::shaderClock, or leave out the "
+            "layer");
+    }
     const std::uint32_t compiledBounces = package.shape().maxBounces;
     if (options.bounces == 0 || options.bounces > compiledBounces) {
         return makeError("package-bounces", "",
@@ -196,6 +212,9 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.deferredShadows =
         size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
+    size.layers.assign(package.layers().begin(), package.layers().end());
+    size.layerRays = (package::demandsOf(size.layers) & package::kLayerRays) != 0;
+    size.layerBounces = package::layerBounces(size.layers);
     size.accumulates = options.accumulate;
     size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
     size.bandRows = chooseBandRows(size, choice.strategy, choice.bands);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "frame/bounce_levels.h"
+#include "frame/motion_history.h"
 #include "renderer/pass_state.h"
 #include "replacement/replacement.h"
 #include "scene/gpu_scene_state.h"
@@ -33,6 +34,7 @@ struct Renderer::State : PassState {
     };
     std::vector<Round> rounds;
     BounceLevels bounceLevels;
+    std::unique_ptr<MotionHistory> history;  // null unless layers need it
 
     RendererOptions options;
     std::uint32_t timerCapacity = 0;  // stretches

@@ -152,6 +152,13 @@ struct PrimitiveRange {
 };
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
 
+// What a geometry record is of.
+struct GeometryPlace {
+    std::uint32_t instance = 0;  // index into SceneView::instances
+    std::uint32_t mesh = 0;
+    std::uint32_t primitive = 0;  // of the mesh
+};
+
 struct SceneLayout {
     std::vector<MeshPart> parts;  // in the order of meshes; single-sided parts first
     std::vector<PartInstance> partInstances;

@@ -29,7 +29,8 @@ template <typename T>
 Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const T> records, Buffer& target) {
     Result<Buffer> buffer =
         createBuffer(state.context, state.pool, std::max(records.size_bytes(), sizeof(T)),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
     if (!buffer) {
         return buffer.error();
     }
@@ -175,8 +176,17 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
             layout.partInstances, state.instanceOrder->at(scene.instances, layout.partInstances));
         state.statistics.orderMs += millisecondsSince(begin);
     }
-    for (const gpu::GeometryRecord& geometry : layout.geometries) {
+    for (std::size_t i = 0; i < layout.geometries.size(); ++i) {
+        const gpu::GeometryRecord& geometry = layout.geometries[i];
+        const std::uint32_t primitive = layout.primitives[i];
+        const PrimitiveView& view = scene.primitives[primitive];
         state.shaderIds.push_back(geometry.shaderId);
+        state.places.push_back({geometry.instanceIndex, view.mesh, view.primitive});
+        if (!state.deformed.addresses.empty()) {
+            const bool deforms = state.deformed.addresses.contains({geometry.instanceIndex, primitive});
+            state.geometryPositions.push_back(
+                {geometry.positions, deforms ? state.primitives[primitive].vertexCount : 0});
+        }
     }
     std::vector<gpu::LightRecord> lights;
     for (const LightView& light : scene.lights) {

@@ -28,6 +28,12 @@ namespace glint {
 // application adds.
 inline constexpr std::uint32_t kTlasCapacity = 4;
 
+// Where a geometry record has its positions.
+struct GeometryPositions {
+    VkDeviceAddress positions = 0;
+    std::uint32_t vertexCount = 0;  // of those that follow joints or morph weights; 0 for others
+};
+
 // Members are destroyed in reverse order: the pool's memory last.
 struct GpuScene::State {
     explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
@@ -45,6 +51,10 @@ struct GpuScene::State {
     AccelerationStructure tlas;
     Buffer geometries;
     std::vector<std::uint32_t> shaderIds;  // one for each geometry record
+    // One for each geometry record, for Renderer::readPlace(); empty in scenes that are edited.
+    std::vector<GeometryPlace> places;
+    std::vector<GeometryPositions>
+        geometryPositions;  // likewise, if some vertices follow joints or morph weights
     Buffer instances;
     Buffer materials;
     Buffer lights;

@@ -18,10 +18,15 @@ void main() {
     bool inside = pixel.x < GLINT_FRAME.width && pixel.y < GLINT_FRAME.endRow;
     uint segments = 0u;
     if (inside) {
+#if GLINT_TALLIES
+        tallyForPixel(pixel.x + pixel.y * GLINT_FRAME.width);
+#endif
+        GLINT_CLOCK_START
         uint target = sampleTarget(GLINT_SLOT_REFRACTION, pixel.x + pixel.y * GLINT_FRAME.width);
         if (sampleOutcome(target) == kRaySent) {
             segments = walk(pixel, target);
         }
+        GLINT_CLOCK_STOP
     }
     addToCounter(counterOf(kEffectRefraction, kCountSegments), segments);
 }

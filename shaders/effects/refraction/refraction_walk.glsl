@@ -17,6 +17,9 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 #include "host/random.glsl"
 #include "hit/trace.glsl"
 #include "materials/volume/volume.glsl"
+#if GLINT_LAYER_RAYS
+#include "layers/ray_hits.glsl"
+#endif
 
 // The pairs of dimensions of the sequence: each interface has two.
 const uint kPairInterface = 512u;
@@ -219,6 +222,9 @@ uint walk(uvec2 pixel, uint target) {
     walker.weight = vec3(storedSample(target).coneSpread);  // see the comment in refraction.glsl
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
+#if GLINT_LAYER_RAYS
+    float way = 0.0;  // of the rays so far
+#endif
     bool meets = true;  // the ray meets a surface that affects it
     for (uint depth = 0u;; ++depth) {
         if (meets) {
@@ -232,6 +238,9 @@ uint walk(uvec2 pixel, uint target) {
                 break;
             }
             if (outcome == kAbsorbs || luminance(walker.weight) <= 0.0) {
+#if GLINT_LAYER_RAYS
+                storeRayMiss(target, walker.direction);
+#endif
                 endSample(target, vec3(0.0), vec3(0.0));
                 return segments;
             }
@@ -243,6 +252,9 @@ uint walk(uvec2 pixel, uint target) {
         walker.coneWidth += GLINT_FRAME.pixelSpread * travelled;
         if (depth + 1u >= GLINT_FRAME.maxInterfaces) {
             // The sky stands in for further interfaces.
+#if GLINT_LAYER_RAYS
+            storeRayMiss(target, walker.direction);
+#endif
             endSample(target, walker.weight, hostSky(walker.direction));
             return segments;
         }
@@ -252,6 +264,9 @@ uint walk(uvec2 pixel, uint target) {
         TracedHit record = traceRay(ray, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
         segments += 1u;
         if (record.geometry == kMissGeometry) {
+#if GLINT_LAYER_RAYS
+            storeRayMiss(target, walker.direction);
+#endif
             endSample(target, walker.weight, hostSky(walker.direction));
             return segments;
         }
@@ -260,6 +275,9 @@ uint walk(uvec2 pixel, uint target) {
         hit = fetchHit(geometry, record.primitive, record.barycentrics, walker.direction, record.coneWidth, target,
                        features);
         travelled = record.distance;
+#if GLINT_LAYER_RAYS
+        way += travelled;
+#endif
         if (within) {
             uint medium = walker.media.material[walker.media.count - 1u];
             walker.weight *= volumeTransmittance(GLINT_RECORD_ABSORPTION(hostMaterials().data[medium]), travelled);
@@ -280,6 +298,9 @@ uint walk(uvec2 pixel, uint target) {
     drawn.coneWidth = walker.coneWidth;
     drawn.coneSpread = GLINT_FRAME.pixelSpread;
     storeSample(target, drawn);
+#if GLINT_LAYER_RAYS
+    GLINT_FRAME.rayHits.data[samplePlace(target)].distance = max(way - travelled, 0.0);
+#endif
 #if GLINT_PATHS
     // What the ray meets is in the innermost medium, and sends its next ray there.
     if (walker.media.count > 0u) {

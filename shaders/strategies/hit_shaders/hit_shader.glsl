@@ -9,6 +9,9 @@
 #include "strategies/hit_shaders/payload.glsl"
 #include "hit/geometry_index.glsl"
 #include "generated/shade.glsl"
+#if GLINT_LAYER_RAYS
+#include "layers/ray_hits.glsl"
+#endif
 
 layout(location = 0) rayPayloadInEXT HitPayload shaded;
 hitAttributeEXT vec2 hitBarycentrics;
@@ -22,6 +25,9 @@ Hit shadedHit(HostGeometry geometry, Features features) {
     float coneWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
     Hit hit = fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
                        features);
+#if GLINT_LAYER_RAYS
+    storeRayHit(target, hitGeometry(), uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, gl_HitTEXT);
+#endif
 #if GLINT_PATHS
     hit.arrival = arrivalOf(samplePlace(target), gl_WorldRayOriginEXT, coneWidth, shaded.radiance.z);
 #endif

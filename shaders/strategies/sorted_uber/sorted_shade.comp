@@ -32,6 +32,7 @@ void main() {
     }
     HitRecord record = storedHit(slot);
     RayRecord ray = listedRay(slot);
+    GLINT_CLOCK_START
     if (record.geometry == kMissGeometry) {
         resolveMiss(ray.target, ray.direction);
         return;
@@ -42,4 +43,5 @@ void main() {
     HostGeometry geometry = hostGeometry(record.geometry);
     Hit hit = loadHit(record, ray, geometry, GLINT_HIT_FEATURES(geometry));
     resolveHit(hit, shadeHit(shaderId, hit, geometry));
+    GLINT_CLOCK_STOP
 }

@@ -8,6 +8,9 @@
 #include "hit/resolve.glsl"
 #include "hit/path_ray.glsl"
 #include "generated/cases.glsl"
+#if GLINT_LAYER_RAYS
+#include "layers/traced_hits.glsl"
+#endif
 
 GLINT_RAY_WORKGROUP
 
@@ -17,7 +20,11 @@ void main() {
         return;
     }
     RayRecord ray = listedRay(index);
+    GLINT_CLOCK_START
     TracedHit found = traceRay(ray, rayFlags(ray.target));
+#if GLINT_LAYER_RAYS
+    keepTracedHit(ray, found);
+#endif
     if (found.geometry == kMissGeometry) {
         resolveMiss(ray.target, ray.direction);
     } else {
@@ -25,4 +32,5 @@ void main() {
         Hit hit = loadHit(recordOf(found), ray, geometry, GLINT_HIT_FEATURES(geometry));
         resolveHit(hit, shadeHit(geometry.shaderId, hit, geometry));
     }
+    GLINT_CLOCK_STOP
 }

@@ -130,12 +130,12 @@ TEST(InteropLayout, IsThatOfCpp) {
     const auto find = [&](const char* name) {
         return *std::ranges::find(layouts, name, &compiler::StructLayout::name);
     };
-    EXPECT_EQ(layouts.size(), 18U);
+    EXPECT_EQ(layouts.size(), 21U);
     const compiler::StructLayout frame = find("FrameConstants");
     EXPECT_EQ(frame.bytes, sizeof(gpu::FrameConstants));
     EXPECT_EQ(frame.members.front().name, "worldToClip");
-    EXPECT_EQ(frame.members.back().name, "skyRows");
-    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, skyRows));
+    EXPECT_EQ(frame.members.back().name, "bounceLight");
+    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, bounceLight));
     EXPECT_EQ(find("InstanceRecord").members.back().offset, offsetof(gpu::InstanceRecord, flags));
     EXPECT_EQ(find("GeometryRecord").bytes, sizeof(gpu::GeometryRecord));
     EXPECT_EQ(find("PushConstants").bytes, sizeof(gpu::PushConstants));
@@ -153,7 +153,9 @@ TEST(InteropLayout, IsTheSameInSpirv) {
     compiler::CompileSettings settings;
     settings.debugInfo = true;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-    settings.skyLight = compiler::SkyLight::On;  // FrameConstants is whole in such packages alone
+    // FrameConstants is whole in such packages alone.
+    settings.skyLight = compiler::SkyLight::On;
+    settings.layers = {"motion", "virtual-motion"};
     expectInModules(compileSample(settings), layoutsOf(Of::Frame));
 }
 

@@ -42,6 +42,7 @@ std::string commandsOf(const compiler::Descriptor& row) {
     }
     if ((row.commands & compiler::kOfRender) != 0) {
         names.emplace_back("`render`");
+        names.emplace_back("`view`");
         names.emplace_back("`bench`");
     }
     return fmt::format("{}", fmt::join(names, ", "));

@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "cli/compile/input_watch.h"
+#include "base/input_watch.h"
 #include "cli/options/diagnostics_options.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
@@ -173,7 +173,7 @@ private:
             return {};
         }
         differs_ = differs_.value_or(base::Clock::now());
-        if (base::millisecondsSince(*differs_) < InputWatch::kMissingMs) {
+        if (base::millisecondsSince(*differs_) < base::InputWatch::kMissingMs) {
             return {};
         }
         differs_.reset();
@@ -263,7 +263,7 @@ private:
     CompileArguments arguments_;
     const CompileOnce& compileOnce_;
     compiler::WarmModules warm_;
-    InputWatch watch_;
+    base::InputWatch watch_;
     std::vector<std::string> inputs_;
     std::vector<std::string> listed_;                 // knownInputs() at the last run
     std::optional<base::Clock::time_point> differs_;  // since when others are there

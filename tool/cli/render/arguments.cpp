@@ -1,9 +1,12 @@
 #include "cli/render/arguments.h"
 
+#include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
+
+#include <glint/measure/views.h>
 
 #include <fmt/format.h>
 
@@ -45,8 +48,10 @@ void checkEnvironmentOptions(const CLI::App& command) {
 
 void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
     const std::string group = "Picture";
-    addText(command, "--camera", arguments.camera, "NAME|INDEX|auto",
-            "a camera of the scene by name or number from 0;\nauto: one that frames everything\n"
+    addText(command, "--camera", arguments.camera, "NAME|INDEX|auto|PLACE",
+            "a camera of the scene by name or number from 0;\nauto: one that frames everything; PLACE: "
+            "position,\n"
+            "target and vertical field of view in degrees, such as\n1.5,2,3/0,0.5,0/30\n"
             "(default: the first of the scene, else auto)")
         .group(group);
     addText(command, "--exposure", arguments.exposure, "auto|EV",
@@ -72,6 +77,78 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
             "checks the order\nof hits")
         .group("Device");
     addPipelineOptions(command, arguments.pipelines);
+}
+
+constexpr const char* kView = "--view";
+constexpr const char* kViewReference = "--view-reference";
+
+// "shader, key, …", over several lines.
+std::string viewNames() {
+    constexpr std::size_t kWidth = 50;
+    std::string text;
+    std::size_t line = 0;
+    for (const measure::ViewInfo& view : measure::viewTable()) {
+        const std::string_view separator = text.empty()                       ? ""
+                                           : line + view.name.size() > kWidth ? ",\n"
+                                                                              : ", ";
+        line = separator == ",\n" ? 0 : line;
+        text += fmt::format("{}{}", separator, view.name);
+        line += view.name.size() + 2;
+    }
+    return text;
+}
+
+void addViewOptions(CLI::App& command, RenderArguments& arguments) {
+    addText(command, kView, arguments.view, "NAME",
+            "write a debug picture instead, with a legend below it, and\nits numbers into --stats:\n" +
+                viewNames() + ";\nof rays also EFFECT.NAME (docs/views.md)")
+        .check(CLI::Validator(
+            [](const std::string& text) {
+                std::vector<std::string> known;
+                for (const measure::ViewInfo& view : measure::viewTable()) {
+                    known.emplace_back(view.name);
+                }
+                return measure::parseView(text)
+                           ? std::string()
+                           : "\"" + text + "\" is no view" + base::suggestion(text, known);
+            },
+            ""))
+        ->group("Picture");
+    addText(command, kViewReference, arguments.viewReference, "FILE",
+            "the picture that --view difference compares with, .exr or\n.png; an .exr of --spp 1024 is a "
+            "good one")
+        .group("Picture");
+}
+
+// Adds the layers of the view to those that are compiled. Throws a CLI::ParseError if the line contradicts
+// itself.
+void settleView(const CLI::App& command, RenderArguments& arguments) {
+    const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view);
+    const bool compares = view && view->info->readsReference;
+    if (command.count(kViewReference) > 0 && !compares) {
+        throw CLI::ValidationError(kViewReference, "needs --view difference");
+    }
+    if (!view) {
+        return;
+    }
+    if (compares && arguments.viewReference.empty()) {
+        throw CLI::ValidationError(kView, "difference needs --view-reference FILE");
+    }
+    const Result<image::ImageFormat> format = image::imageFormat(arguments.output);
+    if (format && *format != image::ImageFormat::Png) {
+        const std::vector<std::string> layers = measure::layersFor(*view);
+        throw CLI::ValidationError(
+            kView, layers.empty()
+                       ? std::string("is drawn into a PNG file: -o FILE.png")
+                       : fmt::format("is drawn into a PNG file: -o FILE.png; for the numbers use --layers {} "
+                                     "and no view",
+                                     fmt::join(layers, ",")));
+    }
+    if (arguments.package.empty()) {
+        for (std::string& layer : measure::layersFor(*view)) {
+            arguments.compile.layers.push_back(std::move(layer));
+        }
+    }
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
@@ -121,7 +198,8 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
     arguments.compile.plan.merge = compiler::MergePolicy::None;
 }
 
-// Throws a CLI::ParseError if an option is given that --package decides.
+}  // namespace
+
 void checkPackageChoice(const CLI::App& command) {
     if (command.count("--package") == 0) {
         return;
@@ -138,8 +216,6 @@ void checkPackageChoice(const CLI::App& command) {
         }
     }
 }
-
-}  // namespace
 
 void addSceneOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, "SCENE", arguments.scene, "FILE", "the scene, .gltf or .glb").required();
@@ -175,6 +251,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             "(excludes --host, --profile, and all settings that are\n"
             "decided for the package: docs/cli.md)")
         .group("Shaders");
+    addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);
     command.callback([arguments, then, &command] {
         checkPackageChoice(command);
@@ -186,6 +263,11 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
             throw CLI::ValidationError("--coverage", "shows one picture; leave out --frames, or use --time");
         }
+        const Result<image::ImageFormat> format = image::imageFormat(arguments->output);
+        if (!arguments->compile.layers.empty() && format && *format != image::ImageFormat::Exr) {
+            throw CLI::ValidationError("--layers", "needs a file that has room for layers: -o FILE.exr");
+        }
+        settleView(command, *arguments);
         settleProfileOutput(command, *arguments);
         checkProfile(command, *arguments);
         then();

@@ -25,6 +25,8 @@ struct RenderArguments : compiler::Settings {
     std::string stats;
     bool pipelineStatistics = false;
     std::string coverage;
+    std::string view;           // with which view the picture is drawn; empty: none
+    std::string viewReference;  // a file that it compares with
     std::string profileOutput;  // counts hits by key; Settings::profile is the file that planning reads
     PipelineArguments pipelines;
 };
@@ -33,6 +35,9 @@ struct RenderArguments : compiler::Settings {
 void addSceneOptions(CLI::App& command, RenderArguments& arguments);
 // Throws a CLI::ParseError if some of them contradict each other.
 void checkSceneOptions(const CLI::App& command, RenderArguments& arguments);
+
+// Throws a CLI::ParseError if an option is given that --package decides.
+void checkPackageChoice(const CLI::App& command);
 
 // Declares every option of glint render. Calls `then` once the line is parsed and found valid.
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,

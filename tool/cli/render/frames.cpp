@@ -5,11 +5,13 @@
 #include "image/tone.h"
 
 #include <glint/measure/render_settings.h>
+#include <glint/measure/views.h>
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/pose.h>
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace glint::cli {
@@ -129,6 +131,41 @@ public:
         return image;
     }
 
+    // Returns the layers of the last picture, for a file that has room for them.
+    Result<std::vector<image::ExrLayer>> layersFor(const std::string& file) {
+        std::vector<image::ExrLayer> layers;
+        const Result<image::ImageFormat> format = image::imageFormat(file);
+        if (!format || *format != image::ImageFormat::Exr) {
+            return layers;
+        }
+        for (const LayerImage& layer : renderer_->layers()) {
+            Result<LayerValues> values = renderer_->readLayer(layer.name);
+            if (!values) {
+                return values.error();
+            }
+            layers.push_back({std::string(layer.name), std::string(layer.info->channels),
+                              layer.info->format == package::LayerFormat::Half4, std::move(*values)});
+        }
+        return layers;
+    }
+
+    // Draws the view of the last picture. `reference` is what it compares with, or null.
+    Result<measure::View> drawView(const Package& package, const LinearImage& picture,
+                                   const LinearImage* reference) {
+        measure::ViewInput input;
+        input.samples = report_.samples;
+        input.dispatchesCases = package::infoOf(setup_.renderer.strategy).dispatchesCases;
+        input.package = &package;
+        input.scene = data_.packageScene;
+        for (const materials::Material& material : scene_.materials) {
+            input.materialNames.push_back(material.name);
+            input.model = &material.model();
+        }
+        input.picture = &picture;
+        input.reference = reference;
+        return measure::makeView(*measure::parseView(setup_.arguments.view), *renderer_, std::move(input));
+    }
+
     // Returns the exposure for the surfaces of the last picture.
     Result<double> exposureOf(const LinearImage& image) {
         const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
@@ -206,6 +243,23 @@ private:
     bool begun_ = false;  // a sample is complete
 };
 
+// Writes the picture of a frame, or its view.
+Status write(FrameLoop& loop, const Package& package, const RenderArguments& arguments,
+             const FrameReport& frame, const LinearImage& picture,
+             const std::optional<LinearImage>& reference, RenderReport& report) {
+    if (!arguments.view.empty()) {
+        Result<measure::View> view = loop.drawView(package, picture, reference ? &*reference : nullptr);
+        if (!view) {
+            return view.error();
+        }
+        report.view = std::move(*view);
+        return image::writeImage(frame.image, measure::withLegend(*report.view));
+    }
+    const Result<std::vector<image::ExrLayer>> layers = loop.layersFor(frame.image);
+    return layers ? image::writeImage(frame.image, picture, report.exposure, *layers)
+                  : Status(layers.error());
+}
+
 }  // namespace
 
 Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, gltf::Scene& scene,
@@ -214,6 +268,14 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
     FrameLoop loop(setup, scene, data, report);
     if (Status started = loop.start(context, package); !started) {
         return started;
+    }
+    std::optional<LinearImage> reference;
+    if (!setup.arguments.viewReference.empty()) {
+        Result<LinearImage> read = image::readImage(setup.arguments.viewReference);
+        if (!read) {
+            return read.error();
+        }
+        reference = std::move(*read);
     }
     const bool isSequence = setup.movement && setup.movement->isSequence;
     const std::vector<Moment> moments = setup.movement ? setup.movement->moments : std::vector<Moment>(1);
@@ -248,7 +310,8 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
                 compiler::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
-        if (Status written = image::writeImage(frame.image, *image, report.exposure); !written) {
+        if (Status written = write(loop, package, setup.arguments, frame, *image, reference, report);
+            !written) {
             return written;
         }
         if (isSequence) {

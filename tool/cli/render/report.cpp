@@ -278,6 +278,7 @@ base::Json toJson(const RenderReport& report) {
               {"alphaTests", counters.alphaTests},
               {"nonFinite", counters.nonFinite},
               {"buckets", counters.bucketCounts}}},
+            {"view", report.view ? measure::toJson(*report.view) : base::Json(nullptr)},
             {"effects", effectsToJson(counters)},
             {"footprint",
              {{"pipelines", report.footprint.pipelines},

@@ -8,6 +8,7 @@
 #include "plan/strategy_choice.h"
 
 #include <glint/environment.h>
+#include <glint/measure/views.h>
 #include <glint/renderer.h>
 #include <glint/scene_view.h>
 #include <glint/scene_view/sky.h>
@@ -83,13 +84,14 @@ struct RenderReport {
     bool hasDetails = false;  // the text has all memory, too
     PipelineReport pipelines;
     StartReport start;
-    double renderMs = 0.0;            // wall clock, all samples and the read-back
-    std::vector<PassTiming> passes;   // of the last sample, of the last frame
-    TrafficReport traffic;            // of the last sample
-    FrameCounters counters;           // of the last sample, of the last frame; nonFinite: of all
-    std::vector<FrameReport> frames;  // with --frames
-    std::vector<PixelPath> paths;     // of the last sample, row by row; for --coverage only
-    std::vector<std::uint64_t> hits;  // by shader ID, of all samples that were given to addHits()
+    double renderMs = 0.0;              // wall clock, all samples and the read-back
+    std::vector<PassTiming> passes;     // of the last sample, of the last frame
+    TrafficReport traffic;              // of the last sample
+    FrameCounters counters;             // of the last sample, of the last frame; nonFinite: of all
+    std::vector<FrameReport> frames;    // with --frames
+    std::optional<measure::View> view;  // of the last frame, with --view
+    std::vector<PixelPath> paths;       // of the last sample, row by row; for --coverage only
+    std::vector<std::uint64_t> hits;    // by shader ID, of all samples that were given to addHits()
 
     void addHits(const FrameCounters& sample);
 };

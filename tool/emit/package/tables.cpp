@@ -321,6 +321,9 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     if (settings.emissiveLights == EmissiveLights::On) {
         writer.add(SectionKind::Emission, std::vector{emissionOf(layout)});
     }
+    if (!plan.layers.empty()) {
+        writer.add(SectionKind::Layers, plan.layers);
+    }
     const std::optional<OpacityEntry> opacity = opacityOf(layout);
     if (opacity && settings.plan.keys.alpha != AlphaPolicy::Opaque && settings.host.empty()) {
         writer.add(SectionKind::Opacity, std::vector{*opacity});

@@ -8,7 +8,9 @@
 #include <glint/scene_view/scene_view.h>
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace glint::scene_view {
 
@@ -39,15 +41,30 @@ CameraView framingCamera(const Bounds& bounds, double aspect);
 // its width follows `aspect`. Error "camera-matrix" if its node's transform is singular.
 Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, double aspect);
 
+// A camera that a user places: "1.5,2,3/0,0.5,0/30" is at (1.5, 2, 3), looks at (0, 0.5, 0) and has a vertical
+// field of view of 30°. Up in the image is +Y. The two points must differ, not only in y.
+struct PlacedCamera {
+    std::array<double, 3> position{0.0, 0.0, 1.0};  // metres
+    std::array<double, 3> target{};                 // metres
+    double degrees = 30.0;                          // above 0, below 180
+};
+
+// Returns no value for other text. The field of view may be left out.
+std::optional<PlacedCamera> parsePlacedCamera(std::string_view text);
+// Returns a text from which parsePlacedCamera() returns the same camera.
+std::string toText(const PlacedCamera& camera);
+// The near plane is at a thousandth of the target's distance, and there is no far plane.
+CameraView viewOf(const PlacedCamera& camera, double aspect);
+
 struct CameraChoice {
     CameraView view;
-    std::string name;  // for people: "auto", or the camera's name or number
+    std::string name;  // for people: "auto", the camera's name or number, or a placed camera's text
 };
 
 // Returns whether chooseCamera() frames everything instead of taking a camera of the scene.
 bool framesEverything(const gltf::Scene& scene, const std::string& wanted);
 
-// `wanted` is "auto", or the number or name of a camera of the scene. If it is empty, the first camera is
+// `wanted` is "auto", a PlacedCamera, or the number or name of a camera of the scene. If it is empty, the first camera is
 // used, or "auto" if there is none. Error "camera-unknown".
 Result<CameraChoice> chooseCamera(const gltf::Scene& scene, const SceneViewData& view,
                                   const std::string& wanted, double aspect);

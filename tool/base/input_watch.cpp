@@ -1,4 +1,4 @@
-#include "cli/compile/input_watch.h"
+#include "base/input_watch.h"
 
 #include "base/clock.h"
 #include "base/files.h"
@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <thread>
 
-namespace glint::cli {
+namespace glint::base {
 
 std::optional<InputWatch::Look> InputWatch::lookAt(const std::string& path) {
     struct stat status {};
@@ -27,7 +27,7 @@ std::optional<InputWatch::Look> InputWatch::lookAt(const std::string& path) {
 InputWatch::File InputWatch::stateOf(const std::string& path) {
     File file{lookAt(path), {}};
     if (file.look) {
-        if (const Result<base::FileDigest> digest = base::digestFile(path)) {
+        if (const Result<FileDigest> digest = digestFile(path)) {
             file.hash = digest->hash;
         }
     }
@@ -54,7 +54,7 @@ std::vector<std::string> InputWatch::suspects() const {
 }
 
 std::vector<std::string> InputWatch::changed() {
-    const base::Clock::time_point start = base::Clock::now();
+    const Clock::time_point start = Clock::now();
     std::vector<std::string> paths = suspects();
     if (paths.empty()) {
         return {};
@@ -67,7 +67,7 @@ std::vector<std::string> InputWatch::changed() {
         return all;
     };
     auto before = looks();
-    for (bool rests = false; !rests && base::millisecondsSince(start) < kPatienceMs;) {
+    for (bool rests = false; !rests && millisecondsSince(start) < kPatienceMs;) {
         std::this_thread::sleep_for(std::chrono::milliseconds(kRestMs));
         paths = suspects();
         auto now = looks();
@@ -75,7 +75,7 @@ std::vector<std::string> InputWatch::changed() {
         for (const auto& [path, look] : now) {
             missing = missing || (!look && files_[path].look);
         }
-        rests = now == before && (!missing || base::millisecondsSince(start) >= kMissingMs);
+        rests = now == before && (!missing || millisecondsSince(start) >= kMissingMs);
         before = std::move(now);
     }
     std::vector<std::string> changed;
@@ -97,4 +97,4 @@ void InputWatch::accept(const std::string& path) {
     }
 }
 
-}  // namespace glint::cli
+}  // namespace glint::base

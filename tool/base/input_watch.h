@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace glint::cli {
+namespace glint::base {
 
 // Polling needs no service of the system and works on every file system; it costs one or two microseconds of
 // processor time for each file and poll.
@@ -55,4 +55,4 @@ private:
     std::map<std::string, File> files_;
 };
 
-}  // namespace glint::cli
+}  // namespace glint::base

@@ -1,0 +1,358 @@
+// Draws a scene at few samples, filters it by its layers, and compares it with many samples without the
+// filter.
+#include "denoiser.h"
+#include "gltf/import.h"
+#include "image/compare.h"
+#include "image/image_file.h"
+#include "settings/table.h"
+
+#include <glint/measure/render_settings.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/textures.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using denoise::fail;
+
+constexpr std::string_view kUsage =
+    "usage: denoise SCENE.gltf SHADERS OUTPUT.png|.exr [OPTION VALUE]...\n"
+    "Draws frames of one sample, filters them, writes the last, and compares it with pictures without the "
+    "filter.\n"
+    "\n"
+    "  --frames N            frames that are filtered, each with those before it (1)\n"
+    "  --samples N           samples of a pixel in each frame (4)\n"
+    "  --many N              samples of the picture that they are compared with (64)\n"
+    "  --reference N         samples of the picture that is taken for the truth (1024); 0: no comparison\n"
+    "  --turn DEGREES        the camera turns by that much from frame to frame (0)\n"
+    "  --wavelets N          passes of the wavelet, 0 to 8 (5)\n"
+    "  --validation on|off   with the validation layers; their messages are an error (off)\n"
+    "\n"
+    "Every other option is a setting of `glint render`, such as --effects, --size, --sun-angle or "
+    "--bounces.\n";
+
+struct Options {
+    std::string scene, shaders, output;
+    glint::compiler::Settings settings;
+    std::uint32_t frames = 1;
+    std::uint32_t samples = 4;
+    std::uint32_t many = 64;
+    std::uint32_t reference = 1024;
+    double turn = 0.0;
+    denoise::FilterSettings filter;
+    bool validation = false;
+};
+
+bool setOption(Options& options, std::string_view name, const std::string& value) {
+    std::int64_t whole = 0;
+    const std::pair<std::string_view, std::uint32_t*> numbers[] = {{"--frames", &options.frames},
+                                                                   {"--samples", &options.samples},
+                                                                   {"--many", &options.many},
+                                                                   {"--reference", &options.reference}};
+    for (const auto& [option, number] : numbers) {
+        if (name == option) {
+            const bool valid =
+                glint::compiler::parseWhole(value, number == &options.reference ? 0 : 1, 1 << 20, whole);
+            *number = static_cast<std::uint32_t>(whole);
+            return valid;
+        }
+    }
+    if (name == "--turn") {
+        return glint::compiler::parseReal(value, -90.0, 90.0, options.turn);
+    }
+    if (name == "--wavelets") {
+        const bool valid = glint::compiler::parseWhole(value, 0, 8, whole);
+        options.filter.wavelets = static_cast<std::uint32_t>(whole);
+        return valid;
+    }
+    if (name == "--validation") {
+        options.validation = value == "on";
+        return value == "on" || value == "off";
+    }
+    for (const glint::compiler::Descriptor& row : glint::compiler::settingsTable()) {
+        if ((row.commands & glint::compiler::kOfRender) != 0 && name == "--" + std::string(row.name)) {
+            const std::string complaint = complaintAbout(row, value);
+            if (!complaint.empty() && row.values.form != glint::compiler::ValueForm::List) {
+                fail(std::string(name) + ": " + complaint);
+            }
+            row.values.set(options.settings, value);
+            return true;
+        }
+    }
+    return false;
+}
+
+std::optional<Options> parse(const std::vector<std::string>& words) {
+    if (words.size() < 3 || words.size() % 2 == 0) {
+        return std::nullopt;
+    }
+    Options options;
+    options.scene = words[0];
+    options.shaders = words[1];
+    options.output = words[2];
+    for (std::size_t i = 3; i < words.size(); i += 2) {
+        if (!setOption(options, words[i], words[i + 1])) {
+            return std::nullopt;
+        }
+    }
+    return options;
+}
+
+// Returns the value, or ends the program with the error.
+template <typename Value>
+Value valueOf(glint::Result<Value> result) {
+    if (!result) {
+        fail(toString(result.error()));
+    }
+    return std::move(*result);
+}
+
+double millisecondsSince(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+// Commands that run at once, and a buffer to read pictures with.
+class Queue {
+public:
+    explicit Queue(const glint::DeviceHandles& device) : device_(device) {
+        VkCommandPoolCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+        info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+        info.queueFamilyIndex = device.queueFamily;
+        VkCommandBufferAllocateInfo buffer{};
+        buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        buffer.commandBufferCount = 1;
+        if (vkCreateCommandPool(device.device, &info, nullptr, &pool_) != VK_SUCCESS) {
+            fail("the device has no room for commands");
+        }
+        buffer.commandPool = pool_;
+        if (vkAllocateCommandBuffers(device.device, &buffer, &commands_) != VK_SUCCESS) {
+            fail("the device has no room for commands");
+        }
+    }
+    ~Queue() {
+        vkDestroyCommandPool(device_.device, pool_, nullptr);
+    }
+    Queue(const Queue&) = delete;
+    Queue& operator=(const Queue&) = delete;
+
+    // Returns how long the commands took, wall clock.
+    template <typename Record>
+    double run(const Record& record) {
+        VkCommandBufferBeginInfo begin{};
+        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+        begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+        vkBeginCommandBuffer(commands_, &begin);
+        record(commands_);
+        vkEndCommandBuffer(commands_);
+        VkSubmitInfo submit{};
+        submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+        submit.commandBufferCount = 1;
+        submit.pCommandBuffers = &commands_;
+        const auto start = std::chrono::steady_clock::now();
+        if (vkQueueSubmit(device_.queue, 1, &submit, VK_NULL_HANDLE) != VK_SUCCESS ||
+            vkQueueWaitIdle(device_.queue) != VK_SUCCESS) {
+            fail("the device was lost");
+        }
+        return millisecondsSince(start);
+    }
+
+    glint::LinearImage read(VkImage image, std::uint32_t width, std::uint32_t height) {
+        glint::LinearImage picture{width, height, {}};
+        picture.pixels.resize(std::size_t{width} * height);
+        const VkDeviceSize bytes = picture.pixels.size() * sizeof(picture.pixels[0]);
+        VkBufferCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        info.size = bytes;
+        info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+        VkBuffer buffer = VK_NULL_HANDLE;
+        vkCreateBuffer(device_.device, &info, nullptr, &buffer);
+        VkMemoryRequirements needs{};
+        vkGetBufferMemoryRequirements(device_.device, buffer, &needs);
+        VkMemoryAllocateInfo memory{};
+        memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        memory.allocationSize = needs.size;
+        memory.memoryTypeIndex = hostMemory(needs.memoryTypeBits);
+        VkDeviceMemory allocated = VK_NULL_HANDLE;
+        void* mapped = nullptr;
+        if (vkAllocateMemory(device_.device, &memory, nullptr, &allocated) != VK_SUCCESS ||
+            vkBindBufferMemory(device_.device, buffer, allocated, 0) != VK_SUCCESS ||
+            vkMapMemory(device_.device, allocated, 0, VK_WHOLE_SIZE, 0, &mapped) != VK_SUCCESS) {
+            fail("the device has no room for the picture");
+        }
+        run([&](VkCommandBuffer commands) {
+            VkBufferImageCopy region{};
+            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+            region.imageExtent = {width, height, 1};
+            vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_GENERAL, buffer, 1, &region);
+            VkMemoryBarrier2 toHost{};
+            toHost.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+            toHost.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+            toHost.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+            toHost.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+            toHost.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+            VkDependencyInfo dependency{};
+            dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+            dependency.memoryBarrierCount = 1;
+            dependency.pMemoryBarriers = &toHost;
+            vkCmdPipelineBarrier2(commands, &dependency);
+        });
+        std::memcpy(picture.pixels.data(), mapped, bytes);
+        vkDestroyBuffer(device_.device, buffer, nullptr);
+        vkFreeMemory(device_.device, allocated, nullptr);
+        return picture;
+    }
+
+private:
+    std::uint32_t hostMemory(std::uint32_t allowed) const {
+        constexpr VkMemoryPropertyFlags kWanted =
+            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+        VkPhysicalDeviceMemoryProperties properties{};
+        vkGetPhysicalDeviceMemoryProperties(device_.physicalDevice, &properties);
+        for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i) {
+            if ((allowed >> i & 1U) != 0 && (properties.memoryTypes[i].propertyFlags & kWanted) == kWanted) {
+                return i;
+            }
+        }
+        fail("the device has no memory that the host sees");
+    }
+
+    glint::DeviceHandles device_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
+// Turns a camera about its own upward axis.
+glint::CameraView turned(glint::CameraView camera, double degrees) {
+    const double angle = degrees * 3.14159265358979323846 / 180.0;
+    const std::array<float, 3> f = camera.forward;
+    const std::array<float, 3> u = camera.up;
+    const std::array<float, 3> right{f[1] * u[2] - f[2] * u[1], f[2] * u[0] - f[0] * u[2],
+                                     f[0] * u[1] - f[1] * u[0]};
+    for (std::size_t i = 0; i < 3; ++i) {
+        camera.forward[i] = static_cast<float>(std::cos(angle) * f[i] + std::sin(angle) * right[i]);
+    }
+    return camera;
+}
+
+void printRow(const std::string& what, const glint::LinearImage& image, const glint::LinearImage& reference,
+              double samplesMs, double filterMs) {
+    const auto difference = valueOf(glint::image::compareImages(image, reference, what, "the truth"));
+    std::printf("%-24s %10.5f %10.5f %12.1f %12.1f\n", what.c_str(), difference.relMse, difference.rmse,
+                samplesMs, filterMs);
+}
+
+void run(Options& options) {
+    glint::compiler::Settings& settings = options.settings;
+    settings.compile.layers = denoise::wantedLayers();
+    glint::gltf::ImportOptions import;
+    import.keepImageFiles = true;
+    import.trustTextures = settings.compile.trustTextures;
+    glint::gltf::Scene scene = valueOf(glint::gltf::importScene(options.scene, import));
+    glint::scene_view::SceneViewData data = glint::measure::sceneView(settings, scene);
+    const std::uint32_t width = settings.renderer.width;
+    const std::uint32_t height = settings.renderer.height;
+    const auto camera = valueOf(
+        glint::scene_view::chooseCamera(scene, data, settings.camera, static_cast<double>(width) / height));
+
+    glint::HeadlessOptions headless = glint::measure::deviceOptions(settings);
+    headless.validation = options.validation ? glint::Validation::Synchronization : glint::Validation::Off;
+    const auto context = valueOf(glint::Context::createHeadless(headless));
+    const glint::Package package = valueOf(glint::scene_view::compileAndLoad(
+        scene,
+        glint::measure::compileSettings(settings, settings.compile.plan, context->handles().tracers, scene)));
+    glint::scene_view::useLayoutOf(package, scene, data);
+    glint::scene_view::useTextures(
+        valueOf(glint::scene_view::loadTextures(
+            scene, glint::measure::textureOptions(settings, *context, package, nullptr))),
+        data);
+    const auto sky = glint::measure::chooseSky(settings, scene, data);
+    const auto uploaded = valueOf(glint::GpuScene::upload(*context, package, data.view()));
+
+    // Each frame is a picture of its own. Its layers are means over its samples.
+    glint::RendererOptions rendererOptions = glint::measure::rendererOptions(settings);
+    rendererOptions.accumulate = options.samples > 1;
+    const auto renderer = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
+    options.filter.samples = options.samples;
+    denoise::Denoiser denoiser(context->handles(), *renderer, width, height, options.shaders, options.filter);
+    Queue queue(context->handles());
+    glint::FrameOptions frame = glint::measure::frameOptions(settings, camera.view, sky, nullptr);
+    double samplesMs = 0.0;
+    double filterMs = 0.0;
+    for (std::uint32_t i = 0; i < options.frames; ++i) {
+        frame.camera = turned(camera.view, options.turn * (static_cast<double>(i) - (options.frames - 1)));
+        // The seed shifts the pixels' samples and all random numbers.
+        frame.seed = i + 1;
+        frame.averagedSamples = options.samples;
+        for (frame.sampleIndex = 0; frame.sampleIndex < options.samples; ++frame.sampleIndex) {
+            samplesMs += queue.run([&](VkCommandBuffer commands) {
+                const glint::Status recorded = renderer->record(commands, frame);
+                if (!recorded) {
+                    fail(toString(recorded.error()));
+                }
+            });
+        }
+        filterMs += queue.run([&](VkCommandBuffer commands) { denoiser.record(commands); });
+    }
+    const glint::LinearImage filtered = queue.read(denoiser.output(), width, height);
+    const glint::Status written = glint::image::writeImage(options.output, filtered, 0.0);
+    if (!written) {
+        fail(toString(written.error()));
+    }
+    std::printf("%s, %u x %u, filter: %.1f MiB of images\n", context->deviceName().c_str(), width, height,
+                static_cast<double>(denoiser.bytes()) / (1024.0 * 1024.0));
+    if (options.reference > 0) {
+        rendererOptions.accumulate = true;
+        const auto means = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
+        const auto mean = [&](std::uint32_t samples, std::uint32_t seed, double& milliseconds) {
+            glint::FrameOptions many = glint::measure::frameOptions(settings, camera.view, sky, nullptr);
+            many.seed = seed;
+            const auto begin = std::chrono::steady_clock::now();
+            glint::LinearImage image = valueOf(means->render(many, samples));
+            milliseconds = millisecondsSince(begin);
+            return image;
+        };
+        double milliseconds = 0.0;
+        const glint::LinearImage truth = mean(options.reference, 7777, milliseconds);
+        std::printf("%-24s %10s %10s %12s %12s\n", "picture", "relMSE", "RMSE", "samples ms", "filter ms");
+        const std::string few = std::to_string(options.samples) + " samples";
+        printRow(few + ", filtered", filtered, truth, samplesMs, filterMs);
+        const glint::LinearImage plain = mean(options.samples, 1, milliseconds);
+        printRow(few, plain, truth, milliseconds, 0.0);
+        const glint::LinearImage many = mean(options.many, 1, milliseconds);
+        printRow(std::to_string(options.many) + " samples", many, truth, milliseconds, 0.0);
+    }
+    const std::vector<std::string> messages = context->validationMessages();
+    if (!messages.empty()) {
+        fail(messages.front());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::optional<Options> options = parse({argv + 1, argv + argc});
+    if (!options) {
+        std::cerr << kUsage;
+        return 2;
+    }
+    run(*options);
+    return 0;
+}

@@ -1,0 +1,147 @@
+// The layers of a frame: images beside the picture, such as depth, motion, albedo and the light of each
+// effect, for denoisers, compositing and debug views. docs/layers.md describes each of them.
+//
+// layerTable() is their only declaration. The words of --layers, what a package generates, the images of a
+// renderer, the bytes of --stats and the channels of OpenEXR files follow from its rows.
+#pragma once
+
+#include <glint/effects.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::package {
+
+// How an image of a layer stores its values.
+enum class LayerFormat : std::uint32_t {
+    Float1,   // one 32-bit float
+    Float4,   // four
+    Half4,    // four 16-bit floats
+    Snorm4,   // four 16-bit numbers from -1 to 1
+    Integer,  // one 32-bit number without a sign
+};
+
+struct LayerFormatInfo {
+    LayerFormat format{};
+    std::uint32_t bytes = 0;     // of a pixel
+    std::string_view qualifier;  // of the image in GLSL: "rgba32f"
+    std::uint32_t components = 0;
+};
+const LayerFormatInfo& infoOf(LayerFormat format);
+
+// What a layer describes, and so how many images of it a package may have.
+enum class LayerSubject : std::uint32_t {
+    Surface,  // the primary surface: one image
+    Light,    // light that leaves the primary surface: an image for the direct light and for each effect with
+              // rays
+    Ray,      // what a ray of an effect found: an image for each effect with rays
+    Bounce,   // what a bounce of its paths brings: an image for each such effect and bounce, where there are
+              // several
+    Work,     // what all passes did for the pixel: one image
+};
+
+// Further bounces than these share the last one's layers.
+inline constexpr std::uint32_t kMostLayerBounces = 4;
+
+// Which pass writes a layer.
+enum class LayerPass : std::uint32_t {
+    Lighting,
+    Compose,
+    Several,  // lighting begins it, and the passes that do what it counts add to it
+};
+
+// How the samples of a picture become one value.
+enum class LayerMean : std::uint32_t {
+    First,  // the layer is that of the picture's first sample
+    Mean,   // it is the mean over the samples, as the picture is
+    Sum,    // it is the sum over the samples
+};
+
+// What a layer needs of the renderer beside its image, as bits of a set.
+enum LayerDemand : std::uint32_t {
+    kLayerHistory = 1,  // camera, transforms and deformed vertices of the frame before
+    kLayerRays = 2,     // what the rays of effects hit
+    kLayerClock = 4,    // shaders read a clock: DeviceHandles::shaderClock
+    kLayerQueries = 8,  // rays are traced by ray queries alone
+};
+
+// A row of the table.
+struct LayerInfo {
+    std::uint32_t number = 0;  // in packages; stable
+    std::string_view name;     // in --layers and OpenEXR files
+    std::string_view what;     // a sentence without a full stop
+    LayerSubject subject{};
+    LayerFormat format{};
+    std::string_view channels;  // of OpenEXR, one letter each: "XYZ". Further components of the format are 0
+    LayerMean mean{};
+    std::uint32_t demands = 0;  // LayerDemand bits
+    // Its value is computed from its own last value, too, where a picture is a mean.
+    bool continues = false;
+    // Another layer of the same subject that it is computed from; empty if there is none.
+    std::string_view from{};
+    // What the GLSL calls: a function of shaders/layers/, and the value of a pixel without a surface.
+    std::string_view function{};
+    std::string_view absent{};
+    // With LayerPass::Several: the macro by which passes add to it (subject Work), or store the value of a
+    // sample (subject Ray). `absent` is the value that it begins with.
+    std::string_view tally{};
+    // It is for people who look for a problem. Words for several layers at once leave it out.
+    bool isDiagnostic = false;
+};
+
+// Values of the layer "hit-shader" that are no shader IDs.
+inline constexpr std::uint32_t kNoRay = 0xFFFFFFFF;
+inline constexpr std::uint32_t kRayLeftScene = 0xFFFFFFFE;
+inline constexpr std::uint32_t kRayEndedOnScreen = 0xFFFFFFFD;
+// The layer "non-finite" counts infinite samples in this unit, and those that are not a number in ones.
+inline constexpr std::uint32_t kInfiniteSample = 0x10000;
+
+// Whether sources of light have such layers, rather than the pixel.
+bool hasSources(const LayerInfo& info);
+
+// All rows, in the order in which --help lists them.
+std::span<const LayerInfo> layerTable();
+// These return null if there is no such layer.
+const LayerInfo* findLayer(std::string_view name);
+const LayerInfo* findLayer(std::uint32_t number);
+
+// The source of the layers of the direct light, as effects are those of the others: "direct.radiance".
+inline constexpr std::string_view kDirectLight = "direct";
+
+// A layer of a package, in tables.bin.
+struct LayerEntry {
+    std::uint32_t layer = 0;   // LayerInfo::number
+    Effect effect = 0;         // of layers of an effect; 0 for surfaces and the direct light
+    std::uint32_t bounce = 0;  // of layers of a bounce, from 1; 0 for others
+
+    friend bool operator==(const LayerEntry&, const LayerEntry&) = default;
+};
+static_assert(sizeof(LayerEntry) == 12);
+
+// A layer of a package.
+struct PackageLayer {
+    const LayerInfo* info = nullptr;
+    Effect effect = 0;  // as in LayerEntry, as the next
+    std::uint32_t bounce = 0;
+    std::string
+        name;  // "depth", "direct.radiance", "reflection.virtual-motion", "reflection.bounce-radiance.2"
+};
+
+// Returns the name of a layer, whose source of light has the name `source`.
+std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce);
+
+// The pass that writes the layer: lighting what surfaces are and their direct light, several those with a
+// tally, compose the rest.
+LayerPass passOf(const LayerEntry& entry);
+// LayerDemand bits of all of them.
+std::uint32_t demandsOf(std::span<const PackageLayer> layers);
+// How many bounces have layers of their own; 0 if none has.
+std::uint32_t layerBounces(std::span<const PackageLayer> layers);
+// The size of a pixel of all images, bytes.
+std::uint32_t bytesOf(std::span<const PackageLayer> layers);
+
+}  // namespace glint::package

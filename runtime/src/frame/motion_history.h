@@ -1,0 +1,63 @@
+// The state of the frame before, for motion: the camera, the transforms of instances, and the positions of
+// vertices that follow joints or morph weights.
+#pragma once
+
+#include "context/resources.h"
+#include "interop/frame.h"
+#include "scene/gpu_scene_state.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace glint {
+
+// Belongs to one renderer: its frame before is the last picture that this renderer began. The scene must
+// outlive it.
+class MotionHistory {
+public:
+    // A scene that neither moves nor is edited needs no memory. Errors: those of buffers.
+    static Result<std::unique_ptr<MotionHistory>> create(const GpuScene::State& scene);
+
+    // Fills FrameConstants::previous*, whose camera is that of the frame to come. Without a frame before, or
+    // after the scene got room for more instances, the frame itself takes its place. Errors: those of
+    // buffers.
+    Status fill(gpu::FrameConstants& constants);
+    // Records the copies that the next frame needs, after a frame's passes. The commands that follow must
+    // wait for them.
+    void record(VkCommandBuffer commands);
+
+    void addMemory(std::vector<MemoryItem>& items) const;
+    VkDeviceSize allocatedBytes() const {
+        return pool_.bytes();
+    }
+
+private:
+    explicit MotionHistory(const GpuScene::State& scene) : scene_(&scene), pool_(scene.context) {}
+
+    Status createVertices();
+    Status makeRoom();
+
+    // The positions of one deformed primitive.
+    struct Copy {
+        VkBuffer source = VK_NULL_HANDLE;
+        VkBufferCopy region{};
+    };
+    struct View {
+        gpu::vec4 rows[4];
+    };
+
+    const GpuScene::State* scene_;
+    MemoryPool pool_;
+    Buffer instances_;
+    std::vector<Buffer> outgrown_;  // frames in flight may read them
+    Buffer vertices_;
+    Buffer table_;  // gpu::PreviousVertices by geometry
+    std::vector<Copy> copies_;
+    std::optional<View> view_;   // of the last frame
+    View next_{};                // of the frame that is recorded
+    bool hasInstances_ = false;  // instances_ and vertices_ hold those of the last frame
+};
+
+}  // namespace glint

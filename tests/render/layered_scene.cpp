@@ -1,0 +1,94 @@
+#include "render/layered_scene.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/pose.h>
+
+#include <utility>
+
+namespace glint::testing {
+
+LayerSet::LayerSet(Renderer& renderer) {
+    for (const LayerImage& layer : renderer.layers()) {
+        Result<LayerValues> values = renderer.readLayer(layer.name);
+        if (!values) {
+            ADD_FAILURE() << toString(values.error());
+            continue;
+        }
+        width = values->width;
+        height = values->height;
+        layers_.emplace(layer.name, std::move(*values));
+    }
+}
+
+const LayerValues& LayerSet::find(const std::string& layer) const {
+    static const LayerValues kNone;
+    const auto found = layers_.find(layer);
+    if (found == layers_.end()) {
+        ADD_FAILURE() << "there is no layer " << layer;
+        return kNone;
+    }
+    return found->second;
+}
+
+float LayerSet::at(const std::string& layer, std::size_t pixel, std::size_t component) const {
+    const LayerValues& values = find(layer);
+    const std::size_t index = pixel * values.components + component;
+    return index < values.reals.size() ? values.reals[index] : 0.0F;
+}
+
+std::uint32_t LayerSet::integer(const std::string& layer, std::size_t pixel) const {
+    const LayerValues& values = find(layer);
+    return pixel < values.integers.size() ? values.integers[pixel] : 0U;
+}
+
+double LayerSet::sum(const std::string& layer) const {
+    double sum = 0.0;
+    for (const float value : find(layer).reals) {
+        sum += value;
+    }
+    return sum;
+}
+
+LayeredScene::LayeredScene(gltf::Scene posed, const compiler::CompileSettings& settings, std::uint32_t width,
+                           std::uint32_t height)
+    : scene(std::move(posed)), package_(scene, settings), aspect_(static_cast<double>(width) / height) {
+    data_ = scene_view::makeSceneView(scene);
+    data_.moves = true;
+    if (!package_.ok()) {
+        return;
+    }
+    scene_view::useLayoutOf(package_.package(), scene, data_);
+    Result<std::unique_ptr<GpuScene>> uploaded =
+        GpuScene::upload(sharedContext(), package_.package(), data_.view());
+    if (!uploaded) {
+        ADD_FAILURE() << toString(uploaded.error());
+        return;
+    }
+    gpuScene_ = std::move(*uploaded);
+    RendererOptions options;
+    options.width = width;
+    options.height = height;
+    options.accumulate = false;
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(sharedContext(), package_.package(), *gpuScene_, options);
+    if (!renderer) {
+        ADD_FAILURE() << toString(renderer.error());
+        return;
+    }
+    renderer_ = std::move(*renderer);
+}
+
+LinearImage LayeredScene::render() {
+    scene_view::poseSceneView(scene, data_);
+    const Status updated = gpuScene_->updateAndWait(data_.motion());
+    EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
+    const Result<CameraView> camera = scene_view::sceneCamera(scene, 0, aspect_);
+    EXPECT_TRUE(camera.ok());
+    frame.camera = *camera;
+    Result<LinearImage> image = renderer_->render(frame, 1);
+    EXPECT_TRUE(image.ok()) << (image ? "" : toString(image.error()));
+    expectNoValidationMessages();
+    return image ? std::move(*image) : LinearImage{};
+}
+
+}  // namespace glint::testing

@@ -1,0 +1,436 @@
+// Uses the window of glint view as a person does: keys, mouse moves and clicks go through an X server, and
+// what it shows is read back from there. The validation layers are on, and any message of theirs fails the
+// run.
+#include "cli/command.h"
+#include "cli/tiny_scene.h"
+#include "image/image_file.h"
+#include "settings/table.h"
+#include "view/virtual_screen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::uint32_t kWidth = 320;
+constexpr std::uint32_t kHeight = 180;
+
+const VirtualScreen& screen() {
+    static const VirtualScreen kScreen;
+    return kScreen;
+}
+
+class WindowTest : public CommandTest {
+protected:
+    void SetUp() override {
+        if (!screen().isRunning()) {
+            GTEST_SKIP() << "no Xvfb (scripts/setup.sh --window installs it)";
+        }
+        CommandTest::SetUp();
+    }
+
+    // Runs the window with a script and fails the test unless it ends well.
+    Outcome view(const std::string& script, const std::vector<std::string>& more = {}) const {
+        writeText(path("script"), script);
+        std::vector<std::string> words{"view", "scene.gltf", "--size",   "320x180", "--spp",
+                                       "2",    "--validate", "--script", "script"};
+        words.insert(words.end(), more.begin(), more.end());
+        Outcome outcome = run(words, {{"DISPLAY", screen().display()}});
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        return outcome;
+    }
+    Json report(const std::string& file) const {
+        return Json::parse(readText(path(file)), nullptr, false);
+    }
+    LinearImage image(const std::string& file) const {
+        const Result<LinearImage> read = image::readImage(path(file));
+        EXPECT_TRUE(read.ok()) << file;
+        return read ? *read : LinearImage{};
+    }
+};
+
+// Values of a PNG that is `levels` of 255 away, in linear light, lie within this.
+constexpr float kOneLevel = 0.01F;
+
+// Returns the share of the pixels of the area that differ by more than a level of 8 bits. The images may be
+// of different sizes; the area begins at the top left of both.
+double shareDiffering(const LinearImage& a, const LinearImage& b, std::uint32_t left, std::uint32_t right,
+                      std::uint32_t bottom) {
+    std::size_t differing = 0;
+    for (std::uint32_t y = 0; y < bottom; ++y) {
+        for (std::uint32_t x = left; x < right; ++x) {
+            const auto& p = a.pixels[std::size_t{y} * a.width + x];
+            const auto& q = b.pixels[std::size_t{y} * b.width + x];
+            bool differs = false;
+            for (std::size_t i = 0; i < 3; ++i) {
+                differs = differs || std::abs(p[i] - q[i]) > kOneLevel;
+            }
+            differing += differs ? 1 : 0;
+        }
+    }
+    return static_cast<double>(differing) / (static_cast<double>(right - left) * bottom);
+}
+
+double shareDiffering(const LinearImage& a, const LinearImage& b) {
+    return shareDiffering(a, b, 0, std::min(a.width, b.width), std::min(a.height, b.height));
+}
+
+// The picture is what `glint render` makes, the window shows it, and the command beside a screenshot makes it
+// again, also from a camera that somebody has moved.
+TEST_F(WindowTest, ShowsThePictureOfRender) {
+    writeTinyScene(path(""));
+    view(R"(
+        wait complete
+        picture window.png
+        click Screenshot
+        wait complete
+        drag 100 60 150 75
+        wheel 2
+        hold w 0.2
+        drag 200 60 205 62 2
+        wait complete
+        key p
+        wait complete
+        report moved.json
+        quit
+    )");
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    for (const std::string name : {"scene-001", "scene-002"}) {
+        fs::rename(path(name + ".png"), path(name + "-shot.png"));
+        const Outcome again = runProgram({"sh", name + ".sh"}, {{"PATH", search}});
+        ASSERT_EQ(again.exit, 0) << readText(path(name + ".sh")) << again.err;
+        const LinearImage shot = image(name + "-shot.png");
+        ASSERT_EQ(shot.width, kWidth);
+        ASSERT_EQ(shot.height, kHeight);
+        EXPECT_EQ(shareDiffering(shot, image(name + ".png")), 0.0) << name;
+    }
+    const LinearImage window = image("window.png");
+    ASSERT_GT(window.width, kWidth);
+    EXPECT_EQ(shareDiffering(window, image("scene-001.png"), 0, kWidth, kHeight), 0.0);
+    EXPECT_GT(shareDiffering(image("scene-001.png"), image("scene-002.png")), 0.3);
+    EXPECT_TRUE(has(report("moved.json").at("camera"), "/")) << report("moved.json").at("camera");
+}
+
+// Returns steps that give a setting another value, and that value.
+std::pair<std::string, std::string> touch(const compiler::Descriptor& row) {
+    // Where the first other value is none for this scene or device.
+    static const std::map<std::string, std::string, std::less<>> kValues{
+        {"size", "300x170"},
+        {"spp", "3"},
+        {"ao-radius", "2"},
+        {"strategy", "uber"},
+        {"tracer", "ray-query"},
+        {"precision", "32"},
+        {"merge", "all"},
+        {"seed", "5"},
+        {"effects", "auto,shadow"},
+        {"hit-lobes", "all"},
+        {"alpha", "tested"},
+        {"sky", "0.5"},
+        {"max-shaders", "40"},
+        {"bounces", "2"},
+        {"ssr", "4"},
+        {"lights", "2"},
+        {"environment-rotation", ""},
+        {"environment-intensity", ""},
+    };
+    const compiler::Settings usual;
+    const std::string name(row.name);
+    std::string value;
+    const std::vector<compiler::SettingWord> words = wordsOf(row);
+    if (const auto found = kValues.find(name); found != kValues.end()) {
+        value = found->second;
+    } else if (row.values.form == compiler::ValueForm::Switch) {
+        value = row.values.text(usual) == "on" ? "off" : "on";
+    } else if (!words.empty()) {
+        value = std::ranges::find_if(words, [&](const compiler::SettingWord& word) {
+                    return word.name != row.values.text(usual);
+                })->name;
+    } else {
+        const double middle = std::min(row.values.max, std::max(row.values.min, 0.0) + 1.0);
+        value = row.values.form == compiler::ValueForm::Whole || middle >= 1.0 ? "1" : "0.5";
+        value = value == row.values.text(usual) ? "2" : value;
+    }
+    if (value.empty()) {
+        return {"", row.values.text(usual)};
+    }
+    if (row.values.form == compiler::ValueForm::Switch) {
+        return {"click " + name + "\n", value};
+    }
+    if (row.values.form == compiler::ValueForm::Text) {
+        return {"enter " + name + " " + value + "\n", value};
+    }
+    const bool isWord = std::ranges::find(words, value, &compiler::SettingWord::name) != words.end();
+    if (row.values.form == compiler::ValueForm::List && !isWord) {
+        return {"choose " + name + " " + value.substr(value.rfind(',') + 1) + "\n", value};
+    }
+    if (isWord) {
+        return {"choose " + name + " " + value + "\n", value};
+    }
+    if (words.empty()) {
+        return {"number " + name + " " + value + "\n", value};
+    }
+    return {"click " + name + "\nenter " + name + "= " + value + "\n", value};
+}
+
+// Every control of the table is clicked or typed into. Builds that are no longer wanted are left out, so that
+// this makes few packages.
+TEST_F(WindowTest, EverySettingHasAControl) {
+    writeTinyScene(path(""));
+    std::string script = "wait complete\nsize 800 980\nwait complete\n";
+    std::map<std::string, std::string> expected;
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        // What has no value that suits everything else comes back to where it was.
+        const std::string name(row.name);
+        if ((row.commands & compiler::kOfRender) == 0 || name == "size") {
+            continue;
+        }
+        const auto [steps, value] = touch(row);
+        script += steps;
+        expected[name] = value;
+    }
+    // The device lacks position fetch with the validation layers: the picture stays, and the message says
+    // why.
+    script += R"(
+        wait failed
+        report failed.json
+        click reset:position-fetch
+        wait complete
+        report all.json
+        enter size 300x170
+        wait complete
+        report sized.json
+        quit
+    )";
+    expected["position-fetch"] = "off";
+    view(script);
+    const Json failed = report("failed.json");
+    EXPECT_TRUE(has(failed.at("error").get<std::string>(), "position-fetch")) << failed.at("error");
+    EXPECT_EQ(failed.at("strategy"), "visibility");
+    const Json all = report("all.json");
+    EXPECT_TRUE(all.at("error").is_null()) << all.at("error");
+    for (const auto& [name, value] : expected) {
+        EXPECT_EQ(all.at("settings").at(name), value) << name;
+    }
+    EXPECT_EQ(all.at("strategy"), "uber");
+    EXPECT_EQ(all.at("samples"), 3);
+    const Json sized = report("sized.json");
+    EXPECT_EQ(sized.at("width"), 300);
+    EXPECT_EQ(sized.at("height"), 170);
+}
+
+TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
+    writeTinyScene(path(""), {.animated = true});
+    fs::create_directories(path("other"));
+    writeTinyScene(path("other"), {.masked = true});
+    view(R"(
+        wait complete
+        # a pixel of the floor
+        click 160 140
+        wait control tab Pixel
+        report pick.json
+        click tab Passes
+        wait complete
+        report passes.json
+        click tab Scene
+        click memory of the scene
+        click memory of a frame
+        click tab Messages
+        click Copy all
+        click Clear
+        click Help
+        report help.json
+        picture help.png
+        key Escape
+        # the window
+        key Tab
+        wait complete
+        report wide.json
+        key Tab
+        size 700 400
+        wait complete
+        report large.json
+        minimise
+        pause 0.3
+        report minimised.json
+        restore
+        size 760 206
+        wait complete
+        key m
+        wait complete
+        report half.json
+        key m m m
+        size 760 606
+        wait complete
+        # the camera
+        key c
+        wait complete
+        key f
+        drag 100 60 130 70
+        report flies.json
+        key f Home
+        wait complete
+        key bracketright
+        click exposure auto
+        wait complete
+        # the animation
+        click Play
+        wait control Rest
+        pause 0.4
+        key space
+        wait complete
+        report moved.json
+        number time 0.5
+        wait complete
+        picture moved.png
+        click Rest
+        wait complete
+        picture rest.png
+        # A and B
+        key b
+        wait complete
+        click tab Settings
+        choose effects none
+        number skip-below 0.5
+        wait complete
+        click Measure
+        report compare.json
+        click show A
+        picture a.png
+        click show B
+        picture b.png
+        click show difference
+        number gain 16
+        picture difference.png
+        click show A|B
+        move 10 10
+        picture wipe.png
+        drag 160 60 60 60
+        picture wiped.png
+        click edit A
+        click Compare
+        # strategies by their keys
+        key 3
+        wait complete
+        report third.json
+        # files
+        drop other/scene.gltf
+        wait complete
+        report dropped.json
+        drop script
+        wait failed
+        report refused.json
+        key ctrl+q
+    )");
+    const Json pick = report("pick.json").at("pick").at("fields");
+    EXPECT_EQ(pick.at("material"), "0: Floor");
+    EXPECT_EQ(pick.at("primitive"), "/meshes/0/primitives/0");
+    EXPECT_TRUE(has(pick.at("bucket"), "hits of case")) << pick;
+    EXPECT_TRUE(pick.contains("why") && pick.contains("key") && pick.contains("cost by the model")) << pick;
+    EXPECT_TRUE(pick.contains("rays of reflection")) << pick;
+    const Json passes = report("passes.json").at("passes");
+    for (const char* const pass : {"gbuffer", "lighting", "compose"}) {
+        EXPECT_TRUE(passes.contains(pass)) << passes;
+    }
+    EXPECT_TRUE(report("help.json").at("help"));
+    EXPECT_EQ(report("wide.json").at("width"), kWidth + 440);
+    EXPECT_EQ(report("large.json").at("width"), 260);
+    EXPECT_EQ(report("large.json").at("height"), 374);
+    EXPECT_EQ(report("half.json").at("width"), kWidth / 2);
+    EXPECT_TRUE(report("flies.json").at("flies"));
+    EXPECT_GT(report("moved.json").at("time"), 0.0);
+    EXPECT_EQ(report("moved.json").at("samples"), 2);
+    EXPECT_GT(shareDiffering(image("moved.png"), image("rest.png"), 0, kWidth, kHeight), 0.02);
+
+    EXPECT_TRUE(has(report("compare.json").at("difference"), "FLIP")) << report("compare.json");
+    const LinearImage a = image("a.png");
+    const LinearImage b = image("b.png");
+    // Below the label at the top.
+    EXPECT_GT(shareDiffering(a, b, 0, kWidth, kHeight), 0.1);
+    const LinearImage wipe = image("wipe.png");
+    EXPECT_LT(shareDiffering(wipe, a, 0, kWidth / 2 - 24, kHeight), 0.06);
+    EXPECT_LT(shareDiffering(wipe, b, kWidth / 2 + 24, kWidth, kHeight), 0.06);
+    EXPECT_LT(shareDiffering(image("wiped.png"), b, 90, kWidth, kHeight), 0.06);
+    EXPECT_GT(shareDiffering(image("difference.png"), a, 0, kWidth, kHeight), 0.1);
+
+    EXPECT_EQ(report("third.json").at("strategy"), "sorted-uber");
+    EXPECT_FALSE(report("third.json").at("compares"));
+    EXPECT_EQ(report("dropped.json").at("scene"), "other/scene.gltf");
+    EXPECT_TRUE(report("dropped.json").at("error").is_null());
+    EXPECT_TRUE(has(report("refused.json").at("error").get<std::string>(), "window-drop"));
+}
+
+// A scene and a pack change under the window. What does not compile leaves the picture as it was.
+TEST_F(WindowTest, FollowsFilesThatChange) {
+    const fs::path scene = writeTinyScene(path(""));
+    addMud(scene, 0.8);
+    writeMudPack(path("pack"), 0.5);
+    writeText(path("good.glsl"), readText(path("pack/mud.glsl")));
+    writeText(path("bad.glsl"),
+              "void mudSurface(Hit hit, Features features, inout SurfaceValues values) {\n    oops();\n}\n");
+    writeMudPack(path("dark"), 0.1);
+    fs::create_directories(path("later"));
+    fs::copy_file(scene, path("later/scene.gltf"));
+    addMud(path("later/scene.gltf"), 0.2);
+    view(R"(
+        wait complete
+        picture first.png
+        copy dark/mud.glsl pack/mud.glsl
+        pause 0.5
+        wait complete
+        picture dark.png
+        report dark.json
+        copy bad.glsl pack/mud.glsl
+        wait failed
+        picture bad.png
+        report bad.json
+        copy good.glsl pack/mud.glsl
+        pause 0.5
+        wait complete
+        picture good.png
+        report good.json
+        copy later/scene.gltf scene.gltf
+        pause 0.5
+        wait complete
+        picture later.png
+        quit
+    )",
+         {"--materials", "pack"});
+    const LinearImage first = image("first.png");
+    EXPECT_GT(shareDiffering(first, image("dark.png"), 0, kWidth, kHeight), 0.05);
+    EXPECT_TRUE(has(report("dark.json").at("lastChange"), "package replaced")) << report("dark.json");
+    const std::string error = report("bad.json").at("error").get<std::string>();
+    EXPECT_TRUE(has(error, "mud.glsl:2")) << error;
+    EXPECT_EQ(shareDiffering(image("bad.png"), image("dark.png"), 0, kWidth, kHeight), 0.0);
+    EXPECT_TRUE(report("good.json").at("error").is_null());
+    EXPECT_LT(shareDiffering(first, image("good.png"), 0, kWidth, kHeight), 0.01);
+    EXPECT_GT(shareDiffering(first, image("later.png"), 0, kWidth, kHeight), 0.05);
+}
+
+TEST_F(WindowTest, RefusesWhatItCantDo) {
+    writeTinyScene(path(""));
+    writeText(path("script"), "wait complete\nfly to the moon\n");
+    const std::vector<std::pair<std::string, std::string>> variables{{"DISPLAY", screen().display()}};
+    const Outcome script = run({"view", "scene.gltf", "--size", "32x18", "--script", "script"}, variables);
+    EXPECT_EQ(script.exit, 1);
+    EXPECT_TRUE(has(script.err, "script:2: error: is no step of a script: fly")) << script.err;
+    const Outcome missing = run({"view", "none.gltf"}, variables);
+    EXPECT_EQ(missing.exit, 1);
+    EXPECT_TRUE(has(missing.err, "none.gltf")) << missing.err;
+    const Outcome blind = run({"view", "scene.gltf"}, {{"DISPLAY", ":no"}});
+    EXPECT_EQ(blind.exit, 1);
+    EXPECT_TRUE(has(blind.err, "[window-open]")) << blind.err;
+    EXPECT_EQ(run({"view", "scene.gltf", "--spp", "0"}, variables).exit, 2);
+}
+
+}  // namespace
+}  // namespace glint::testing

@@ -1,0 +1,156 @@
+// glint view: shows a scene in a window.
+#include "cli/command_line.h"
+#include "cli/commands.h"
+#include "cli/compile/cache.h"
+#include "cli/explain/material_text.h"
+#include "cli/options/effect_options.h"
+#include "cli/render/arguments.h"
+#include "cli/render/pipeline_cache.h"
+#include "view/request.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <unistd.h>
+
+namespace glint::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A picture is complete at this number of samples, unless --spp says otherwise.
+constexpr std::uint32_t kSamplesInWindow = 64;
+
+struct ViewArguments : RenderArguments {
+    std::string folder = ".";
+    std::string script;
+    bool plays = false;
+    bool hidesPanel = false;
+};
+
+view::Request requestOf(const Console& console, const ViewArguments& arguments, CompileCache& cache) {
+    view::Request request;
+    request.scene = arguments.scene;
+    request.settings = static_cast<const compiler::Settings&>(arguments);
+    request.exposure = arguments.exposure;
+    request.time = arguments.motion.time;
+    request.animation = arguments.motion.animation;
+    request.plays = arguments.plays;
+    request.folder = arguments.folder;
+    request.script = arguments.script;
+    request.showsPanel = !arguments.hidesPanel;
+    request.observer = &console;
+    request.modules = cache.modules();
+    request.store = cache.store();
+    request.importOptions = [&cache](const compiler::Settings& settings) {
+        return importOptions(settings, ImageReading::Files, cache.store());
+    };
+    request.effectWarnings = [](const gltf::SceneList& scenes, const compiler::CompileSettings& settings) {
+        return effectWarnings(scenes, settings);
+    };
+    request.explain = [](const gltf::Scene& scene, const compiler::PlanOptions& options,
+                         const compiler::Plan& plan, int material) {
+        const gltf::SceneList scenes({&scene, 1});
+        std::vector<view::Field> fields;
+        for (const std::vector<std::string>& row :
+             materialRows({scenes, options, plan}, material, Detail::Whole)) {
+            const std::size_t first = std::min(row[0].find_first_not_of(' '), row[0].size());
+            fields.push_back({row[0].substr(first), row[1]});
+        }
+        return fields;
+    };
+    return request;
+}
+
+int show(const Console& console, const ViewArguments& arguments, ShowWindow showWindow) {
+    CompileCache cache(CacheArguments{}, "");
+    view::Request request = requestOf(console, arguments, cache);
+    std::unique_ptr<PipelineCacheFile> pipelines;
+    request.opened = [&](Context& context) {
+        pipelines = std::make_unique<PipelineCacheFile>(console, context,
+                                                        pipelineCacheFolder(arguments.pipelines, {}));
+    };
+    request.closing = [&](Context&) {
+        pipelines->save();
+        pipelines.reset();
+    };
+    const Status shown = showWindow(request);
+    cache.close(console);
+    if (!shown) {
+        console.report(shown.error());
+        return kExitFailed;
+    }
+    return kExitDone;
+}
+
+// Becomes the program glint-view beside this one, with the same command line. Returns only if that fails.
+int startProgram(const Console& console, std::span<const char* const> line) {
+    std::error_code error;
+    const std::string program =
+        (fs::read_symlink("/proc/self/exe", error).parent_path() / "glint-view").string();
+    std::vector<char*> words{const_cast<char*>(program.c_str())};
+    for (const char* const word : line) {
+        words.push_back(const_cast<char*>(word));
+    }
+    words.push_back(nullptr);
+    execv(program.c_str(), words.data());
+    return fail(console, makeError("window-missing", "", "this glint was built without its window",
+                                   "install libglfw3-dev, libimgui-dev, libxtst-dev and glslang-tools, then "
+                                   "configure and build Glint again"));
+}
+
+}  // namespace
+
+void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, ShowWindow showWindow) {
+    CLI::App& command =
+        addCommand(app, "view", "Show a scene in a window, and change every setting while it runs",
+                   "glint view scene.gltf --size 1280x720 --bounces 4");
+    const auto arguments = std::make_shared<ViewArguments>();
+    arguments->samples = kSamplesInWindow;
+    addSceneOptions(command, *arguments);
+    addText(command, "--package", arguments->package, "DIR",
+            "use this package of the scene instead of compiling it,\n"
+            "and the next one when it is written (glint compile\n"
+            "--watch)")
+        .group("Shaders");
+    const std::string group = "Window";
+    addText(command, "--time", arguments->motion.time, "SECONDS",
+            "begin at this time of the animation (default: the rest\npose)")
+        .group(group)
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                double seconds = 0.0;
+                return compiler::parseReal(text, 0.0, 1e6, seconds)
+                           ? std::string()
+                           : "\"" + text + "\" is no number from 0 to 1000000";
+            },
+            ""));
+    addText(command, "--animation", arguments->motion.animation, "NAME|INDEX|all",
+            "which animation plays, by name or number from 0; all: all\n"
+            "of them at once (default: 0)")
+        .group(group);
+    addFlag(command, "--play", arguments->plays, "begin to play the animation").group(group);
+    addFlag(command, "--no-panel", arguments->hidesPanel, "begin without the panel; Tab shows it")
+        .group(group);
+    addText(command, "--screenshots", arguments->folder, "DIR",
+            "where screenshots are written (default: here)")
+        .group(group);
+    addText(command, "--script", arguments->script, "FILE",
+            "replay keys, mouse moves and clicks (docs/view.md), for\ntests and tours")
+        .group(group);
+    command.callback([arguments, line, showWindow, &command, &chosen] {
+        checkPackageChoice(command);
+        checkSceneOptions(command, *arguments);
+        checkProfile(command, *arguments);
+        chosen = [arguments, line, showWindow](const Console& console) {
+            return showWindow != nullptr ? show(console, *arguments, showWindow)
+                                         : startProgram(console, line);
+        };
+    });
+}
+
+}  // namespace glint::cli

@@ -1,0 +1,440 @@
+#include "emit/layers.h"
+
+#include "base/suggest.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <interop/frame.h>
+#include <iterator>
+#include <set>
+#include <tuple>
+
+namespace glint::compiler {
+
+namespace mustache = kainjow::mustache;
+
+using package::LayerEntry;
+using package::LayerInfo;
+using package::LayerSubject;
+
+namespace {
+
+// The words of --layers for several layers at once.
+constexpr std::string_view kEveryLayer = "all";
+constexpr std::string_view kSurfaceLayers = "surface";
+
+const LayerInfo& infoOf(const LayerEntry& entry) {
+    return *package::findLayer(entry.layer);
+}
+
+const materials::EffectDeclaration& declarationOf(const materials::MaterialModel& model,
+                                                  package::Effect effect) {
+    return model.effects[package::effectNumber(effect)];
+}
+
+// The albedo that a source's light is divided by: that of the lobes that bring it.
+const LayerInfo& albedoOf(package::Effect effect, const materials::MaterialModel& model) {
+    const std::string lobes = effect == 0 ? std::string() : declarationOf(model, effect).albedo;
+    return *package::findLayer(lobes.empty() ? std::string("albedo") : "albedo-" + lobes);
+}
+
+bool demodulates(const LayerInfo& info) {
+    return info.name.ends_with("demodulated");
+}
+
+// The images of a layer that the package may have. `bounces` have layers of their own.
+std::vector<LayerEntry> entriesOf(const LayerInfo& info, const Plan& plan, std::uint32_t bounces) {
+    std::vector<LayerEntry> entries;
+    if (!package::hasSources(info) || info.subject == LayerSubject::Light) {
+        entries.push_back({info.number, 0, 0});
+    }
+    package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
+        const package::Effect effect = 1U << number;
+        const bool moves = info.subject == LayerSubject::Ray && (info.demands & package::kLayerHistory) != 0;
+        if (info.subject == LayerSubject::Bounce) {
+            for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
+                entries.push_back({info.number, effect, bounce});
+            }
+        } else if (package::hasSources(info) && (!moves || !plan.model->effects[number].shows.empty())) {
+            entries.push_back({info.number, effect, 0});
+        }
+    });
+    return entries;
+}
+
+// How many bounces of the package's paths have layers of their own; 0 if paths have one bounce.
+std::uint32_t layerBouncesOf(const Plan& plan, const CompileSettings& settings) {
+    const bool hasPaths = plan.effects.effects.rays != 0 && settings.maxBounces > 1;
+    return hasPaths ? std::min(settings.maxBounces, package::kMostLayerBounces) : 0;
+}
+
+// The layers that a word stands for, with all their sources. Empty if it is "SOURCE.LAYER".
+std::vector<const LayerInfo*> layersNamed(std::string_view word) {
+    std::vector<const LayerInfo*> named;
+    for (const LayerInfo& info : package::layerTable()) {
+        const bool isSurface = info.subject == LayerSubject::Surface;
+        const bool inGroup =
+            !info.isDiagnostic && (word == kEveryLayer || (word == kSurfaceLayers && isSurface));
+        if (inGroup || word == info.name) {
+            named.push_back(&info);
+        }
+    }
+    return named;
+}
+
+// Resolves "reflection.radiance", or "reflection" for all layers of the effect.
+Status addOfSource(std::string_view word, const Plan& plan, std::uint32_t bounces, const std::string& where,
+                   std::vector<LayerEntry>& entries) {
+    const std::size_t dot = std::min(word.find('.'), word.size());
+    const std::string source(word.substr(0, dot));
+    const std::string_view layer = word.substr(std::min(dot + 1, word.size()));
+    std::vector<std::string> known{std::string(package::kDirectLight)};
+    package::forEachEffect(plan.effects.effects.rays,
+                           [&](std::uint32_t number) { known.push_back(plan.model->effects[number].name); });
+    if (std::ranges::find(known, source) == known.end()) {
+        const bool exists = findEffect(plan.model->effects, source) != 0;
+        return makeError(
+            "layer-effect", where,
+            exists
+                ? fmt::format("the package has no effect {} with rays, so there is no layer {}", source, word)
+                : fmt::format("there is no effect {}{}", source, base::suggestion(source, known)),
+            fmt::format("layers are of {}; --effects decides which effects the package has",
+                        fmt::join(known, ", ")));
+    }
+    // 0 for the direct light, which no effect is called.
+    const package::Effect effect = findEffect(plan.model->effects, source);
+    const std::size_t before = entries.size();
+    for (const LayerInfo& info : package::layerTable()) {
+        const bool wanted = layer.empty() ? !info.isDiagnostic : layer == info.name;
+        if (!wanted || !package::hasSources(info)) {
+            continue;
+        }
+        for (const LayerEntry& entry : entriesOf(info, plan, bounces)) {
+            if (entry.effect == effect) {
+                entries.push_back(entry);
+            }
+        }
+    }
+    return entries.size() > before
+               ? okStatus()
+               : Status(
+                     makeError("layer-effect", where, fmt::format("{} has no layer {}", source, layer),
+                               "see docs/layers.md for which layers a source of light has; those of bounces "
+                               "need --bounces"));
+}
+
+// Adds what others are computed from.
+void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const LayerEntry entry = entries[i];
+        const LayerInfo& info = infoOf(entry);
+        if (!info.from.empty()) {
+            entries.push_back({package::findLayer(info.from)->number, entry.effect, entry.bounce});
+        }
+        if (demodulates(info)) {
+            entries.push_back({albedoOf(entry.effect, *plan.model).number, 0, 0});
+        }
+    }
+    const auto place = [](const LayerEntry& entry) {
+        const auto row = std::ranges::find(package::layerTable(), entry.layer, &LayerInfo::number);
+        return std::tuple(row - package::layerTable().begin(), entry.effect, entry.bounce);
+    };
+    std::ranges::sort(entries, {}, place);
+    const auto again = std::ranges::unique(entries);
+    entries.erase(again.begin(), again.end());
+}
+
+// "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.
+std::string variableNamed(std::string_view layer) {
+    std::string variable;
+    bool raises = false;
+    for (const char character : layer) {
+        const bool isLetter = std::isalnum(static_cast<unsigned char>(character)) != 0;
+        if (isLetter) {
+            variable +=
+                raises ? static_cast<char>(std::toupper(static_cast<unsigned char>(character))) : character;
+        }
+        raises = !isLetter;
+    }
+    return variable;
+}
+
+// The fields of one layer.
+mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
+    const LayerInfo& info = infoOf(entry);
+    const package::LayerFormatInfo& format = package::infoOf(info.format);
+    const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
+    const std::string variable = variableNamed(layerNameOf(entry, *plan.model));
+    mustache::data fields;
+    fields.set("binding", fmt::format("kBindingLayers + {}u", place));
+    fields.set("qualifier", std::string(format.qualifier));
+    fields.set("image", info.format == package::LayerFormat::Integer ? "uimage2D" : "image2D");
+    fields.set("value", variable);
+    fields.set("variable", variable + "Layer");
+    fields.set("function", std::string(info.function));
+    fields.set("absent", std::string(info.absent));
+    fields.set("isMean", mustache::data(info.mean == package::LayerMean::Mean));
+    return fields;
+}
+
+const LayerEntry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect,
+                            std::uint32_t bounce = 0) {
+    const LayerEntry entry{package::findLayer(layer)->number, effect, bounce};
+    const auto found = std::ranges::find(plan.layers, entry);
+    return found == plan.layers.end() ? nullptr : &*found;
+}
+
+std::string variableOf(const LayerEntry& entry, const Plan& plan) {
+    return fieldsOf(entry, plan).get("variable")->string_value();
+}
+
+std::string albedoVariable(const Plan& plan, package::Effect effect) {
+    return variableOf({albedoOf(effect, *plan.model).number, 0, 0}, plan);
+}
+
+// The fields of the layers of light: of a source, or of one bounce of its paths; false if it has none.
+mustache::data lightFields(const Plan& plan, package::Effect effect, std::uint32_t bounce = 0) {
+    const std::string prefix = bounce == 0 ? "" : "bounce-";
+    const LayerEntry* const radiance = findEntry(plan, prefix + "radiance", effect, bounce);
+    if (radiance == nullptr) {
+        return false;
+    }
+    mustache::data fields;
+    fields.set("radiance", variableOf(*radiance, plan));
+    for (const char* const name : {"demodulated", "variance"}) {
+        const LayerEntry* const entry = findEntry(plan, prefix + name, effect, bounce);
+        mustache::data own(false);
+        if (entry != nullptr) {
+            own = mustache::data();
+            own.set("variable", variableOf(*entry, plan));
+            own.set("albedo", demodulates(infoOf(*entry)) ? albedoVariable(plan, effect) : std::string());
+        }
+        fields.set(name, own);
+    }
+    return fields;
+}
+
+// The fields of a layer alone; false if the package lacks it.
+mustache::data imageFields(const Plan& plan, std::string_view layer, package::Effect effect,
+                           std::uint32_t bounce = 0) {
+    const LayerEntry* const found = findEntry(plan, layer, effect, bounce);
+    if (found == nullptr) {
+        return false;
+    }
+    mustache::data fields;
+    fields.set("variable", variableOf(*found, plan));
+    fields.set("shows", declarationOf(*plan.model, effect).shows);
+    return fields;
+}
+
+}  // namespace
+
+Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSettings& settings,
+                                              const std::string& where) {
+    std::vector<LayerEntry> entries;
+    const std::uint32_t bounces = layerBouncesOf(plan, settings);
+    for (const std::string& word : settings.layers) {
+        const std::vector<const LayerInfo*> named = layersNamed(word);
+        const std::size_t before = entries.size();
+        for (const LayerInfo* const info : named) {
+            std::ranges::copy(entriesOf(*info, plan, bounces), std::back_inserter(entries));
+        }
+        if (named.empty()) {
+            if (Status added = addOfSource(word, plan, bounces, where, entries); !added) {
+                return added.error();
+            }
+        } else if (entries.size() == before) {
+            return makeError("layer-effect", where,
+                             fmt::format("nothing in the package has the layer {}", word),
+                             "add an effect with rays by --effects, and --bounces for layers of bounces");
+        }
+    }
+    if (!entries.empty() && settings.passes != package::Passes::Frame) {
+        return makeError("passes", where, "--layers is about frames, and --passes steps draws none",
+                         "leave out --layers, or --passes steps");
+    }
+    addNeeded(plan, entries);
+    return entries;
+}
+
+std::string layerNameOf(const LayerEntry& entry, const materials::MaterialModel& model) {
+    const std::string_view source =
+        entry.effect == 0 ? package::kDirectLight : declarationOf(model, entry.effect).name;
+    return package::layerName(infoOf(entry), source, entry.bounce);
+}
+
+std::string layerDefines(const Plan& plan, bool deforms) {
+    std::uint32_t demands = 0;
+    bool ofSurfaces = false;
+    bool ofEffects = false;
+    std::uint32_t bounces = 0;
+    bool groups = false;
+    std::set<std::string_view> tallies;
+    for (const LayerEntry& entry : plan.layers) {
+        const LayerInfo& info = infoOf(entry);
+        demands |= info.demands;
+        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::Lighting;
+        ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
+        groups = groups || (!info.tally.empty() && package::hasSources(info));
+        tallies.insert(info.tally);
+        bounces = std::max(bounces, entry.bounce);
+    }
+    tallies.erase("");
+    const bool history = (demands & package::kLayerHistory) != 0;
+    const auto flag = [](bool value) { return value ? 1 : 0; };
+    std::string text = fmt::format(
+        "// Layers beside the picture\n"
+        "#define GLINT_LAYER_MEMBERS {}\n"
+        "#define GLINT_SURFACE_LAYERS {}\n"
+        "#define GLINT_EFFECT_LAYERS {}\n"
+        "#define GLINT_LAYER_HISTORY {}\n"
+        "#define GLINT_LAYER_DEFORMS {}\n"
+        "#define GLINT_LAYER_RAYS {}\n"
+        "#define GLINT_LAYER_BOUNCES {}\n"
+        "#define GLINT_LAYER_CLOCK {}\n"
+        "#define GLINT_LAYER_BRANCHES {}\n"
+        "#define GLINT_LAYER_GROUPS {}\n"
+        "#define GLINT_TALLIES {}\n",
+        flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
+        flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
+        flag((demands & package::kLayerClock) != 0), flag(findEntry(plan, "branches", 0) != nullptr),
+        flag(groups), flag(!tallies.empty()));
+    // What no layer counts leaves no code.
+    for (const LayerInfo& info : package::layerTable()) {
+        if (!info.tally.empty() && !tallies.contains(info.tally)) {
+            text += fmt::format("#define {}({})\n", info.tally,
+                                package::hasSources(info) ? "target, value" : "amount");
+        }
+    }
+    if ((demands & package::kLayerClock) == 0) {
+        text += "#define GLINT_CLOCK_START\n#define GLINT_CLOCK_STOP\n";
+    }
+    return text;
+}
+
+namespace {
+
+// The fields of tallies.glsl.mustache.
+void addTallies(mustache::data& context, const Plan& plan) {
+    mustache::data tallies(mustache::data::type::list);
+    mustache::data added(mustache::data::type::list);
+    std::vector<std::pair<const LayerInfo*, mustache::data>> images;  // of each kind that samples have
+    for (const LayerEntry& entry : plan.layers) {
+        const LayerInfo& info = infoOf(entry);
+        if (info.tally.empty()) {
+            continue;
+        }
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("macro", std::string(info.tally));
+        fields.set("slot", fmt::format("{}", package::effectSlot(plan.effects.effects, entry.effect)));
+        tallies.push_back(fields);
+        if (!package::hasSources(info)) {
+            added.push_back(fields);
+            continue;
+        }
+        auto found = std::ranges::find(images, &info, [](const auto& pair) { return pair.first; });
+        if (found == images.end()) {
+            images.emplace_back(&info, mustache::data(mustache::data::type::list));
+            found = images.end() - 1;
+        }
+        found->second.push_back(fields);
+    }
+    mustache::data kept(mustache::data::type::list);
+    for (const auto& [info, ofSources] : images) {
+        mustache::data fields;
+        fields.set("macro", std::string(info->tally));
+        std::string name = variableNamed(info->name);
+        name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+        fields.set("name", name);
+        fields.set("images", ofSources);
+        kept.push_back(fields);
+    }
+    context.set("tallies", tallies);
+    context.set("added", added);
+    context.set("kept", kept);
+    context.set("hasClock", mustache::data(findEntry(plan, "clocks", 0) != nullptr));
+}
+
+}  // namespace
+
+void addLayers(mustache::data& context, const Plan& plan) {
+    mustache::data lighting(mustache::data::type::list);
+    mustache::data surface(mustache::data::type::list);
+    for (const LayerEntry& entry : plan.layers) {
+        if (passOf(entry) != package::LayerPass::Lighting) {
+            continue;
+        }
+        const LayerInfo& info = infoOf(entry);
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("access", info.continues ? "" : "writeonly ");
+        lighting.push_back(fields);
+        if (info.subject == LayerSubject::Surface) {
+            surface.push_back(fields);
+        }
+    }
+    context.set("lightingLayers", lighting);
+    context.set("surfaceLayers", surface);
+    context.set("directLight", lightFields(plan, 0));
+
+    // Those that compose writes, and the albedos that it reads.
+    mustache::data effects(mustache::data::type::list);
+    std::set<std::string> read;
+    for (const LayerEntry& entry : plan.layers) {
+        if (passOf(entry) != package::LayerPass::Compose) {
+            continue;
+        }
+        const LayerInfo& info = infoOf(entry);
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("access", info.continues ? "" : "writeonly ");
+        effects.push_back(fields);
+        if (demodulates(info) && read.insert(albedoVariable(plan, entry.effect)).second) {
+            mustache::data albedo = fieldsOf({albedoOf(entry.effect, *plan.model).number, 0, 0}, plan);
+            albedo.set("access", "readonly ");
+            effects.push_back(albedo);
+        }
+    }
+    addTallies(context, plan);
+    context.set("hasRayLayers", mustache::data(std::ranges::any_of(plan.layers, [](const LayerEntry& entry) {
+                    return infoOf(entry).subject == LayerSubject::Ray &&
+                           passOf(entry) == package::LayerPass::Compose;
+                })));
+    context.set("hasEffectLayers", mustache::data(effects.is_non_empty_list()));
+    context.set("effectLayers", effects);
+}
+
+void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect) {
+    const mustache::data light = lightFields(plan, effect);
+    entry.set("lightLayers", light);
+    const mustache::data distance = imageFields(plan, "distance", effect);
+    const mustache::data motion = imageFields(plan, "virtual-motion", effect);
+    const mustache::data shader = imageFields(plan, "hit-shader", effect);
+    mustache::data rays(!distance.is_false() || !motion.is_false() || !shader.is_false());
+    if (rays.is_true()) {
+        rays = mustache::data();
+        rays.set("distance", distance);
+        rays.set("motion", motion);
+        rays.set("shader", shader);
+    }
+    entry.set("rayLayers", rays);
+
+    mustache::data bounces(mustache::data::type::list);
+    for (std::uint32_t bounce = 1; bounce <= package::kMostLayerBounces; ++bounce) {
+        const mustache::data ofBounce = lightFields(plan, effect, bounce);
+        const mustache::data length = imageFields(plan, "bounce-distance", effect, bounce);
+        if (!ofBounce.is_false() || !length.is_false()) {
+            mustache::data fields;
+            fields.set("bounce", fmt::format("{}", bounce));
+            fields.set("slice", fmt::format("{}", bounce - 1));
+            fields.set("light", ofBounce);
+            fields.set("distance", length);
+            bounces.push_back(fields);
+        }
+    }
+    entry.set("bounceLayers", bounces);
+    entry.set("storesLight", mustache::data(!light.is_false() || bounces.is_non_empty_list()));
+}
+
+}  // namespace glint::compiler

@@ -1,0 +1,147 @@
+// Views: debug pictures of a frame, with a legend and with their numbers. docs/views.md shows each of them.
+//
+// viewTable() is their only declaration: the words of --view, the layers that a package needs, the colours,
+// the legend, and the JSON of --stats follow from its rows. A view reads layers of the renderer
+// (glint/layers.h) on the host and colours them. It has no pass, so what a view costs a frame is what its
+// layers cost.
+#pragma once
+
+#include "image/text.h"
+#include "materials/material_model.h"
+
+#include <glint/package.h>
+#include <glint/renderer.h>
+#include <glint/result.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::measure {
+
+enum class ViewScale : std::uint8_t {
+    Categories,   // each pixel is of a kind
+    Linear,       // from the least to the greatest number
+    FromZero,     // from 0 to the greatest
+    Logarithmic,  // from the least to the greatest number above 0
+};
+
+struct ViewInput;
+struct ViewValues;
+
+// A row of the table.
+struct ViewInfo {
+    std::string_view name;
+    std::string_view what;  // a sentence without a full stop
+    ViewScale scale{};
+    std::string_view unit;  // of the numbers, or what a category is: "metres", "case"
+    // The layers that it reads. The value of "distance" is that of the source of light which the view is
+    // about.
+    std::vector<std::string_view> layers;
+    bool readsReference = false;  // it compares with another picture
+    void (*evaluate)(const ViewInput& input, ViewValues& values) = nullptr;
+};
+
+// All rows, in the order in which --help lists them.
+std::span<const ViewInfo> viewTable();
+// Returns null if there is no such view.
+const ViewInfo* findView(std::string_view name);
+// Whether it is about the rays of one effect, so that "reflection.hit-distance" names it, too.
+bool isOfRays(const ViewInfo& info);
+
+// A view, and the effect that it is about.
+struct ViewChoice {
+    const ViewInfo* info = nullptr;
+    std::string source;  // empty: the first effect of the package with rays
+
+    // "reflection.hit-distance"
+    std::string name() const;
+};
+// Returns no value if the text names no view.
+std::optional<ViewChoice> parseView(std::string_view text);
+// Returns the words that CompileSettings::layers needs for the view.
+std::vector<std::string> layersFor(const ViewChoice& view);
+
+// What a view reads. What it points to must outlive it.
+struct ViewInput {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t samples = 1;     // of the picture
+    bool dispatchesCases = false;  // StrategyInfo::dispatchesCases of the strategy
+    const Package* package = nullptr;
+    std::uint32_t scene = 0;                                                     // of the package
+    std::vector<std::string> materialNames;                                      // by number; may be empty
+    const materials::MaterialModel* model = &materials::builtinMaterialModel();  // of the scene's materials
+    const LinearImage* picture = nullptr;
+    const LinearImage* reference = nullptr;     // if the view compares, of equal size
+    std::map<std::string, LayerValues> layers;  // by ViewInfo::layers
+};
+
+// A kind of pixels.
+struct ViewCategory {
+    std::string name;
+    image::Color8 color{};
+};
+
+// The values of the pixels of a view, row by row from the top.
+struct ViewValues {
+    static constexpr std::uint32_t kNumber = 0xFFFFFFFF;
+    std::vector<double> numbers;                       // of pixels whose mark is kNumber
+    std::vector<std::uint32_t> marks;                  // kNumber, or a key of `categories`
+    std::map<std::uint32_t, ViewCategory> categories;  // those that may occur
+};
+
+// The numbers of a view.
+struct ViewStatistics {
+    struct Category {
+        ViewCategory category;
+        std::uint64_t pixels = 0;
+    };
+    std::vector<Category> categories;  // those that occur, the most frequent first
+    std::uint64_t numbers = 0;         // pixels that have a number; the rest is 0 if none has
+    double least = 0.0;
+    double greatest = 0.0;
+    double mean = 0.0;
+    double median = 0.0;
+    double percentile99 = 0.0;
+    // Pixels in equal steps from scale[0] to scale[1]; of a logarithmic view the steps are equal in the
+    // logarithm.
+    std::array<double, 2> scale{};
+    std::vector<std::uint64_t> histogram;
+};
+
+// A finished view.
+struct View {
+    ViewChoice choice;
+    image::DisplayImage picture;  // of the size of the frame; nothing is drawn over it
+    ViewStatistics statistics;
+};
+
+// Reads the layers of the renderer's last recording into `input`, waits for the device, and colours the
+// pixels. Sizes and layers of `input` are filled in. `range` fixes the scale, which otherwise is that of the
+// numbers. Errors: "view-source" (the package has no such effect), "view-layer" (the package lacks a layer),
+// "view-reference" (the sizes differ, or there is none), and those of Renderer::readLayer().
+Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput input,
+                      std::optional<std::array<double, 2>> range = {});
+
+// The same from layers that are in `input` already.
+View colorView(const ViewChoice& choice, const ViewInput& input,
+               std::optional<std::array<double, 2>> range = {});
+
+// Returns the legend of a view for a picture of that width: what it shows, its colours, and its numbers. Its
+// text is larger in wide pictures.
+image::DisplayImage makeLegend(const View& view, std::uint32_t width);
+// Returns the picture with the legend below it.
+image::DisplayImage withLegend(const View& view);
+
+// Returns the member "view" of render --stats.
+nlohmann::ordered_json toJson(const View& view);
+
+}  // namespace glint::measure

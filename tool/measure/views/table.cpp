@@ -1,0 +1,522 @@
+// The table of views, and what each makes of the layers.
+#include "image/palette.h"
+#include "plan/cost.h"
+
+#include <glint/measure/views.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+
+namespace glint::measure {
+
+namespace {
+
+using Marks = std::map<std::uint32_t, ViewCategory>;
+
+// Marks of pixels without a value. Shader IDs, materials and counts are below them.
+enum Mark : std::uint32_t {
+    kMarkSurfaceless = 0xFFFFFF00,
+    kMarkRayless,
+    kMarkSky,
+    kMarkScreen,
+    kMarkUntextured,
+    kMarkUngrouped,
+    kMarkEqual,
+    kMarkNotFinite,
+};
+
+constexpr std::uint32_t kNoLayerValue = 0xFFFFFFFF;
+
+const ViewCategory& plain(Mark mark) {
+    // Shades of grey, which no palette has.
+    static const Marks kPlain = {
+        {kMarkSurfaceless, {"no surface", {24, 24, 24}}},
+        {kMarkRayless, {"no ray", {64, 64, 64}}},
+        {kMarkSky, {"left the scene", {150, 150, 150}}},
+        {kMarkScreen, {"found on screen", {210, 210, 210}}},
+        {kMarkUntextured, {"no texture", {100, 100, 100}}},
+        {kMarkUngrouped, {"no workgroup known", {110, 110, 110}}},
+        {kMarkEqual, {"equal", {64, 64, 64}}},
+        {kMarkNotFinite, {"not finite", {255, 0, 255}}},
+    };
+    return kPlain.at(mark);
+}
+
+class Filler {
+public:
+    Filler(const ViewInput& input, ViewValues& values) : values_(values) {
+        const std::size_t pixels = std::size_t{input.width} * input.height;
+        values.numbers.assign(pixels, 0.0);
+        values.marks.assign(pixels, ViewValues::kNumber);
+    }
+
+    void number(std::size_t pixel, double value) {
+        values_.numbers[pixel] = value;
+    }
+    void mark(std::size_t pixel, Mark mark) {
+        values_.marks[pixel] = mark;
+        values_.categories.try_emplace(mark, plain(mark));
+    }
+    // A category with a colour by its number.
+    void category(std::size_t pixel, std::uint32_t number, const std::function<std::string()>& name) {
+        values_.marks[pixel] = number;
+        if (!values_.categories.contains(number)) {
+            values_.categories.emplace(number, ViewCategory{name(), image::categoryColor(number)});
+        }
+    }
+    void category(std::size_t pixel, std::uint32_t number, std::string_view name, image::Color8 color) {
+        values_.marks[pixel] = number;
+        values_.categories.try_emplace(number, ViewCategory{std::string(name), color});
+    }
+    std::size_t size() const {
+        return values_.marks.size();
+    }
+
+private:
+    ViewValues& values_;
+};
+
+const std::vector<std::uint32_t>& integersOf(const ViewInput& input, const char* layer) {
+    return input.layers.at(layer).integers;
+}
+
+std::string caseName(const ViewInput& input, std::uint32_t shaderId) {
+    const std::span<const package::CaseEntry> cases = input.package->cases();
+    if (shaderId >= cases.size()) {
+        return fmt::format("shader {}: no case", shaderId);
+    }
+    return fmt::format("{} {}", shaderId, input.package->string(cases[shaderId].name));
+}
+
+void showShaders(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& shaders = integersOf(input, "shader");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (shaders[i] == kNoLayerValue) {
+            filler.mark(i, kMarkSurfaceless);
+        } else {
+            filler.category(i, shaders[i], [&] { return caseName(input, shaders[i]); });
+        }
+    }
+}
+
+void showMaterials(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& materials = integersOf(input, "material");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        const std::uint32_t number = materials[i];
+        if (number == kNoLayerValue) {
+            filler.mark(i, kMarkSurfaceless);
+            continue;
+        }
+        filler.category(i, number, [&] {
+            const bool isNamed = number < input.materialNames.size() && !input.materialNames[number].empty();
+            return isNamed ? fmt::format("{} {}", number, input.materialNames[number])
+                           : fmt::format("material {}", number);
+        });
+    }
+}
+
+// A set of lobes has the place among those of the scene as its number, so that its colour depends on the
+// scene alone.
+void showKeys(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    std::set<std::uint32_t> known;
+    for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
+        known.insert(primitive.featureLobes);
+    }
+    const std::vector<std::uint32_t>& lobes = integersOf(input, "lobes");
+    known.insert(lobes.begin(), lobes.end());
+    known.erase(kNoLayerValue);
+    const std::vector<std::uint32_t> ordered(known.begin(), known.end());
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (lobes[i] == kNoLayerValue) {
+            filler.mark(i, kMarkSurfaceless);
+            continue;
+        }
+        const auto place = std::ranges::lower_bound(ordered, lobes[i]) - ordered.begin();
+        filler.category(i, static_cast<std::uint32_t>(place), [&] {
+            const std::vector<std::string> names = input.package->featureNames(lobes[i]);
+            return names.empty() ? std::string("base alone") : fmt::format("{}", fmt::join(names, " "));
+        });
+    }
+}
+
+void showNonFinite(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& counts = integersOf(input, "non-finite");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        const bool isNan = counts[i] % package::kInfiniteSample > 0;
+        const bool isInfinite = counts[i] >= package::kInfiniteSample;
+        if (isNan) {
+            filler.category(i, 2, "not a number", image::categoryColor(5));
+        } else if (isInfinite) {
+            filler.category(i, 1, "infinite", image::categoryColor(3));
+        } else {
+            filler.category(i, 0, "finite", {40, 60, 80});
+        }
+    }
+}
+
+// A count over all samples, as that of one.
+void showCount(const char* layer, const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& counts = integersOf(input, layer);
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        filler.number(i, static_cast<double>(counts[i]) / input.samples);
+    }
+}
+
+void showRays(const ViewInput& input, ViewValues& values) {
+    showCount("rays", input, values);
+}
+
+void showCandidates(const ViewInput& input, ViewValues& values) {
+    showCount("candidates", input, values);
+}
+
+void showClocks(const ViewInput& input, ViewValues& values) {
+    showCount("clocks", input, values);
+}
+
+void showDistance(const ViewInput& input, ViewValues& values) {
+    constexpr float kMiss = 65504.0F;
+    Filler filler(input, values);
+    const std::vector<float>& distances = input.layers.at("distance").reals;
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (distances[i] <= 0.0F) {
+            filler.mark(i, kMarkRayless);
+        } else if (distances[i] >= kMiss) {
+            filler.mark(i, kMarkSky);
+        } else {
+            filler.number(i, distances[i]);
+        }
+    }
+}
+
+// Marks the pixels whose ray has no hit with a shader. Returns whether it is one.
+bool markUnhit(Filler& filler, std::size_t pixel, std::uint32_t shader) {
+    switch (shader) {
+        case package::kNoRay:
+            filler.mark(pixel, kMarkRayless);
+            return true;
+        case package::kRayLeftScene:
+            filler.mark(pixel, kMarkSky);
+            return true;
+        case package::kRayEndedOnScreen:
+            filler.mark(pixel, kMarkScreen);
+            return true;
+        default:
+            return false;
+    }
+}
+
+void showHitShaders(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (!markUnhit(filler, i, shaders[i])) {
+            filler.category(i, shaders[i], [&] { return caseName(input, shaders[i]); });
+        }
+    }
+}
+
+void showFallbacks(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
+    const std::span<const package::CaseEntry> cases = input.package->cases();
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        const std::uint32_t shader = shaders[i];
+        if (markUnhit(filler, i, shader)) {
+            continue;
+        }
+        if (shader < cases.size() && cases[shader].keyCount > 0) {
+            filler.category(i, 0, "has a case", image::categoryColor(4));
+        } else if (input.package->shape().fallback) {
+            filler.category(i, 1, "fallback", image::categoryColor(0));
+        } else {
+            filler.category(i, 2, "no case: magenta", {255, 0, 255});
+        }
+    }
+}
+
+void showDivergence(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& run = integersOf(input, "cases-run");
+    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (markUnhit(filler, i, shaders[i])) {
+            continue;
+        }
+        if (run[i] == kNoLayerValue) {
+            filler.mark(i, kMarkUngrouped);
+        } else {
+            filler.number(i, run[i]);
+        }
+    }
+}
+
+// Workgroups of one dispatch, and of the dispatches of the cases, have different numbers.
+void showGroups(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& groups = integersOf(input, "workgroup");
+    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (groups[i] != kNoLayerValue) {
+            numbers.emplace(std::pair(input.dispatchesCases ? shaders[i] : 0U, groups[i]), 0U);
+        }
+    }
+    std::uint32_t next = 0;
+    for (auto& [group, number] : numbers) {
+        number = next++;
+    }
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (markUnhit(filler, i, shaders[i])) {
+            continue;
+        }
+        if (groups[i] == kNoLayerValue) {
+            filler.mark(i, kMarkUngrouped);
+            continue;
+        }
+        const std::pair group(input.dispatchesCases ? shaders[i] : 0U, groups[i]);
+        filler.category(i, numbers.at(group), [&] {
+            return input.dispatchesCases ? fmt::format("group {} of shader {}", group.second, group.first)
+                                         : fmt::format("group {}", group.second);
+        });
+    }
+}
+
+void showBranches(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<std::uint32_t>& branches = integersOf(input, "branches");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (branches[i] == kNoLayerValue) {
+            filler.mark(i, kMarkSurfaceless);
+        } else {
+            filler.number(i, branches[i]);
+        }
+    }
+}
+
+double weightOfFeatures(materials::FeatureMask always, materials::FeatureMask sometimes,
+                        const ViewInput& input) {
+    const compiler::CodeEstimate code = compiler::estimateCode(always, sometimes, *input.model);
+    return code.instructions + compiler::kFetchCost * code.fetches;
+}
+
+// What the model says of shading a pixel: of its surface by its material's key, and of the hit by the case.
+void showCost(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    std::map<std::uint32_t, double> ofMaterial;
+    for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
+        const materials::FeatureMask key = materials::FeatureMask{primitive.featureLobes} |
+                                           materials::FeatureMask{primitive.featureInputs} << 32U;
+        double& weight = ofMaterial[primitive.materialIndex];
+        weight = std::max(weight, weightOfFeatures(key, 0, input));
+    }
+    std::vector<double> ofCase;
+    for (const package::CaseEntry& entry : input.package->cases()) {
+        ofCase.push_back(weightOfFeatures(entry.always, entry.sometimes, input));
+    }
+    const std::vector<std::uint32_t>& materials = integersOf(input, "material");
+    const auto hits = input.layers.find("hit-shader");
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (materials[i] == kNoLayerValue) {
+            filler.mark(i, kMarkSurfaceless);
+            continue;
+        }
+        double weight = ofMaterial[materials[i]];
+        if (hits != input.layers.end()) {
+            const std::uint32_t shader = hits->second.integers[i];
+            weight += shader < ofCase.size() ? ofCase[shader] : 0.0;
+        }
+        filler.number(i, weight);
+    }
+}
+
+void showTextureLevel(const ViewInput& input, ViewValues& values) {
+    constexpr float kUntextured = 65504.0F;
+    Filler filler(input, values);
+    const std::vector<float>& levels = input.layers.at("texture-level").reals;
+    const std::vector<float>& footprints = input.layers.at("footprint").reals;
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (footprints[i] <= 0.0F) {
+            filler.mark(i, kMarkSurfaceless);
+        } else if (levels[i] >= kUntextured) {
+            filler.mark(i, kMarkUntextured);
+        } else {
+            filler.number(i, levels[i]);
+        }
+    }
+}
+
+void showFootprint(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    const std::vector<float>& footprints = input.layers.at("footprint").reals;
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        if (footprints[i] <= 0.0F) {
+            filler.mark(i, kMarkSurfaceless);
+        } else {
+            filler.number(i, footprints[i]);
+        }
+    }
+}
+
+// The error of a pixel is that of `glint compare`: the largest of the channels, |a - b| / max(1, |b|).
+void showDifference(const ViewInput& input, ViewValues& values) {
+    Filler filler(input, values);
+    for (std::size_t i = 0; i < filler.size(); ++i) {
+        double largest = 0.0;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const double a = input.picture->pixels[i][channel];
+            const double b = input.reference->pixels[i][channel];
+            const double error = std::abs(a - b) / std::max(1.0, std::abs(b));
+            largest =
+                std::isfinite(error) ? std::max(largest, error) : std::numeric_limits<double>::infinity();
+            if (!std::isfinite(error)) {
+                break;
+            }
+        }
+        if (!std::isfinite(largest)) {
+            filler.mark(i, kMarkNotFinite);
+        } else if (largest == 0.0) {
+            filler.mark(i, kMarkEqual);
+        } else {
+            filler.number(i, largest);
+        }
+    }
+}
+
+// To add a view, add a row here, and its picture to docs/views.md.
+const std::vector<ViewInfo>& rows() {
+    using enum ViewScale;
+    static const std::vector<ViewInfo> kRows = {
+        {"shader",
+         "case that shades the material where rays hit it",
+         Categories,
+         "case",
+         {"shader"},
+         false,
+         showShaders},
+        {"key", "set of lobes of the surface's key", Categories, "lobes", {"lobes"}, false, showKeys},
+        {"material", "material of the surface", Categories, "material", {"material"}, false, showMaterials},
+        {"hit-shader",
+         "case that shades what the ray hits",
+         Categories,
+         "case",
+         {"hit-shader"},
+         false,
+         showHitShaders},
+        {"fallback",
+         "hits that the fallback shades, and hits without a case",
+         Categories,
+         "hits",
+         {"hit-shader"},
+         false,
+         showFallbacks},
+        {"bucket",
+         "workgroup that shades the hit; neighbours in order have different colours",
+         Categories,
+         "workgroup",
+         {"workgroup", "hit-shader"},
+         false,
+         showGroups},
+        {"divergence",
+         "cases that the hit's subgroup runs one after the other",
+         FromZero,
+         "cases",
+         {"cases-run", "hit-shader"},
+         false,
+         showDivergence},
+        {"branches",
+         "optional features that the lighting pass runs for the pixel's subgroup",
+         FromZero,
+         "features",
+         {"branches"},
+         false,
+         showBranches},
+        {"rays", "rays that are traced for the pixel", FromZero, "rays a sample", {"rays"}, false, showRays},
+        {"candidates",
+         "triangles whose alpha these rays test",
+         FromZero,
+         "tests a sample",
+         {"candidates"},
+         false,
+         showCandidates},
+        {"cost",
+         "instructions that shade surface and hit, by the cost model",
+         FromZero,
+         "instructions",
+         {"material", "hit-shader"},
+         false,
+         showCost},
+        {"clocks",
+         "ticks of the device's clock for lighting, tracing and shading",
+         FromZero,
+         "ticks a sample",
+         {"clocks"},
+         false,
+         showClocks},
+        {"texture-level",
+         "finest level of the surface's textures; below 0 they are magnified",
+         Linear,
+         "levels",
+         {"texture-level", "footprint"},
+         false,
+         showTextureLevel},
+        {"footprint",
+         "width of the pixel on the surface",
+         Logarithmic,
+         "metres",
+         {"footprint"},
+         false,
+         showFootprint},
+        {"hit-distance",
+         "distance that the ray travels",
+         Logarithmic,
+         "metres",
+         {"distance"},
+         false,
+         showDistance},
+        {"non-finite",
+         "samples that are not a number or infinite, and count as black",
+         Categories,
+         "pixels",
+         {"non-finite"},
+         false,
+         showNonFinite},
+        {"difference",
+         "relative error against the picture of --view-reference",
+         Logarithmic,
+         "relative error",
+         {},
+         true,
+         showDifference},
+    };
+    return kRows;
+}
+
+}  // namespace
+
+std::span<const ViewInfo> viewTable() {
+    return rows();
+}
+
+const ViewInfo* findView(std::string_view name) {
+    const auto found = std::ranges::find(rows(), name, &ViewInfo::name);
+    return found == rows().end() ? nullptr : &*found;
+}
+
+bool isOfRays(const ViewInfo& info) {
+    return std::ranges::any_of(
+        info.layers, [](std::string_view layer) { return package::hasSources(*package::findLayer(layer)); });
+}
+
+}  // namespace glint::measure

@@ -1,0 +1,232 @@
+// Makes views of a renderer's frames.
+#include "base/json.h"
+#include "image/palette.h"
+
+#include <glint/measure/views.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+namespace glint::measure {
+
+namespace {
+
+constexpr std::size_t kViewBins = 16;
+
+// Where a number is on the scale, from 0 to 1.
+double shareOf(double value, ViewScale scale, const std::array<double, 2>& ends) {
+    const auto place = [scale](double number) {
+        return scale == ViewScale::Logarithmic ? std::log(std::max(number, 1e-300)) : number;
+    };
+    const double length = place(ends[1]) - place(ends[0]);
+    return length > 0.0 ? std::clamp((place(value) - place(ends[0])) / length, 0.0, 1.0) : 0.0;
+}
+
+double quantile(const std::vector<double>& sorted, double share) {
+    return sorted[static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)))];
+}
+
+void measureNumbers(const ViewValues& values, ViewStatistics& statistics) {
+    std::vector<double> sorted;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values.marks.size(); ++i) {
+        if (values.marks[i] == ViewValues::kNumber) {
+            sorted.push_back(values.numbers[i]);
+            sum += values.numbers[i];
+        }
+    }
+    statistics.numbers = sorted.size();
+    if (sorted.empty()) {
+        return;
+    }
+    std::ranges::sort(sorted);
+    statistics.least = sorted.front();
+    statistics.greatest = sorted.back();
+    statistics.mean = sum / static_cast<double>(sorted.size());
+    statistics.median = quantile(sorted, 0.5);
+    statistics.percentile99 = quantile(sorted, 0.99);
+}
+
+void countCategories(const ViewValues& values, ViewStatistics& statistics) {
+    std::map<std::uint32_t, std::uint64_t> pixels;
+    for (const std::uint32_t mark : values.marks) {
+        ++pixels[mark];
+    }
+    pixels.erase(ViewValues::kNumber);
+    for (const auto& [mark, count] : pixels) {
+        statistics.categories.push_back({values.categories.at(mark), count});
+    }
+    std::ranges::stable_sort(statistics.categories, std::greater(), &ViewStatistics::Category::pixels);
+}
+
+std::array<double, 2> scaleOf(ViewScale scale, const ViewStatistics& statistics) {
+    const double first = scale == ViewScale::FromZero ? std::min(0.0, statistics.least) : statistics.least;
+    return {first, statistics.greatest};
+}
+
+Diagnostic missingLayer(const ViewChoice& choice, std::string_view layer) {
+    return makeError(
+        "view-layer", "",
+        fmt::format("the view {} reads the layer {}, which the package lacks", choice.name(), layer),
+        fmt::format("compile the package with --layers {}", layer));
+}
+
+// The effect that the view is about: the one that is named, or the first with rays.
+Result<package::Effect> effectOf(const ViewChoice& choice, const Package& package) {
+    std::vector<std::string_view> known;
+    for (const package::EffectInfo& effect : package.effects()) {
+        if (effect.kind == package::EffectKind::Rays) {
+            if (choice.source.empty() || choice.source == effect.name) {
+                return effect.effect;
+            }
+            known.push_back(effect.name);
+        }
+    }
+    return makeError(
+        "view-source", "",
+        choice.source.empty()
+            ? fmt::format("the view {} is about rays, and the package has no effect with rays", choice.name())
+            : fmt::format("the package has no effect {} with rays, so there is no view {}", choice.source,
+                          choice.name()),
+        "--effects decides which effects the package has");
+}
+
+}  // namespace
+
+std::string ViewChoice::name() const {
+    return source.empty() ? std::string(info->name) : source + "." + std::string(info->name);
+}
+
+std::optional<ViewChoice> parseView(std::string_view text) {
+    const std::size_t dot = text.find('.');
+    const bool hasSource = dot != std::string_view::npos;
+    const ViewInfo* const info = findView(hasSource ? text.substr(dot + 1) : text);
+    if (info == nullptr || (hasSource && (!isOfRays(*info) || dot == 0))) {
+        return std::nullopt;
+    }
+    return ViewChoice{info, std::string(text.substr(0, hasSource ? dot : 0))};
+}
+
+std::vector<std::string> layersFor(const ViewChoice& view) {
+    std::vector<std::string> words;
+    for (const std::string_view layer : view.info->layers) {
+        const bool ofSource = package::hasSources(*package::findLayer(layer)) && !view.source.empty();
+        words.push_back(ofSource ? view.source + "." + std::string(layer) : std::string(layer));
+    }
+    return words;
+}
+
+View colorView(const ViewChoice& choice, const ViewInput& input, std::optional<std::array<double, 2>> range) {
+    ViewValues values;
+    choice.info->evaluate(input, values);
+    View view;
+    view.choice = choice;
+    ViewStatistics& statistics = view.statistics;
+    measureNumbers(values, statistics);
+    countCategories(values, statistics);
+    const ViewScale scale = choice.info->scale;
+    statistics.scale = range.value_or(scaleOf(scale, statistics));
+    if (scale != ViewScale::Categories) {
+        statistics.histogram.assign(kViewBins, 0);
+    }
+    view.picture = {input.width, input.height, {}};
+    view.picture.pixels.reserve(values.marks.size());
+    for (std::size_t i = 0; i < values.marks.size(); ++i) {
+        if (values.marks[i] != ViewValues::kNumber) {
+            view.picture.pixels.push_back(values.categories.at(values.marks[i]).color);
+            continue;
+        }
+        const double share = shareOf(values.numbers[i], scale, statistics.scale);
+        view.picture.pixels.push_back(image::quantityColor(share));
+        const auto bin = static_cast<std::size_t>(share * kViewBins);
+        ++statistics.histogram[std::min(bin, kViewBins - 1)];
+    }
+    return view;
+}
+
+Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput input,
+                      std::optional<std::array<double, 2>> range) {
+    const Package& package = *input.package;
+    const bool ofRaysAlone = std::ranges::any_of(choice.info->layers, [](std::string_view layer) {
+        return package::findLayer(layer)->subject == package::LayerSubject::Ray;
+    });
+    package::Effect effect = 0;
+    if (ofRaysAlone) {
+        const Result<package::Effect> found = effectOf(choice, package);
+        if (!found) {
+            return found.error();
+        }
+        effect = *found;
+    }
+    for (const std::string_view wanted : choice.info->layers) {
+        const package::LayerInfo& info = *package::findLayer(wanted);
+        const auto layer = std::ranges::find_if(package.layers(), [&](const package::PackageLayer& one) {
+            return one.info == &info && (!package::hasSources(info) || one.effect == effect);
+        });
+        if (layer == package.layers().end()) {
+            return missingLayer(choice, wanted);
+        }
+        Result<LayerValues> values = renderer.readLayer(layer->name);
+        if (!values) {
+            return values.error();
+        }
+        input.width = values->width;
+        input.height = values->height;
+        input.layers.insert_or_assign(std::string(wanted), std::move(*values));
+    }
+    if (choice.info->readsReference) {
+        if (input.picture == nullptr || input.reference == nullptr) {
+            return makeError(
+                "view-reference", "",
+                fmt::format("the view {} compares with another picture, and there is none", choice.name()),
+                "give one by --view-reference FILE");
+        }
+        if (input.picture->width != input.reference->width ||
+            input.picture->height != input.reference->height) {
+            return makeError(
+                "view-reference", "",
+                fmt::format("the reference has {}x{} pixels, and the picture {}x{}", input.reference->width,
+                            input.reference->height, input.picture->width, input.picture->height),
+                "render both with the same --size");
+        }
+        input.width = input.picture->width;
+        input.height = input.picture->height;
+    }
+    return colorView(choice, input, range);
+}
+
+base::Json toJson(const View& view) {
+    const ViewStatistics& statistics = view.statistics;
+    const auto orNone = [&](double value) {
+        return statistics.numbers > 0 ? base::Json(value) : base::Json(nullptr);
+    };
+    base::Json categories = base::Json::array();
+    for (const ViewStatistics::Category& one : statistics.categories) {
+        const image::Color8& color = one.category.color;
+        categories.push_back({{"name", one.category.name},
+                              {"color", fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2])},
+                              {"pixels", one.pixels}});
+    }
+    constexpr std::string_view kScales[] = {"categories", "linear", "linear", "logarithmic"};
+    return {{"name", view.choice.name()},
+            {"what", std::string(view.choice.info->what)},
+            {"unit", std::string(view.choice.info->unit)},
+            {"scale", std::string(kScales[static_cast<std::size_t>(view.choice.info->scale)])},
+            {"numbers", statistics.numbers},
+            {"least", orNone(statistics.least)},
+            {"greatest", orNone(statistics.greatest)},
+            {"mean", orNone(statistics.mean)},
+            {"median", orNone(statistics.median)},
+            {"percentile99", orNone(statistics.percentile99)},
+            {"histogram",
+             {{"from", orNone(statistics.scale[0])},
+              {"to", orNone(statistics.scale[1])},
+              {"pixels", statistics.histogram}}},
+            {"categories", categories}};
+}
+
+}  // namespace glint::measure

@@ -1,0 +1,265 @@
+#include "view/builder.h"
+
+#include "base/clock.h"
+#include "emit/compile.h"
+#include "emit/host.h"
+#include "gltf/import.h"
+#include "gltf/scene_list.h"
+#include "materials/packs.h"
+
+#include <glint/measure/profile.h>
+#include <glint/measure/render_settings.h>
+#include <glint/measure/strategy_advice.h>
+#include <glint/scene_view/package.h>
+#include <glint/strategies.h>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+namespace glint::view {
+
+bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b) {
+    return a.variant == b.variant && std::ranges::equal(a.files, b.files, [](const auto& x, const auto& y) {
+               return x.path == y.path && x.bytes == y.bytes && x.hash == y.hash;
+           });
+}
+
+Builder::Builder(const Request& request, const Context& context)
+    : request_(request), context_(context), thread_([this] { work(); }) {}
+
+Builder::~Builder() {
+    {
+        const std::lock_guard lock(mutex_);
+        ends_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+}
+
+void Builder::start(BuildOrder order) {
+    {
+        const std::lock_guard lock(mutex_);
+        Slot& slot = slots_[order.picture];
+        order.reread = order.reread || (slot.order && slot.order->reread);
+        slot.order = std::move(order);
+        slot.done.reset();
+        slot.busy = true;
+        slot.canceled = false;
+    }
+    wake_.notify_one();
+}
+
+void Builder::cancel(std::size_t picture) {
+    const std::lock_guard lock(mutex_);
+    slots_[picture].order.reset();
+    slots_[picture].done.reset();
+    slots_[picture].canceled = true;
+}
+
+std::optional<Result<Build>> Builder::poll(std::size_t picture) {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(slots_[picture].done, std::nullopt);
+}
+
+bool Builder::isBusy(std::size_t picture) const {
+    const std::lock_guard lock(mutex_);
+    return slots_[picture].busy || slots_[picture].done;
+}
+
+std::string Builder::progress() const {
+    const std::lock_guard lock(mutex_);
+    return progress_;
+}
+
+std::vector<Diagnostic> Builder::takeMessages() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(messages_, {});
+}
+
+void Builder::say(std::string text) {
+    const std::lock_guard lock(mutex_);
+    progress_ = std::move(text);
+}
+
+void Builder::work() {
+    const auto isOrdered = [](const Slot& slot) { return slot.order.has_value(); };
+    while (true) {
+        BuildOrder order;
+        {
+            std::unique_lock lock(mutex_);
+            wake_.wait(lock, [&] { return ends_ || std::ranges::any_of(slots_, isOrdered); });
+            if (ends_) {
+                return;
+            }
+            order = *std::exchange(std::ranges::find_if(slots_, isOrdered)->order, std::nullopt);
+        }
+        Result<Build> made = build(order);
+        const std::lock_guard lock(mutex_);
+        progress_.clear();
+        Slot& slot = slots_[order.picture];
+        if (slot.order) {
+            continue;  // what it was asked for has changed
+        }
+        slot.busy = false;
+        if (!slot.canceled) {
+            slot.done = std::move(made);
+        }
+    }
+}
+
+Result<Build> Builder::build(const BuildOrder& order) {
+    Build build;
+    build.settings = order.settings;
+    for (Status (*step)(Builder&, const BuildOrder&, Build&) :
+         {+[](Builder&self, const BuildOrder&what, Build&made) { return self.readScene(what, made); },
+          +[](Builder&self, const BuildOrder&, Build&made) { return self.makePackage(made); },
+          +[](Builder&self, const BuildOrder&, Build&made) { return self.readTextures(made); }}) {
+        if (Status done = step(*this, order, build); !done) {
+            return done.error();
+        }
+    }
+    return build;
+}
+
+Status Builder::readScene(const BuildOrder& order, Build& build) {
+    const base::Clock::time_point start = base::Clock::now();
+    const compiler::Settings& settings = order.settings;
+    const std::string key = fmt::format("{}|{}|{}|{}|{}", order.scene, settings.variant, settings.strictPaths,
+                                        settings.compile.trustTextures, fmt::join(settings.materials, "|"));
+    if (order.reread || key != sceneKey_) {
+        say("reading " + order.scene);
+        const Result<gltf::ImportOptions> import = request_.importOptions(settings);
+        if (!import) {
+            return import.error();
+        }
+        Result<gltf::Scene> scene = importScene(order.scene, *import);
+        if (!scene) {
+            return scene.error();
+        }
+        // What pictures hold depends on their files alone.
+        if (!scene_ || !haveSameFiles(*scene_, *scene)) {
+            textures_.reset();
+        }
+        const std::lock_guard lock(mutex_);
+        messages_.insert(messages_.end(), scene->warnings.begin(), scene->warnings.end());
+        scene_ = std::make_shared<const gltf::Scene>(std::move(*scene));
+        sceneKey_ = key;
+    }
+    build.scene = scene_;
+    for (const gltf::SourceFile& file : scene_->files) {
+        build.inputs.push_back(file.path);
+    }
+    for (const auto& files :
+         {materials::packFiles(settings.materials), compiler::hostFiles(settings.compile.host)}) {
+        for (const std::filesystem::path& file : files ? *files : std::vector<std::filesystem::path>()) {
+            build.inputs.push_back(file.string());
+        }
+    }
+    build.readMs = base::millisecondsSince(start);
+    return okStatus();
+}
+
+Status Builder::makePackage(Build& build) {
+    const base::Clock::time_point start = base::Clock::now();
+    compiler::Settings& settings = build.settings;
+    const gltf::SceneList scenes({build.scene.get(), 1});
+    compiler::Settings planned = settings;
+    std::optional<Package> given;
+    if (!settings.package.empty()) {
+        planned.alpha = package::AlphaPolicy::Opaque;  // the package has decided
+        Result<Package> loaded = Package::load(settings.package);
+        if (!loaded) {
+            return loaded.error();
+        }
+        given = std::move(*loaded);
+    }
+    Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
+    if (!plan) {
+        return plan.error();
+    }
+    build.options = std::move(plan->options);
+    std::vector<Diagnostic> messages = std::move(plan->warnings);
+    messages.insert(messages.end(), plan->notes.begin(), plan->notes.end());
+    if (!settings.strategy) {
+        Result<compiler::StrategyAdvice> advice = measure::adviseRender(
+            settings, build.options, context_, *build.scene, given ? &*given : nullptr, messages);
+        if (!advice) {
+            return advice.error();
+        }
+        settings.strategy = valueNamed<package::Strategy>(advice->choice.strategy);
+        settings.compile.strategyChoice = std::move(*advice);
+    }
+    if (given) {
+        const scene_view::PackageDemand demand{*settings.strategy, settings.renderer.tracer,
+                                               !settings.environment.empty()};
+        if (Status fits = scene_view::checkPackage(*given, settings.package, demand, *build.scene); !fits) {
+            return fits;
+        }
+        build.plan = compiler::makePlan(scenes.materials(), scenes.primitives(), build.options);
+        build.package = std::make_shared<const Package>(std::move(*given));
+    } else {
+        say("compiling " + build.scene->path);
+        compiler::CompileSettings compile =
+            measure::compileSettings(settings, build.options, context_.handles().tracers, *build.scene);
+        compile.emitHeader = false;
+        // The package also has the strategies that were asked for before, so that a renderer of one of them
+        // can switch to it.
+        strategies_ = sceneKey_ == strategiesKey_ ? strategies_ | compile.strategies : compile.strategies;
+        strategiesKey_ = sceneKey_;
+        compile.strategies = strategies_;
+        const std::vector<Diagnostic> ofEffects = request_.effectWarnings(scenes, compile);
+        messages.insert(messages.end(), ofEffects.begin(), ofEffects.end());
+        Result<compiler::CompiledPackage> compiled =
+            compilePackage(std::span(build.scene.get(), 1), compile, request_.modules, {}, &warm_);
+        warm_.endRun();
+        if (!compiled) {
+            return compiled.error();
+        }
+        Result<Package> loaded = scene_view::loadPackage(*compiled);
+        if (!loaded) {
+            return loaded.error();
+        }
+        build.package = std::make_shared<const Package>(std::move(*loaded));
+        build.instructions.resize(compiled->plan.cases.size());
+        for (const compiler::CompiledModule& module : compiled->modules) {
+            (module.compiled ? build.modulesCompiled : build.modulesKept) += 1;
+            if (package::findRole(module.key.role)->repeated == package::Repeated::ByCase) {
+                build.instructions[module.key.index] =
+                    static_cast<std::uint32_t>(module.statistics.instructions);
+            }
+        }
+        build.plan = std::move(compiled->plan);
+    }
+    build.compileMs = base::millisecondsSince(start);
+    build.facts = measure::factsOf(settings, *build.scene, build.options);
+    const std::lock_guard lock(mutex_);
+    messages_.insert(messages_.end(), messages.begin(), messages.end());
+    return okStatus();
+}
+
+Status Builder::readTextures(Build& build) {
+    const scene_view::TextureOptions options =
+        measure::textureOptions(build.settings, context_, *build.package, request_.store);
+    const std::string key = fmt::format("{} {}", options.fit.compress, options.fit.decodeEmission);
+    if (!textures_ || key != texturesKey_) {
+        say("reading textures");
+        Result<std::shared_ptr<const scene_view::TextureSet>> textures =
+            scene_view::loadTextures(*build.scene, options);
+        if (!textures) {
+            return textures.error();
+        }
+        textures_ = std::move(*textures);
+        texturesKey_ = key;
+        build.texturesMs = textures_->milliseconds;
+        const std::lock_guard lock(mutex_);
+        messages_.insert(messages_.end(), textures_->notes.begin(), textures_->notes.end());
+    }
+    build.textures = textures_;
+    return okStatus();
+}
+
+}  // namespace glint::view

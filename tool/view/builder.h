@@ -1,0 +1,115 @@
+// Reads the scene and compiles its package on a thread of its own, while the window goes on.
+#pragma once
+
+#include "emit/warm_modules.h"
+#include "gltf/scene.h"
+#include "plan/plan.h"
+#include "settings/configuration.h"
+#include "view/request.h"
+
+#include <glint/package.h>
+#include <glint/scene_view/textures.h>
+
+#include <array>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace glint::view {
+
+// What a picture is made from, apart from the device's copy.
+struct Build {
+    compiler::Settings settings;  // with which it was made; the strategy is chosen
+    std::shared_ptr<const gltf::Scene> scene;
+    compiler::PlanOptions options;
+    compiler::Plan plan;
+    std::shared_ptr<const Package> package;
+    std::shared_ptr<const scene_view::TextureSet> textures;
+    // By shader ID: SPIR-V instructions of the shader of that case alone; 0: it has none, or it is unknown.
+    std::vector<std::uint32_t> instructions;
+    compiler::BenchFacts facts;       // of the scene, about settings that change nothing
+    std::vector<std::string> inputs;  // files to watch
+    // Wall clock.
+    double readMs = 0.0;
+    double compileMs = 0.0;
+    double texturesMs = 0.0;
+    int modulesCompiled = 0;
+    int modulesKept = 0;
+};
+
+// The pictures that are built: the one that is always there, and the one that it is compared with.
+inline constexpr std::size_t kPictures = 2;
+
+// Whether two scenes were read from files with the same contents. Their materials may still be planned with
+// other packs.
+bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b);
+
+struct BuildOrder {
+    std::size_t picture = 0;
+    compiler::Settings settings;
+    std::string scene;
+    bool reread = false;  // files have changed
+};
+
+class Builder {
+public:
+    // What is given must outlive the builder.
+    Builder(const Request& request, const Context& context);
+    // Waits for a build that is running.
+    ~Builder();
+    Builder(const Builder&) = delete;
+    Builder& operator=(const Builder&) = delete;
+
+    // Begins a build. One that is running is finished first, but only the last order for a picture is kept
+    // for after that.
+    void start(BuildOrder order);
+    // Forgets what was ordered for a picture.
+    void cancel(std::size_t picture);
+    // Returns the finished build of a picture, once.
+    std::optional<Result<Build>> poll(std::size_t picture);
+    bool isBusy(std::size_t picture) const;
+    // Says what is being done.
+    std::string progress() const;
+    // Returns the warnings and notes since the last call.
+    std::vector<Diagnostic> takeMessages();
+
+private:
+    void work();
+    Result<Build> build(const BuildOrder& order);
+    Status readScene(const BuildOrder& order, Build& build);
+    Status makePackage(Build& build);
+    Status readTextures(Build& build);
+    void say(std::string text);
+
+    const Request& request_;
+    const Context& context_;
+    compiler::WarmModules warm_;
+    // The last scene and its textures, and what they were read with.
+    std::shared_ptr<const gltf::Scene> scene_;
+    std::string sceneKey_;
+    std::shared_ptr<const scene_view::TextureSet> textures_;
+    std::string texturesKey_;
+    std::uint32_t strategies_ = 0;  // bits
+    std::string strategiesKey_;
+
+    mutable std::mutex mutex_;  // guards all below
+    std::condition_variable wake_;
+    struct Slot {
+        std::optional<BuildOrder> order;
+        std::optional<Result<Build>> done;
+        bool busy = false;
+        bool canceled = false;
+    };
+    std::array<Slot, kPictures> slots_;
+    std::string progress_;
+    std::vector<Diagnostic> messages_;
+    bool ends_ = false;
+    std::thread thread_;
+};
+
+}  // namespace glint::view

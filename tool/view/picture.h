@@ -1,0 +1,150 @@
+// One picture of the window: a scene on the device and a renderer, made from one set of settings.
+#pragma once
+
+#include "view/builder.h"
+
+#include <glint/environment.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/sky.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glint::view {
+
+// What a change of a setting asks for. A later one includes those before it.
+enum class Change : std::uint8_t {
+    None,
+    Frame,     // the picture starts anew
+    Renderer,  // another renderer
+    Build,     // another package, or another upload of the scene
+};
+
+// Returns what has to be made when settings change. It follows from the table of settings.
+Change changeBetween(const compiler::Settings& before, const compiler::Settings& after);
+
+// Which moment of an animation a picture shows.
+struct Moment {
+    std::vector<std::size_t> animations;  // indices into Scene::animations
+    double seconds = 0.0;
+
+    friend bool operator==(const Moment&, const Moment&) = default;
+};
+
+class Picture {
+public:
+    explicit Picture(Context& context) : context_(context) {}
+
+    // Takes a build. Keeps scene, buffers and pipelines that it has in common with the one before; the device
+    // must be idle. An error leaves the picture as it was, except that an environment may be another one.
+    // `size` is in pixels. Errors are those of the runtime and of reading environment maps, and
+    // "half-precision" and "position-fetch" where the device lacks what the build needs.
+    Status install(Build build, std::uint32_t width, std::uint32_t height, std::vector<Diagnostic>& notes);
+    // Takes settings of stages after the package, or another size. The device must be idle unless
+    // changeBetween() is Change::Frame.
+    Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
+
+    // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move; the
+    // device must be idle.
+    Status pose(const std::optional<Moment>& moment);
+
+    bool isReady() const {
+        return renderer_ != nullptr;
+    }
+    // Begins the mean over samples anew.
+    void restart() {
+        samples_ = 0;
+        fails_ = false;
+    }
+    // Samples that the picture averages.
+    std::uint32_t samples() const {
+        return samples_;
+    }
+    // Also if it can't be drawn as its settings ask for.
+    bool isComplete() const {
+        return samples_ >= settings_.samples || fails_;
+    }
+    // Draws nothing until the settings or the camera change.
+    void skip() {
+        fails_ = true;
+    }
+    // Records a sample. `number` is that of the frame in which it is.
+    Status record(VkCommandBuffer commands, const CameraView& camera, Timing timing, std::uint64_t number);
+    // The device has completed all frames up to this one.
+    void completed(std::uint64_t number);
+
+    const compiler::Settings& settings() const {
+        return settings_;
+    }
+    const Build& build() const {
+        return build_;
+    }
+    // The scene in its present pose.
+    const gltf::Scene& scene() const {
+        return posed_ ? *posed_ : *build_.scene;
+    }
+    const scene_view::SceneViewData& data() const {
+        return *data_;
+    }
+    Renderer& renderer() {
+        return *renderer_;
+    }
+    GpuScene& gpuScene() {
+        return *gpuScene_;
+    }
+    const std::optional<Moment>& moment() const {
+        return moment_;
+    }
+    // Frame number of the last sample.
+    std::uint64_t recordedIn() const {
+        return recordedIn_;
+    }
+    // Device times of the last replacement or upload, for people.
+    const std::string& lastChange() const {
+        return lastChange_;
+    }
+
+private:
+    struct Device {
+        std::unique_ptr<scene_view::SceneViewData> data;
+        std::unique_ptr<GpuScene> scene;
+        std::unique_ptr<Renderer> renderer;
+    };
+    Result<Device> upload(const Build& build, const RendererOptions& options, bool moves);
+    Status readEnvironment(const Build& build, std::vector<Diagnostic>& notes);
+    RendererOptions optionsOf(const compiler::Settings& settings, const Package& package, std::uint32_t width,
+                              std::uint32_t height) const;
+    Result<bool> replace(Build& build, const RendererOptions& options);
+
+    Context& context_;
+    compiler::Settings settings_;
+    Build build_;
+    std::unique_ptr<gltf::Scene> posed_;  // null until the scene moves
+    std::optional<Moment> moment_;
+    bool poseIsNew_ = false;  // the device has another pose
+    std::shared_ptr<Environment> environment_;
+    std::string environmentKey_;
+    scene_view::SkyChoice sky_;
+    // Destroyed in reverse order.
+    std::shared_ptr<const gltf::Scene> uploaded_;  // to which `data_` points, unless the scene moves
+    std::unique_ptr<scene_view::SceneViewData> data_;
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::unique_ptr<Renderer> renderer_;
+    RendererOptions options_;
+    FrameOptions lastFrame_;  // as recorded last
+    std::uint32_t samples_ = 0;
+    bool fails_ = false;
+    std::uint64_t recordedIn_ = 0;
+    struct Recording {
+        std::uint64_t frame = 0;
+        std::uint64_t recording = 0;
+    };
+    std::vector<Recording> inFlight_;
+    std::string lastChange_;
+};
+
+}  // namespace glint::view

@@ -1,0 +1,60 @@
+// What the window is asked to show, and what it needs of the command that opens it.
+#pragma once
+
+#include "cache/module_cache.h"
+#include "gltf/import.h"
+#include "gltf/scene_list.h"
+#include "plan/plan.h"
+#include "settings/settings.h"
+
+#include <glint/context.h>
+#include <glint/measure/observer.h>
+#include <glint/result.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace glint::view {
+
+// A line of an explanation: a label and a text.
+struct Field {
+    std::string label;
+    std::string text;
+};
+
+struct Request {
+    std::string scene;            // .gltf or .glb
+    compiler::Settings settings;  // `samples` is the number of samples at which a picture is complete
+    std::string exposure = "auto";
+    std::string time;             // seconds; empty: the rest pose
+    std::string animation = "0";  // a name, a number, or "all"
+    bool plays = false;           // from the start
+    std::string folder = ".";     // of screenshots
+    std::string script;           // a file of input to replay; empty: none
+    bool showsPanel = true;
+
+    // Gets every message that the window shows. It must outlive the window.
+    const measure::Observer* observer = nullptr;
+    // The cache of compiled modules; both may be null.
+    compiler::ModuleCache* modules = nullptr;
+    compiler::CacheStore* store = nullptr;
+    std::function<Result<gltf::ImportOptions>(const compiler::Settings&)> importOptions;
+    // Returns the warnings of `glint compile` about effects.
+    std::function<std::vector<Diagnostic>(const gltf::SceneList&, const compiler::CompileSettings&)>
+        effectWarnings;
+    // Returns what `glint explain` says of a material, an index into Scene::materials.
+    std::function<std::vector<Field>(const gltf::Scene&, const compiler::PlanOptions&, const compiler::Plan&,
+                                     int)>
+        explain;
+    // Called with the device when it is there, and before it goes: the driver's pipelines are kept in a file.
+    std::function<void(Context&)> opened;
+    std::function<void(Context&)> closing;
+};
+
+// Opens the window and returns when it is closed. Errors: "window-open" (no display), "window-surface" (the
+// device can't show pictures in it), "window-script" (a step of the script failed), "validation" (with
+// Settings::validate), those of the device, and those of reading the scene and making its first picture.
+Status showWindow(const Request& request);
+
+}  // namespace glint::view

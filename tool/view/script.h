@@ -1,0 +1,98 @@
+// Replays input: keys, mouse moves and clicks that go through the X server, as those of a person do.
+#pragma once
+
+#include "view/controls.h"
+#include "view/x11_input.h"
+
+#include <glint/result.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace glint::view {
+
+// What a script asks of the window itself. Everything else is input.
+struct ScriptHost {
+    GLFWwindow* window = nullptr;
+    const Controls* controls = nullptr;
+    std::function<bool()> isComplete;  // nothing is being made, and all samples are there
+    std::function<bool()> hasFailed;   // an error is shown
+    std::function<void(const std::string&)> drop;
+    std::function<Status(const std::string&)> report;  // writes the window's state as JSON
+    std::function<std::uint64_t()> frames;
+    std::function<void(const std::string&)> detail;  // says which step begins
+};
+
+class Script {
+public:
+    // Reads the steps of a file. A line has a word and what it needs; # begins a comment.
+    //   wait complete            until nothing is made any more and all samples are there
+    //   wait failed              until an error is shown
+    //   wait frames N            until N frames were drawn
+    //   wait control NAME        until it is there
+    //   pause SECONDS
+    //   key NAME...              presses keys of X together: key Tab, key ctrl+a
+    //   hold NAME SECONDS        keeps a key pressed
+    //   type TEXT
+    //   move X Y                 in window coordinates
+    //   click X Y | click NAME   a control by its name
+    //   drag X Y X Y [BUTTON]    1 left, 2 middle, 3 right
+    //   wheel N                  up, or down below 0
+    //   choose NAME WORD...      opens a list and clicks words
+    //   number NAME TEXT         types a number into a slider
+    //   enter NAME TEXT          types a text
+    //   size W H | minimise | restore
+    //   copy FROM TO             replaces a file
+    //   drop FILE
+    //   picture FILE.png         what the X server shows of the window
+    //   report FILE.json
+    //   quit
+    // Errors: those of reading the file, and "window-script" for a line that is none of these.
+    static Result<std::unique_ptr<Script>> read(const std::string& file, const ScriptHost& host);
+    Script(const Script&) = delete;
+    Script& operator=(const Script&) = delete;
+
+    // Goes on, between two frames. Error "window-script" if a step or a part of it fails or takes longer than
+    // three minutes.
+    Status step();
+    bool isDone() const;
+
+    // A part of a step. Returns whether it is complete.
+    using Act = std::function<Result<bool>()>;
+
+private:
+    Script(std::string file, const ScriptHost& host);
+    Status parse(const std::string& text);
+    Status parseLine(const std::vector<std::string>& words, const std::string& rest);
+    void act(Act act);
+    void frames(std::uint64_t count);
+    void moveTo(double x, double y);
+    void button(unsigned number, bool down);
+    void key(const std::string& name, bool down);
+    void keys(const std::vector<std::string>& names);
+    void typeText(const std::string& text);
+    void reveal(const std::string& control);
+    void clickControl(const std::string& control, bool withControlKey = false);
+
+    std::string file_;
+    ScriptHost host_;
+    X11Input input_;
+    struct Step {
+        int line = 0;
+        Act act;
+    };
+    std::deque<Step> steps_;
+    int line_ = 0;   // that is being parsed
+    int shown_ = 0;  // that runs
+    std::vector<std::string> lines_;
+    std::int64_t began_ = 0;
+};
+
+}  // namespace glint::view

@@ -1,0 +1,117 @@
+#include "view/vulkan.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace glint::view {
+
+Diagnostic callError(const char* call, VkResult result) {
+    return makeError("vulkan-call", "", fmt::format("{} failed with {}", call, static_cast<int>(result)),
+                     result == VK_ERROR_DEVICE_LOST ? "the driver gave up; start again"
+                                                    : "use a smaller window, or another device");
+}
+
+DeviceImage& DeviceImage::operator=(DeviceImage&& other) noexcept {
+    std::swap(image, other.image);
+    std::swap(view, other.view);
+    std::swap(width, other.width);
+    std::swap(height, other.height);
+    std::swap(device_, other.device_);
+    std::swap(memory_, other.memory_);
+    return *this;
+}
+
+DeviceImage::~DeviceImage() {
+    if (device_ != VK_NULL_HANDLE) {
+        vkDestroyImageView(device_, view, nullptr);
+        vkDestroyImage(device_, image, nullptr);
+        vkFreeMemory(device_, memory_, nullptr);
+    }
+}
+
+Result<DeviceImage> DeviceImage::create(const Context& context, std::uint32_t width, std::uint32_t height) {
+    DeviceImage made;
+    made.width = width;
+    made.height = height;
+    made.device_ = context.handles().device;
+    VkImageCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
+    info.imageType = VK_IMAGE_TYPE_2D;
+    info.format = VK_FORMAT_R8G8B8A8_UNORM;
+    info.extent = {width, height, 1};
+    info.mipLevels = 1;
+    info.arrayLayers = 1;
+    info.samples = VK_SAMPLE_COUNT_1_BIT;
+    info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    VkResult result = vkCreateImage(made.device_, &info, nullptr, &made.image);
+    if (result != VK_SUCCESS) {
+        return callError("vkCreateImage", result);
+    }
+    VkMemoryRequirements needs{};
+    vkGetImageMemoryRequirements(made.device_, made.image, &needs);
+    VkPhysicalDeviceMemoryProperties memory{};
+    vkGetPhysicalDeviceMemoryProperties(context.handles().physicalDevice, &memory);
+    std::uint32_t type = 0;
+    while (type < memory.memoryTypeCount &&
+           ((needs.memoryTypeBits >> type & 1U) == 0 ||
+            (memory.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) == 0)) {
+        ++type;
+    }
+    VkMemoryAllocateInfo allocation{};
+    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocation.allocationSize = needs.size;
+    allocation.memoryTypeIndex = type;
+    result = vkAllocateMemory(made.device_, &allocation, nullptr, &made.memory_);
+    if (result == VK_SUCCESS) {
+        result = vkBindImageMemory(made.device_, made.image, made.memory_, 0);
+    }
+    if (result != VK_SUCCESS) {
+        return callError("vkAllocateMemory", result);
+    }
+    VkImageViewCreateInfo viewInfo{};
+    viewInfo.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+    viewInfo.image = made.image;
+    viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    viewInfo.format = info.format;
+    viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    result = vkCreateImageView(made.device_, &viewInfo, nullptr, &made.view);
+    return result == VK_SUCCESS ? Result<DeviceImage>(std::move(made))
+                                : callError("vkCreateImageView", result);
+}
+
+void recordBarrier(VkCommandBuffer commands) {
+    VkMemoryBarrier2 barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+void recordLayout(VkCommandBuffer commands, VkImage image, VkImageLayout from, VkImageLayout to) {
+    VkImageMemoryBarrier2 barrier{};
+    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
+    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    barrier.oldLayout = from;
+    barrier.newLayout = to;
+    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+    barrier.image = image;
+    barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.imageMemoryBarrierCount = 1;
+    dependency.pImageMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
+}  // namespace glint::view

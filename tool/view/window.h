@@ -1,0 +1,204 @@
+// The window of glint view: what it knows, and what its panels change.
+#pragma once
+
+#include "base/clock.h"
+#include "base/input_watch.h"
+#include "view/builder.h"
+#include "view/camera_control.h"
+#include "view/controls.h"
+#include "view/display.h"
+#include "view/interface.h"
+#include "view/passes_panel.h"
+#include "view/pick.h"
+#include "view/picture.h"
+#include "view/presenter.h"
+#include "view/script.h"
+#include "view/settings_panel.h"
+
+#include <glint/package_watch.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace glint::view {
+
+// In window coordinates, at a content scale of 1.
+inline constexpr float kPanelWidth = 440.0F;
+inline constexpr float kStatusHeight = 26.0F;
+
+// An event of the window's own: those that Dear ImGui takes are left out.
+struct KeyPress {
+    int key = 0;
+    int modifiers = 0;
+};
+
+class Window {
+public:
+    explicit Window(const Request& request);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    Status open();
+    Status run();
+
+    // For callbacks of GLFW.
+    void onKey(int key, int action, int modifiers);
+    void onScroll(double steps);
+    void onDrop(const std::string& file);
+    void onChange(bool size);
+
+private:
+    // A picture with what the user wants of it.
+    struct Side {
+        explicit Side(Context& context) : picture(context) {}
+
+        Picture picture;
+        compiler::Settings wanted;   // as the panel shows it
+        compiler::Settings ordered;  // of the last build that was ordered
+        PassHistory history;
+        FrameCounters counters;
+        std::uint64_t timedFrame = 0;  // of the last times that were read
+    };
+
+    // --- window.cpp: frames ---
+    Status openDevice();
+    Status frame();
+    Status drawFrame(const Presenter::Frame& frame);
+    void finishSamples();
+    Status takeBuilds();
+    Status install(std::size_t side, Build build);
+    void order(std::size_t side, bool reread);
+    Status followSettings(std::size_t side);
+    Status fitSize();
+    void pollFiles();
+    void animate(double seconds);
+    Status applyPose();
+    void startCamera();
+    double distanceToMiddle(const CameraView& view) const;
+    void report(const Diagnostic& message);
+    void say(const std::string& text);
+    void fail(const Diagnostic& error);
+    bool isIdle() const;
+    bool hasWantedSize() const;
+    bool isComplete() const;
+    CameraView cameraView() const;
+    Side& side() {
+        return *sides_[edited_];
+    }
+
+    // --- window_input.cpp: keys, mouse, files ---
+    void handleInput(double seconds);
+    void handleKey(const KeyPress& press);
+    void handleMouse();
+    void fly(double seconds);
+    void openFile(const std::string& file);
+    void pickAt(double x, double y);
+    void measureExposure();
+    void saveScreenshot();
+    void compare(bool on);
+    void measureDifference();
+    void togglePlaying();
+    void nextCamera();
+    Status writeReport(const std::string& file);
+
+    // --- window_panels.cpp ---
+    void drawInterface();
+    void drawSidePanel(float x, float width, float height);
+    void drawHead();
+    void drawCompare();
+    void drawAnimation();
+    void drawPixel();
+    void drawScene();
+    void drawMessages();
+    void drawStatus(float width, float y, float height);
+    void drawHelp();
+    void followPanel();
+    void drawMarks();
+
+    const Request& request_;
+    GLFWwindow* window_ = nullptr;
+    std::unique_ptr<Context> context_;
+    std::unique_ptr<Presenter> presenter_;
+    std::unique_ptr<Interface> interface_;
+    std::unique_ptr<Display> display_;
+    std::array<std::unique_ptr<Side>, kPictures> sides_;
+    std::unique_ptr<Builder> builder_;
+    std::unique_ptr<Script> script_;
+
+    std::string scene_;
+    std::size_t edited_ = 0;  // side
+    Shown shown_ = Shown::First;
+    float border_ = 0.5F;
+    float gain_ = 8.0F;
+    std::string difference_;  // numbers, for people
+    int divisor_ = 1;         // pixels of the window for one of the picture, each way
+
+    CameraControl camera_;
+    bool cameraIsNew_ = true;
+    double orbitDistance_ = 0.0;  // metres; 0: not known yet
+    bool flies_ = false;
+    std::size_t cameraIndex_ = 0;  // of the scene, for the key that goes from one to the next
+
+    bool autoExposure_ = true;
+    float exposure_ = 0.0F;
+    bool exposureIsNew_ = true;  // it has to be measured
+    bool wasComplete_ = false;
+
+    std::vector<std::size_t> animations_;
+    int animationChoice_ = 0;  // 0 to n - 1: one; n: all
+    bool plays_ = false;
+    bool poses_ = false;  // shows a moment rather than the rest pose
+    double time_ = 0.0;
+    float playSpeed_ = 1.0F;
+
+    std::optional<Pick> pick_;
+    bool wantsShot_ = false;
+    int shots_ = 0;
+
+    Controls controls_;
+    SettingsPanel settingsPanel_;
+    bool showsPanel_ = true;
+    bool showsHelp_ = false;
+    bool measuresPasses_ = false;
+    std::string wantedTab_;
+    std::deque<Diagnostic> messages_;
+    std::size_t unread_ = 0;
+    std::string status_;
+    std::optional<Diagnostic> error_;  // of the last build or change
+    std::size_t validationSeen_ = 0;
+
+    base::InputWatch watch_;
+    std::optional<PackageWatch> packageWatch_;
+    base::Clock::time_point polled_{};
+
+    std::vector<KeyPress> keys_;
+    double scrolled_ = 0.0;
+    bool drags_ = false;
+    bool movesBorder_ = false;
+    int dragButton_ = 0;
+    std::array<double, 2> pressed_{};
+    std::array<double, 2> mouse_{};
+    int wakes_ = 4;  // frames that are drawn although nothing is to be done
+    std::uint64_t frames_ = 0;
+    std::uint64_t samples_ = 0;
+    base::Clock::time_point lastFrame_ = base::Clock::now();
+    base::Clock::time_point resized_ = base::Clock::now();
+    std::deque<double> sampleTimes_;  // seconds between samples
+    base::Clock::time_point lastSample_ = base::Clock::now();
+    base::Clock::time_point start_ = base::Clock::now();
+    std::optional<double> firstPictureMs_;
+
+    // The part of the window that shows the picture, in pixels of the framebuffer.
+    Presenter::Area area_;
+    float pixelScale_ = 1.0F;  // of the framebuffer for one of the window's coordinates
+};
+
+}  // namespace glint::view

@@ -1,0 +1,486 @@
+// Keys, mouse and files: what they change.
+#include "base/files.h"
+#include "base/json.h"
+#include "base/text.h"
+#include "image/compare.h"
+#include "image/flip.h"
+#include "image/image_file.h"
+#include "image/tone.h"
+#include "settings/table.h"
+#include "view/shot_command.h"
+#include "view/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <fmt/format.h>
+
+#include <GLFW/glfw3.h>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <imgui.h>
+#include <numeric>
+#include <unistd.h>
+
+namespace glint::view {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kClickRadius = 3.0;  // window coordinates; farther is a drag
+constexpr double kBorderReach = 8.0;  // window coordinates, on either side of a wipe's border
+constexpr double kWheelStep = 0.12;   // share of the distance that a step of the wheel goes
+constexpr float kExposureStep = 1.0F / 3.0F;
+
+std::string lowerExtension(const fs::path& file) {
+    std::string extension = file.extension().string();
+    std::ranges::transform(extension, extension.begin(),
+                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+// Resident memory of this process; 0 where the system does not say.
+std::uint64_t residentBytes() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t total = 0;
+    std::uint64_t resident = 0;
+    file >> total >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+void Window::onKey(int key, int action, int modifiers) {
+    wakes_ = 4;
+    if (action == GLFW_PRESS || (action == GLFW_REPEAT && key != GLFW_KEY_SPACE)) {
+        keys_.push_back({key, modifiers});
+    }
+}
+
+void Window::onScroll(double steps) {
+    wakes_ = 4;
+    scrolled_ += steps;
+}
+
+void Window::onDrop(const std::string& file) {
+    wakes_ = 4;
+    openFile(file);
+}
+
+void Window::openFile(const std::string& file) {
+    const std::string extension = lowerExtension(file);
+    if (extension == ".gltf" || extension == ".glb") {
+        scene_ = file;
+        for (std::unique_ptr<Side>& one : sides_) {
+            if (one) {
+                one->wanted.camera.clear();
+                one->wanted.package.clear();
+                one->wanted.variant.clear();
+            }
+        }
+        poses_ = plays_ = false;
+        time_ = 0.0;
+        glfwSetWindowTitle(window_, ("glint view: " + scene_).c_str());
+        say("opening " + file);
+    } else if (extension == ".hdr" || extension == ".exr") {
+        for (std::unique_ptr<Side>& one : sides_) {
+            if (one) {
+                one->wanted.environment = file;
+                one->wanted.sky.reset();
+            }
+        }
+        exposureIsNew_ = autoExposure_;
+        say("lighting the scene by " + file);
+    } else {
+        fail(makeError("window-drop", file, "is no scene and no environment map",
+                       "drop a .gltf, .glb, .hdr or .exr file"));
+        return;
+    }
+    for (std::size_t i = 0; i < kPictures; ++i) {
+        if (sides_[i]) {
+            order(i, false);
+        }
+    }
+}
+
+void Window::fly(double seconds) {
+    const auto isDown = [this](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
+    if (isDown(GLFW_KEY_LEFT_CONTROL) + isDown(GLFW_KEY_RIGHT_CONTROL) > 0.0) {
+        return;
+    }
+    const double right = isDown(GLFW_KEY_D) - isDown(GLFW_KEY_A);
+    const double up = isDown(GLFW_KEY_E) - isDown(GLFW_KEY_Q);
+    const double forward = isDown(GLFW_KEY_W) - isDown(GLFW_KEY_S);
+    if (right == 0.0 && up == 0.0 && forward == 0.0) {
+        return;
+    }
+    constexpr double kFast = 4.0;
+    const double factor = isDown(GLFW_KEY_LEFT_SHIFT) > 0.0 ? kFast : 1.0;
+    camera_.fly(right, up, forward, factor * seconds);
+    for (std::unique_ptr<Side>& one : sides_) {
+        if (one) {
+            one->picture.restart();
+        }
+    }
+    wakes_ = 4;
+}
+
+void Window::handleInput(double seconds) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!io.WantTextInput) {
+        for (const KeyPress& press : keys_) {
+            handleKey(press);
+        }
+        fly(seconds);
+    }
+    keys_.clear();
+    handleMouse();
+    scrolled_ = 0.0;
+}
+
+void Window::handleMouse() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const std::array<double, 2> at{io.MousePos.x, io.MousePos.y};
+    const double width = area_.width / static_cast<double>(pixelScale_);
+    const double height = area_.height / static_cast<double>(pixelScale_);
+    const bool isInside = at[0] >= 0.0 && at[1] >= 0.0 && at[0] < width && at[1] < height;
+    const auto restart = [this] {
+        for (std::unique_ptr<Side>& one : sides_) {
+            if (one) {
+                one->picture.restart();
+            }
+        }
+        wakes_ = 4;
+    };
+    if (isInside && scrolled_ != 0.0 && !io.WantCaptureMouse) {
+        if (flies_) {
+            camera_.changeSpeed(std::pow(1.25, scrolled_));
+            say(fmt::format("flies {:.3g} times the target's distance a second", camera_.speed()));
+        } else {
+            camera_.approach(1.0 - std::pow(1.0 - kWheelStep, scrolled_));
+            restart();
+        }
+    }
+    if (!drags_) {
+        for (int button = 0; button < 3; ++button) {
+            if (ImGui::IsMouseClicked(button) && isInside && !io.WantCaptureMouse) {
+                drags_ = true;
+                dragButton_ = button;
+                pressed_ = at;
+                mouse_ = at;
+                movesBorder_ = shown_ == Shown::Wipe && sides_[1] && button == 0 &&
+                               std::abs(at[0] - border_ * width) < kBorderReach;
+            }
+        }
+        return;
+    }
+    const double right = (at[0] - mouse_[0]) / height;
+    const double down = (at[1] - mouse_[1]) / height;
+    const bool isClick =
+        std::hypot(at[0] - pressed_[0], at[1] - pressed_[1]) <= kClickRadius && !movesBorder_;
+    if (!ImGui::IsMouseDown(dragButton_)) {
+        drags_ = false;
+        if (isClick && dragButton_ == 0) {
+            pickAt(at[0], at[1]);
+        }
+        return;
+    }
+    if (isClick || (right == 0.0 && down == 0.0)) {
+        return;
+    }
+    mouse_ = at;
+    if (movesBorder_) {
+        border_ = static_cast<float>(std::clamp(at[0] / width, 0.0, 1.0));
+        return;
+    }
+    if (dragButton_ == 2 || (dragButton_ == 0 && io.KeyShift)) {
+        camera_.pan(right, down);
+    } else if (dragButton_ == 1 || flies_) {
+        camera_.look(0.5 * right, 0.5 * down);
+    } else {
+        camera_.orbit(right, down);
+    }
+    restart();
+}
+
+void Window::handleKey(const KeyPress& press) {
+    const bool control = (press.modifiers & GLFW_MOD_CONTROL) != 0;
+    if (control) {
+        if (press.key == GLFW_KEY_Q) {
+            glfwSetWindowShouldClose(window_, GLFW_TRUE);
+        }
+        return;
+    }
+    const auto chooseStrategy = [this](std::size_t index) {
+        if (index < package::strategyTable().size()) {
+            side().wanted.strategy = package::strategyTable()[index].strategy;
+            followPanel();
+        }
+    };
+    switch (press.key) {
+        case GLFW_KEY_F1:
+            showsHelp_ = !showsHelp_;
+            break;
+        case GLFW_KEY_ESCAPE:
+            showsHelp_ = false;
+            pick_.reset();
+            wantsShot_ = false;
+            break;
+        case GLFW_KEY_TAB:
+            showsPanel_ = !showsPanel_;
+            resized_ = base::Clock::now();
+            break;
+        case GLFW_KEY_F:
+            flies_ = !flies_;
+            say(flies_ ? "dragging looks around" : "dragging orbits the target");
+            break;
+        case GLFW_KEY_HOME:
+            cameraIsNew_ = true;
+            break;
+        case GLFW_KEY_C:
+            nextCamera();
+            break;
+        case GLFW_KEY_SPACE:
+            togglePlaying();
+            break;
+        case GLFW_KEY_P:
+        case GLFW_KEY_F12:
+            wantsShot_ = true;
+            break;
+        case GLFW_KEY_X:
+            autoExposure_ = true;
+            exposureIsNew_ = true;
+            break;
+        case GLFW_KEY_LEFT_BRACKET:
+        case GLFW_KEY_RIGHT_BRACKET:
+            autoExposure_ = false;
+            exposure_ += press.key == GLFW_KEY_LEFT_BRACKET ? -kExposureStep : kExposureStep;
+            break;
+        case GLFW_KEY_M:
+            divisor_ = divisor_ % 4 + 1;
+            break;
+        case GLFW_KEY_B:
+            compare(sides_[1] == nullptr);
+            break;
+        case GLFW_KEY_V:
+            if (sides_[1]) {
+                shown_ = static_cast<Shown>((static_cast<std::uint32_t>(shown_) + 1) %
+                                            static_cast<std::uint32_t>(Shown::Raw));
+            }
+            break;
+        default:
+            if (press.key >= GLFW_KEY_1 && press.key <= GLFW_KEY_9) {
+                chooseStrategy(static_cast<std::size_t>(press.key - GLFW_KEY_1));
+            }
+            break;
+    }
+}
+
+void Window::nextCamera() {
+    if (!sides_[0]->picture.isReady()) {
+        return;
+    }
+    const std::size_t count = sides_[0]->picture.scene().cameras.size();
+    cameraIndex_ = (cameraIndex_ + 1) % (count + 1);
+    const std::string name = cameraIndex_ == count ? "auto" : std::to_string(cameraIndex_);
+    for (std::unique_ptr<Side>& one : sides_) {
+        if (one) {
+            one->wanted.camera = name;
+        }
+    }
+    orbitDistance_ = 0.0;
+    cameraIsNew_ = true;
+    say("camera " + name);
+}
+
+void Window::togglePlaying() {
+    const Picture& picture = sides_[0]->picture;
+    if (!picture.isReady() || (picture.scene().animations.empty() && sides_[0]->wanted.materials.empty())) {
+        say("the scene has no animation");
+        return;
+    }
+    plays_ = !plays_;
+    poses_ = true;
+}
+
+void Window::compare(bool on) {
+    if (!on) {
+        if (presenter_->waitForFrames()) {
+            builder_->cancel(1);
+            sides_[1].reset();
+        }
+        edited_ = 0;
+        shown_ = Shown::First;
+        difference_.clear();
+        return;
+    }
+    sides_[1] = std::make_unique<Side>(*context_);
+    sides_[1]->wanted = sides_[0]->wanted;
+    shown_ = Shown::Wipe;
+    edited_ = 1;
+    order(1, false);
+}
+
+void Window::pickAt(double x, double y) {
+    // In a wipe, the pixel belongs to the picture that is shown there.
+    const bool isSecond =
+        sides_[1] && sides_[1]->picture.isReady() &&
+        (shown_ == Shown::Second ||
+         (shown_ == Shown::Wipe && x * pixelScale_ > static_cast<double>(border_) * area_.width));
+    Picture& picture = sides_[isSecond ? 1 : 0]->picture;
+    if (!picture.isReady() || picture.recordedIn() == 0) {
+        return;
+    }
+    const compiler::Settings& settings = picture.settings();
+    const auto pixel = [&](double place, int extent, std::uint32_t count) {
+        const double share = place * pixelScale_ / extent;
+        return std::min(static_cast<std::uint32_t>(share * count), count - 1);
+    };
+    Result<Pick> picked =
+        pickPixel(request_, picture, pixel(x, area_.width, settings.renderer.width),
+                  pixel(y, area_.height, settings.renderer.height), static_cast<double>(exposure_));
+    if (!picked) {
+        report(picked.error());
+        return;
+    }
+    pick_ = std::move(*picked);
+    wantedTab_ = "Pixel";
+}
+
+void Window::measureExposure() {
+    Picture& picture = sides_[0]->picture;
+    if (picture.samples() == 0) {
+        return;
+    }
+    const Result<LinearImage> image = picture.renderer().readOutput();
+    const Result<std::vector<std::uint8_t>> surfaces = picture.renderer().readSurfaces();
+    if (!image || !surfaces) {
+        report(image ? surfaces.error() : image.error());
+        return;
+    }
+    exposure_ = static_cast<float>(image::automaticExposure(*image, *surfaces));
+    exposureIsNew_ = false;
+    wakes_ = 4;
+}
+
+void Window::saveScreenshot() {
+    wantsShot_ = false;
+    Picture& picture = side().picture;
+    const Result<LinearImage> image = picture.renderer().readOutput();
+    if (!image) {
+        report(image.error());
+        return;
+    }
+    fs::path file;
+    const std::string stem = fs::path(scene_).stem().string();
+    std::error_code error;
+    do {
+        file = fs::path(request_.folder) / fmt::format("{}-{:03}.png", stem, ++shots_);
+    } while (fs::exists(file, error));
+    if (Status written = image::writeImage(file, *image, static_cast<double>(exposure_)); !written) {
+        report(written.error());
+        return;
+    }
+    const std::string animation = animationChoice_ >= static_cast<int>(picture.scene().animations.size())
+                                      ? std::string("all")
+                                      : std::to_string(animationChoice_);
+    compiler::Settings settings = picture.settings();
+    const std::vector<std::string> words =
+        shotWords(settings, {scene_, file.string(), camera_.name(), static_cast<double>(exposure_),
+                             poses_ ? fmt::format("{}", time_) : std::string(), animation});
+    fs::path command = file;
+    command.replace_extension(".sh");
+    const std::string line = base::shellWords(words);
+    if (Status written =
+            base::writeFile(command, "# Makes the picture beside this file again.\n" + line + "\n");
+        !written) {
+        report(written.error());
+        return;
+    }
+    say("wrote " + file.string());
+    report(Diagnostic{Severity::Note, "window-shot", file.string(), "shows the picture; this makes it again",
+                      line});
+}
+
+void Window::measureDifference() {
+    if (!sides_[1] || !sides_[1]->picture.isReady()) {
+        return;
+    }
+    const Result<LinearImage> first = sides_[0]->picture.renderer().readOutput();
+    const Result<LinearImage> second = sides_[1]->picture.renderer().readOutput();
+    if (!first || !second) {
+        report(first ? second.error() : first.error());
+        return;
+    }
+    const Result<image::ImageDifference> linear = image::compareImages(*second, *first, "B", "A");
+    if (!linear) {
+        report(linear.error());
+        return;
+    }
+    const auto exposure = static_cast<double>(exposure_);
+    const double flip = image::flipMean(
+        image::flipMap(image::displayedImage(*second, exposure), image::displayedImage(*first, exposure)));
+    difference_ = fmt::format("FLIP {:.4f}, RMSE {:.3g}, most {:.3g} at {}, {}", flip, linear->rmse,
+                              linear->absolute.value, linear->absolute.x, linear->absolute.y);
+}
+
+Status Window::writeReport(const std::string& file) {
+    Side& one = side();
+    base::Json settings = base::Json::object();
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if ((row.commands & compiler::kOfRender) != 0) {
+            settings[std::string(row.name)] = row.values.text(one.wanted);
+        }
+    }
+    base::Json messages = base::Json::array();
+    for (const Diagnostic& message : messages_) {
+        messages.push_back(toString(message));
+    }
+    base::Json picked = nullptr;
+    if (pick_) {
+        picked = base::Json{{"x", pick_->x}, {"y", pick_->y}, {"fields", base::Json::object()}};
+        for (const Field& field : pick_->fields) {
+            picked["fields"][field.label] = field.text;
+        }
+    }
+    base::Json passes = base::Json::object();
+    for (std::size_t i = 0; i < one.history.names().size(); ++i) {
+        passes[one.history.names()[i]] = one.history.median(i);
+    }
+    const double samples = static_cast<double>(sampleTimes_.size());
+    const double seconds = std::accumulate(sampleTimes_.begin(), sampleTimes_.end(), 0.0);
+    const bool isReady = one.picture.isReady();
+    const base::Json json{
+        {"scene", scene_},
+        {"camera", camera_.name()},
+        {"exposure", exposure_},
+        {"settings", settings},
+        {"compares", sides_[1] != nullptr},
+        {"shown", static_cast<std::uint32_t>(shown_)},
+        {"difference", difference_},
+        {"width", isReady ? one.picture.settings().renderer.width : 0},
+        {"height", isReady ? one.picture.settings().renderer.height : 0},
+        {"samples", isReady ? one.picture.samples() : 0},
+        {"strategy", isReady ? std::string(package::nameOf(*one.picture.settings().strategy)) : ""},
+        {"lastChange", one.picture.lastChange()},
+        {"time", poses_ ? base::Json(time_) : base::Json(nullptr)},
+        {"plays", plays_},
+        {"flies", flies_},
+        {"panel", showsPanel_},
+        {"help", showsHelp_},
+        {"frames", frames_},
+        {"samplesDrawn", samples_},
+        {"samplesPerSecond", seconds > 0.0 ? samples / seconds : 0.0},
+        {"firstPictureMs", firstPictureMs_ ? base::Json(*firstPictureMs_) : base::Json(nullptr)},
+        {"residentBytes", residentBytes()},
+        {"rendererBytes", isReady ? one.picture.renderer().footprint().allocatedBytes : 0},
+        {"sceneBytes", isReady ? one.picture.gpuScene().allocatedBytes() : 0},
+        {"passes", passes},
+        {"pick", picked},
+        {"error", error_ ? base::Json(toString(*error_)) : base::Json(nullptr)},
+        {"messages", messages}};
+    return base::writeFile(file, base::toText(json));
+}
+
+}  // namespace glint::view

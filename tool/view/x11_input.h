@@ -1,0 +1,44 @@
+// Input that goes through the X server, and the picture that it shows. Headers of X define names of Glint as
+// macros, so they are included by one source only.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+struct GLFWwindow;
+
+namespace glint::view {
+
+class X11Input {
+public:
+    explicit X11Input(GLFWwindow* window);
+
+    // Whether the server takes input from programs.
+    bool isAvailable() const;
+    // In pixels of the window.
+    void move(double x, double y) const;
+    // 1 left, 2 middle, 3 right, 4 wheel up, 5 wheel down.
+    void button(unsigned number, bool down) const;
+    // By the name that X has for the key. Presses Shift too, where the character needs it. Returns false if
+    // the keyboard has no such key.
+    bool key(const std::string& name, bool down) const;
+
+    // What a window manager does, where there is none; returns false where there is one.
+    bool setMinimised(bool minimised) const;
+
+    struct Pixels {
+        std::uint32_t width = 0;
+        std::uint32_t height = 0;
+        std::vector<std::array<std::uint8_t, 3>> pixels;  // row by row from the top
+    };
+    std::optional<Pixels> picture() const;
+
+private:
+    void* display_ = nullptr;
+    unsigned long window_ = 0;
+};
+
+}  // namespace glint::view
