@@ -72,6 +72,16 @@ TEST(CompilePackage, WithAFallbackHasASmallDraft) {
     }
 }
 
+// It has no function that samples them, and its sky is there in any case.
+TEST(CompilePackage, DraftsLeaveOutLightsThatRaysFind) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.fallback = true;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    settings.skyLight = compiler::SkyLight::On;
+    EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::LightingDraft], 1);
+}
+
 TEST(CompilePackage, RefusesNoStrategy) {
     compiler::CompileSettings settings;
     settings.strategies = 0;

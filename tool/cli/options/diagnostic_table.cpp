@@ -376,6 +376,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"vulkan-call", kError, "A call of Vulkan failed."},
     {"vulkan-function", kError, "The Vulkan implementation lacks a function."},
     {"vulkan-loader", kError, "There is no Vulkan loader."},
+    {"werror", kError, "There are warnings that count as errors."},
     {"window-drop", kError, "`glint view`: the file is neither a scene nor an environment map."},
     {"window-missing", kError, "`glint view`: this glint was built without its window."},
     {"window-open", kError, "`glint view`: no window can be opened."},
@@ -383,7 +384,6 @@ constexpr DiagnosticInfo kTable[] = {
     {"window-shot", kNote,
      "`glint view`: a screenshot was written; the hint is the command that makes it again."},
     {"window-surface", kError, "`glint view`: the device can't show pictures in the window."},
-    {"werror", kError, "There are warnings that count as errors."},
 };
 
 }  // namespace
