@@ -21,7 +21,7 @@ namespace glint::view {
 namespace {
 
 constexpr double kMostMs = 180'000.0;  // for a part of a step
-constexpr std::uint64_t kSettle = 3;   // frames after which the window has taken in an event
+constexpr std::uint64_t kSettle = 2;   // frames after which the window has taken in an event
 
 Diagnostic scriptError(const std::string& file, int line, const std::string& message) {
     return makeError("window-script", fmt::format("{}:{}", file, line), message, "correct the script");
@@ -122,9 +122,17 @@ void Script::keys(const std::vector<std::string>& names) {
 }
 
 void Script::typeText(const std::string& text) {
-    for (const char c : text) {
-        keys({keyOfCharacter(c)});
-    }
+    // Characters queue up, so that no frame has to pass between two of them.
+    act([this, text]() -> Result<bool> {
+        for (const char c : text) {
+            const std::string name = keyOfCharacter(c);
+            if (!input_.key(name, true) || !input_.key(name, false)) {
+                return makeError("window-script", "", "the keyboard has no key " + name);
+            }
+        }
+        return true;
+    });
+    frames(kSettle);
 }
 
 // Turns the wheel until the control can be seen.
@@ -293,11 +301,11 @@ Status Script::parseLine(const std::vector<std::string>& words, const std::strin
             if (host_.controls->find(first)) {
                 // A list of several words stays open.
                 input_.key("Escape", true);
-                input_.key("Escape", false);
             }
             return true;
         });
         frames(kSettle);
+        key("Escape", false);
         return okStatus();
     } else if (what == "number" && withArguments(2)) {
         clickControl(words[1], true);
