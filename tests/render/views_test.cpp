@@ -115,8 +115,7 @@ TEST(Views, CountInfiniteSamples) {
 TEST(Views, EveryStrategyGivesTheSame) {
     const gltf::Scene scene = hallScene();
     compiler::CompileSettings settings;
-    const std::vector<std::string> same{"shader", "lobes", "material", "reflection.hit-shader",
-                                        "rays"};
+    const std::vector<std::string> same{"shader", "lobes", "material", "reflection.hit-shader", "rays"};
     settings.layers = same;
     settings.layers.insert(settings.layers.end(), {"cases-run", "workgroup"});
     settings.plan.merge = compiler::MergePolicy::None;

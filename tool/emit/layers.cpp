@@ -1,6 +1,7 @@
 #include "emit/layers.h"
 
 #include "base/suggest.h"
+#include "settings/layer_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -236,7 +237,9 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
                                               const std::string& where) {
     std::vector<LayerEntry> entries;
     const std::uint32_t bounces = layerBouncesOf(plan, settings);
-    for (const std::string& word : settings.layers) {
+    for (const std::string& asked : settings.layers) {
+        const bool isOptional = asked.ends_with(kOptionalLayer);
+        const std::string word = asked.substr(0, asked.size() - (isOptional ? 1 : 0));
         const std::vector<const LayerInfo*> named = layersNamed(word);
         const std::size_t before = entries.size();
         for (const LayerInfo* const info : named) {
@@ -246,7 +249,7 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
             if (Status added = addOfSource(word, plan, bounces, where, entries); !added) {
                 return added.error();
             }
-        } else if (entries.size() == before) {
+        } else if (entries.size() == before && !isOptional) {
             return makeError("layer-effect", where,
                              fmt::format("nothing in the package has the layer {}", word),
                              "add an effect with rays by --effects, and --bounces for layers of bounces");
