@@ -126,6 +126,7 @@ void showMaterials(const ViewInput& input, ViewValues& values) {
 // A set of lobes has the place among those of the scene as its number, so that its colour depends on the
 // scene alone.
 void showKeys(const ViewInput& input, ViewValues& values) {
+    constexpr std::uint32_t kBaseAlone = 0x10000;  // no set of lobes has this number
     Filler filler(input, values);
     std::set<std::uint32_t> known;
     for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
@@ -134,16 +135,21 @@ void showKeys(const ViewInput& input, ViewValues& values) {
     const std::vector<std::uint32_t>& lobes = integersOf(input, "lobes");
     known.insert(lobes.begin(), lobes.end());
     known.erase(kNoLayerValue);
+    known.erase(0);
     const std::vector<std::uint32_t> ordered(known.begin(), known.end());
     for (std::size_t i = 0; i < filler.size(); ++i) {
         if (lobes[i] == kNoLayerValue) {
             filler.mark(i, kMarkSurfaceless);
             continue;
         }
+        if (lobes[i] == 0) {
+            filler.category(i, kBaseAlone, "base alone", {44, 52, 66});
+            continue;
+        }
         const auto place = std::ranges::lower_bound(ordered, lobes[i]) - ordered.begin();
         filler.category(i, static_cast<std::uint32_t>(place), [&] {
             const std::vector<std::string> names = input.package->featureNames(lobes[i]);
-            return names.empty() ? std::string("base alone") : fmt::format("{}", fmt::join(names, " "));
+            return fmt::format("{}", fmt::join(names, " "));
         });
     }
 }

@@ -50,6 +50,8 @@ void measureNumbers(const ViewValues& values, ViewStatistics& statistics) {
     statistics.mean = sum / static_cast<double>(sorted.size());
     statistics.median = quantile(sorted, 0.5);
     statistics.percentile99 = quantile(sorted, 0.99);
+    statistics.percentileHalf = quantile(sorted, 0.005);
+    statistics.percentile99Half = quantile(sorted, 0.995);
 }
 
 void countCategories(const ViewValues& values, ViewStatistics& statistics) {
@@ -64,14 +66,29 @@ void countCategories(const ViewValues& values, ViewStatistics& statistics) {
     std::ranges::stable_sort(statistics.categories, std::greater(), &ViewStatistics::Category::pixels);
 }
 
+// A few pixels far away from all others would leave these a single colour, so they share the colour of an
+// end.
 std::array<double, 2> scaleOf(ViewScale scale, const ViewStatistics& statistics) {
+    // Counts keep their few large values, which people look for; a clock is off by more when its thread has
+    // to wait.
+    constexpr double kFar = 2.0;
+    constexpr double kFarOfCounts = 16.0;
+    const double low = statistics.percentileHalf;
+    const double high = statistics.percentile99Half;
+    const bool isLogarithmic = scale == ViewScale::Logarithmic;
+    const bool isFarAbove = isLogarithmic
+                                ? statistics.greatest > kFar * high
+                                : statistics.greatest - low > kFarOfCounts * (high - low) && high > low;
+    const double last = isFarAbove ? high : statistics.greatest;
     switch (scale) {
         case ViewScale::FromZero:
-            return {std::min(0.0, statistics.least), statistics.greatest};
+            return {std::min(0.0, statistics.least), last};
         case ViewScale::FromOne:
-            return {std::min(1.0, statistics.least), statistics.greatest};
+            return {std::min(1.0, statistics.least), last};
+        case ViewScale::Logarithmic:
+            return {kFar * statistics.least < low ? low : statistics.least, last};
         default:
-            return {statistics.least, statistics.greatest};
+            return {statistics.least, last};
     }
 }
 

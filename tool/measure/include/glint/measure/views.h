@@ -117,8 +117,11 @@ struct ViewStatistics {
     double mean = 0.0;
     double median = 0.0;
     double percentile99 = 0.0;
+    double percentileHalf = 0.0;    // that of 0.5 %
+    double percentile99Half = 0.0;  // that of 99.5 %
     // Pixels in equal steps from scale[0] to scale[1]; of a logarithmic view the steps are equal in the
-    // logarithm.
+    // logarithm. The first and the last step have what is beyond the scale, too: it leaves out the outermost
+    // half percent of the numbers where these are far from the others.
     std::array<double, 2> scale{};
     std::vector<std::uint64_t> histogram;
 };
