@@ -21,7 +21,8 @@ namespace glint::view {
 namespace {
 
 constexpr double kMostMs = 180'000.0;  // for a part of a step
-constexpr std::uint64_t kSettle = 3;   // frames after which the window has taken in an event
+constexpr std::uint64_t kTaken = 1;    // frames after which the window has taken in an event
+constexpr std::uint64_t kSettle = 3;   // frames after which what it changes is shown
 
 Diagnostic scriptError(const std::string& file, int line, const std::string& message) {
     return makeError("window-script", fmt::format("{}:{}", file, line), message, "correct the script");
@@ -93,7 +94,7 @@ void Script::moveTo(double x, double y) {
         input_.move(x, y);
         return true;
     });
-    frames(kSettle);
+    frames(kTaken);
 }
 
 void Script::button(unsigned number, bool down) {
@@ -101,7 +102,7 @@ void Script::button(unsigned number, bool down) {
         input_.button(number, down);
         return true;
     });
-    frames(kSettle);
+    frames(kTaken);
 }
 
 void Script::key(const std::string& name, bool down) {
@@ -109,7 +110,7 @@ void Script::key(const std::string& name, bool down) {
         return input_.key(name, down) ? Result<bool>(true)
                                       : makeError("window-script", "", "the keyboard has no key " + name);
     });
-    frames(kSettle);
+    frames(kTaken);
 }
 
 void Script::keys(const std::vector<std::string>& names) {
@@ -122,9 +123,17 @@ void Script::keys(const std::vector<std::string>& names) {
 }
 
 void Script::typeText(const std::string& text) {
-    for (const char c : text) {
-        keys({keyOfCharacter(c)});
-    }
+    // Characters queue up, so that no frame has to pass between two of them.
+    act([this, text]() -> Result<bool> {
+        for (const char c : text) {
+            const std::string name = keyOfCharacter(c);
+            if (!input_.key(name, true) || !input_.key(name, false)) {
+                return makeError("window-script", "", "the keyboard has no key " + name);
+            }
+        }
+        return true;
+    });
+    frames(kTaken);
 }
 
 // Turns the wheel until the control can be seen.
@@ -133,7 +142,7 @@ void Script::reveal(const std::string& control) {
     auto last = std::make_shared<std::uint64_t>(0);
     act([this, control, last]() -> Result<bool> {
         *last = *last == 0 ? host_.frames() : *last;
-        if (host_.frames() < *last + 2 * kSettle) {
+        if (host_.frames() < *last + kSettle) {
             return false;
         }
         const std::optional<Controls::Place> place = host_.controls->find(control);
@@ -165,7 +174,7 @@ void Script::clickControl(const std::string& control, bool withControlKey) {
         input_.move(0.5F * (place->min[0] + place->max[0]), 0.5F * (place->min[1] + place->max[1]));
         return true;
     });
-    frames(kSettle);
+    frames(kTaken);
     if (withControlKey) {
         key("Control_L", true);
     }
@@ -293,11 +302,11 @@ Status Script::parseLine(const std::vector<std::string>& words, const std::strin
             if (host_.controls->find(first)) {
                 // A list of several words stays open.
                 input_.key("Escape", true);
-                input_.key("Escape", false);
             }
             return true;
         });
         frames(kSettle);
+        key("Escape", false);
         return okStatus();
     } else if (what == "number" && withArguments(2)) {
         clickControl(words[1], true);

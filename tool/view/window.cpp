@@ -325,6 +325,7 @@ Status Window::takeBuilds() {
             continue;
         }
         Status installed = *done ? install(i, std::move(**done)) : Status((*done).error());
+        sides_[i]->buildFailed = !installed;
         if (installed) {
             error_.reset();
             continue;
@@ -431,7 +432,7 @@ Status Window::followSettings(std::size_t index) {
     if (change == Change::None) {
         return okStatus();
     }
-    if (!builder_->isBusy(index)) {
+    if (!builder_->isBusy(index) && !one.buildFailed) {
         error_.reset();
     }
     if (change != Change::Frame) {

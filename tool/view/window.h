@@ -66,6 +66,7 @@ private:
         PassHistory history;
         FrameCounters counters;
         std::uint64_t timedFrame = 0;  // of the last times that were read
+        bool buildFailed = false;      // the last one; the picture is that of a build before it
     };
 
     // --- window.cpp: frames ---

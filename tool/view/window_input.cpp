@@ -128,7 +128,9 @@ void Window::fly(double seconds) {
 
 void Window::handleInput(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!io.WantTextInput) {
+    // Keys belong to a list that is open: Escape closes it and nothing else.
+    const bool hasList = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    if (!io.WantTextInput && !hasList) {
         for (const KeyPress& press : keys_) {
             handleKey(press);
         }

@@ -39,12 +39,12 @@ void X11Input::move(double x, double y) const {
     XTranslateCoordinates(display, window_, DefaultRootWindow(display), static_cast<int>(std::lround(x)),
                           static_cast<int>(std::lround(y)), &rootX, &rootY, &child);
     XTestFakeMotionEvent(display, -1, rootX, rootY, CurrentTime);
-    XFlush(display);
+    XSync(display, False);
 }
 
 void X11Input::button(unsigned number, bool down) const {
     XTestFakeButtonEvent(displayOf(display_), number, down ? True : False, CurrentTime);
-    XFlush(displayOf(display_));
+    XSync(displayOf(display_), False);
 }
 
 bool X11Input::key(const std::string& name, bool down) const {
@@ -66,7 +66,7 @@ bool X11Input::key(const std::string& name, bool down) const {
     if (isShifted && !down) {
         XTestFakeKeyEvent(display, shift, False, CurrentTime);
     }
-    XFlush(display);
+    XSync(display, False);
     return true;
 }
 
@@ -96,7 +96,7 @@ bool X11Input::setMinimised(bool minimised) const {
     }
     XChangeProperty(display, window_, name, name, 32, PropModeReplace,
                     reinterpret_cast<const unsigned char*>(state), 2);
-    XFlush(display);
+    XSync(display, False);
     return true;
 }
 

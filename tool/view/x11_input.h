@@ -12,6 +12,7 @@ struct GLFWwindow;
 
 namespace glint::view {
 
+// Each call returns when the server has passed the input on, so that the next look at events finds it.
 class X11Input {
 public:
     explicit X11Input(GLFWwindow* window);

@@ -98,19 +98,29 @@ std::string viewNames() {
     return text;
 }
 
+// Says what is wrong with a text that names no view.
+std::string complaintAboutView(const std::string& text) {
+    const std::size_t dot = text.find('.');
+    const std::string name = dot == std::string::npos ? text : text.substr(dot + 1);
+    if (measure::findView(name) != nullptr && dot > 0) {
+        return fmt::format("\"{}\" is no view, because {} is not about the rays of one effect; use {}", text,
+                           name, name);
+    }
+    std::vector<std::string> known;
+    for (const measure::ViewInfo& view : measure::viewTable()) {
+        known.emplace_back(view.name);
+    }
+    const std::string suggestion = base::suggestion(name, known);
+    return fmt::format("\"{}\" is no view{}", text, suggestion.empty() ? "; --help lists them" : suggestion);
+}
+
 void addViewOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, kView, arguments.view, "NAME",
             "write a debug picture instead, with a legend below it, and\nits numbers into --stats:\n" +
-                viewNames() + ";\nof rays also EFFECT.NAME (docs/views.md)")
+                viewNames() + ";\nEFFECT.NAME for the rays of another effect than the first\n(docs/views.md)")
         .check(CLI::Validator(
             [](const std::string& text) {
-                std::vector<std::string> known;
-                for (const measure::ViewInfo& view : measure::viewTable()) {
-                    known.emplace_back(view.name);
-                }
-                return measure::parseView(text)
-                           ? std::string()
-                           : "\"" + text + "\" is no view" + base::suggestion(text, known);
+                return measure::parseView(text) ? std::string() : complaintAboutView(text);
             },
             ""))
         ->group("Picture");
