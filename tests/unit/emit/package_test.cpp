@@ -82,6 +82,52 @@ TEST(CompilePackage, DraftsLeaveOutLightsThatRaysFind) {
     EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::LightingDraft], 1);
 }
 
+// The texts of all modules that a package would have, with every strategy and tracer.
+std::string textsWithLayers(std::vector<std::string> layers) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::allStrategies();
+    settings.tracers = package::kAllTracers;
+    settings.effects = {false,
+                        compiler::builtinEffects({"shadow", "reflection", "refraction", "indirect-diffuse"})};
+    settings.plan.fallback = true;
+    settings.maxBounces = 4;
+    settings.layers = std::move(layers);
+    const gltf::Scene scene = makeSampleScene();
+    const Result<compiler::PackagePlan> planned = compiler::planPackage({&scene, 1}, settings);
+    EXPECT_TRUE(planned.ok()) << (planned.ok() ? std::string() : toString(planned.error()));
+    std::string texts;
+    for (std::size_t i = 0; planned && i < planned->modules.size(); ++i) {
+        texts += planned->modules[i].text;
+    }
+    return texts;
+}
+
+// What is not asked for leaves no code: neither layers as such, nor one layer beside another.
+TEST(CompilePackage, LayersThatAreOffLeaveNoCode) {
+    const std::string none = textsWithLayers({});
+    const std::string all = textsWithLayers({"all"});
+    ASSERT_FALSE(none.empty());
+    for (const char* const trace : {"layers/", "Layer", "rayHits", "GLINT_LAYER"}) {
+        EXPECT_EQ(none.find(trace), std::string::npos) << trace;
+    }
+    EXPECT_NE(all.find("layers/"), std::string::npos);
+    const std::string depth = textsWithLayers({"depth"});
+    for (const package::LayerInfo& layer : package::layerTable()) {
+        if (layer.function.empty() || layer.isDiagnostic) {
+            continue;
+        }
+        const std::string function(layer.function);
+        EXPECT_EQ(none.find(function), std::string::npos) << function;
+        EXPECT_NE(all.find(function), std::string::npos) << function;
+        EXPECT_EQ(depth.find(function) != std::string::npos, layer.name == "depth") << function;
+    }
+    for (const char* const trace :
+         {"rayHits", "demodulated", "varianceWith", "meanWith", "previousCorners"}) {
+        EXPECT_NE(all.find(trace), std::string::npos) << trace;
+        EXPECT_EQ(depth.find(trace), std::string::npos) << trace;
+    }
+}
+
 TEST(CompilePackage, RefusesNoStrategy) {
     compiler::CompileSettings settings;
     settings.strategies = 0;

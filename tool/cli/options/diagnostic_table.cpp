@@ -94,6 +94,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"context-queue", kError, "The runtime was given a queue without graphics and compute."},
     {"data-uri", kError, "A data URI is malformed."},
     {"declaration", kError, "A declaration of a material feature is malformed."},
+    {"denoise-failed", kError, "`glint render --denoise`: Open Image Denoise can't do its work."},
+    {"denoise-missing", kError, "`glint render --denoise`: glint was built without Open Image Denoise."},
     {"depfile-name", kError,
      "`--depfile`: the name of a file can't be written to a file for Make and Ninja."},
     {"device-features", kError, "The device lacks features that Glint needs."},

@@ -3,6 +3,7 @@
 #include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "cli/render/open_image_denoise.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
 
@@ -161,6 +162,22 @@ void settleView(const CLI::App& command, RenderArguments& arguments) {
     }
 }
 
+// Adds the layers that the denoiser reads. Throws a CLI::ParseError if the line contradicts itself.
+void settleDenoising(RenderArguments& arguments) {
+    if (!arguments.denoise) {
+        return;
+    }
+    if (!arguments.view.empty()) {
+        throw CLI::ValidationError("--denoise",
+                                   "changes the picture that --view replaces; leave out one of them");
+    }
+    std::vector<std::string>& layers = arguments.compile.layers;
+    if (arguments.package.empty()) {
+        const std::vector<std::string> wanted = denoiserLayers();
+        layers.insert(layers.end(), wanted.begin(), wanted.end());
+    }
+}
+
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
     addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters as JSON")
         .group("Report");
@@ -261,6 +278,10 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             "(excludes --host, --profile, and all settings that are\n"
             "decided for the package: docs/cli.md)")
         .group("Shaders");
+    addFlag(command, "--denoise", arguments->denoise,
+            "remove the noise of each picture with Open Image Denoise,\n"
+            "if glint was built with it (docs/layers.md)")
+        .group("Picture");
     addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);
     command.callback([arguments, then, &command] {
@@ -278,6 +299,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             throw CLI::ValidationError("--layers", "needs a file that has room for layers: -o FILE.exr");
         }
         settleView(command, *arguments);
+        settleDenoising(*arguments);
         settleProfileOutput(command, *arguments);
         checkProfile(command, *arguments);
         then();
