@@ -80,9 +80,12 @@ struct Signal {
     VkImageView albedo = VK_NULL_HANDLE;
 };
 
+std::vector<std::string> imageLayers() {
+    return {"virtual-motion"};
+}
+
 std::vector<std::string> wantedLayers() {
-    return {"depth",    "normal",      "roughness", "motion",
-            "emission", "demodulated", "variance",  "virtual-motion"};
+    return {"depth", "normal", "roughness", "motion", "emission", "demodulated", "variance"};
 }
 
 struct Denoiser::State {

@@ -14,6 +14,8 @@ namespace denoise {
 
 // The layers that a package needs for the filter: `glint compile --layers` takes them, separated by commas.
 std::vector<std::string> wantedLayers();
+// Those that it reads if an effect of the package shows points. `glint compile` refuses them if none does.
+std::vector<std::string> imageLayers();
 
 struct FilterSettings {
     // Least weight of a new frame. The paper's 0.2 suits frames of one sample and lights that change; the

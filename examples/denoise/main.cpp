@@ -171,7 +171,6 @@ void printRow(const std::string& what, const glint::LinearImage& image, const gl
 
 void run(Options& options) {
     glint::compiler::Settings& settings = options.settings;
-    settings.compile.layers = denoise::wantedLayers();
     glint::gltf::ImportOptions import;
     import.keepImageFiles = true;
     import.trustTextures = settings.compile.trustTextures;
@@ -185,9 +184,21 @@ void run(Options& options) {
     glint::HeadlessOptions headless = glint::measure::deviceOptions(settings);
     headless.validation = options.validation ? glint::Validation::Synchronization : glint::Validation::Off;
     const auto context = valueOf(glint::Context::createHeadless(headless));
-    const glint::Package package = valueOf(glint::scene_view::compileAndLoad(
-        scene,
-        glint::measure::compileSettings(settings, settings.compile.plan, context->handles().tracers, scene)));
+    const auto compile = [&](const std::vector<std::string>& layers) {
+        settings.compile.layers = layers;
+        return glint::scene_view::compileAndLoad(
+            scene, glint::measure::compileSettings(settings, settings.compile.plan,
+                                                   context->handles().tracers, scene));
+    };
+    std::vector<std::string> layers = denoise::wantedLayers();
+    for (const std::string& layer : denoise::imageLayers()) {
+        layers.push_back(layer);
+    }
+    glint::Result<glint::Package> compiled = compile(layers);
+    if (!compiled && compiled.error().id == "layer-effect") {
+        compiled = compile(denoise::wantedLayers());  // no effect shows points
+    }
+    const glint::Package package = valueOf(std::move(compiled));
     glint::scene_view::useLayoutOf(package, scene, data);
     glint::scene_view::useTextures(
         valueOf(glint::scene_view::loadTextures(

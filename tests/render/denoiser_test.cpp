@@ -59,7 +59,9 @@ protected:
 };
 
 TEST_F(FilteredHall, KeepsItsEdgesAndConverges) {
-    load(denoise::wantedLayers());
+    std::vector<std::string> layers = denoise::wantedLayers();
+    layers.emplace_back("virtual-motion");
+    load(layers);
     ASSERT_NE(renderer_, nullptr);
     const LinearImage truth = picture(1000, 512);
     const auto errorOf = [&](const LinearImage& image) {

@@ -291,7 +291,13 @@ Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, cons
 Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t frames) {
     compiler::Settings render = base_;
     render.compile.layers = filter.layers;
+    render.compile.layers.insert(render.compile.layers.end(), filter.imageLayers.begin(),
+                                 filter.imageLayers.end());
     Result<Mount> mounted = mount(render);
+    if (!mounted && mounted.error().id == "layer-effect") {
+        render.compile.layers = filter.layers;
+        mounted = mount(render);
+    }
     if (!mounted) {
         return mounted;
     }

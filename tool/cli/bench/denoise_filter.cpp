@@ -46,7 +46,8 @@ Result<std::unique_ptr<measure::PictureFilter>> makeExampleFilter(const Context&
 }  // namespace
 
 const measure::FilterMaker* exampleFilter() {
-    static const measure::FilterMaker kMaker{denoise::wantedLayers(), makeExampleFilter};
+    static const measure::FilterMaker kMaker{denoise::wantedLayers(), denoise::imageLayers(),
+                                             makeExampleFilter};
     return &kMaker;
 }
 
