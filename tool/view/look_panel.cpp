@@ -107,22 +107,6 @@ void drawLegend(const measure::View& view, const Look& look) {
 
 std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look& chosen,
                               const measure::View* shown, const std::string& note) {
-    if (!chosen.isPicture()) {
-        ImGui::TextColored({0.55F, 0.80F, 1.0F, 1.0F}, "%s", chosen.name().c_str());
-        ImGui::TextWrapped("%s", describe(chosen).c_str());
-        if (!note.empty()) {
-            ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.75F, 0.45F, 1.0F});
-            ImGui::TextWrapped("%s", note.c_str());
-            ImGui::PopStyleColor();
-        }
-        if (shown != nullptr) {
-            // Long legends scroll, so that the list below keeps its place.
-            ImGui::BeginChild("legend", {0.0F, 0.45F * ImGui::GetContentRegionAvail().y});
-            drawLegend(*shown, chosen);
-            ImGui::EndChild();
-        }
-        ImGui::Separator();
-    }
     std::optional<Look> clicked;
     const auto row = [&](const Look& look, const std::string& label, const std::string& name) {
         if (ImGui::Selectable((label + "##" + name).c_str(), look == chosen)) {
@@ -131,7 +115,9 @@ std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look
         controls.mark(name);
         tip(describe(look));
     };
-    ImGui::BeginChild("looks");
+    // The list keeps its place under the mouse when a legend comes below it.
+    const float height = chosen.isPicture() ? 0.0F : 0.5F * ImGui::GetContentRegionAvail().y;
+    ImGui::BeginChild("looks", {0.0F, height});
     row({}, "picture", "picture");
     bool inLayers = false;
     ImGui::TextDisabled("views");
@@ -141,6 +127,22 @@ std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look
             inLayers = true;
         }
         row(look, look.name(), (look.view.empty() ? "layer " : "view ") + look.name());
+    }
+    ImGui::EndChild();
+    if (chosen.isPicture()) {
+        return clicked;
+    }
+    ImGui::Separator();
+    ImGui::BeginChild("legend");
+    ImGui::TextColored({0.55F, 0.80F, 1.0F, 1.0F}, "%s", chosen.name().c_str());
+    ImGui::TextWrapped("%s", describe(chosen).c_str());
+    if (!note.empty()) {
+        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.75F, 0.45F, 1.0F});
+        ImGui::TextWrapped("%s", note.c_str());
+        ImGui::PopStyleColor();
+    }
+    if (shown != nullptr) {
+        drawLegend(*shown, chosen);
     }
     ImGui::EndChild();
     return clicked;
