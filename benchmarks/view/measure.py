@@ -130,8 +130,10 @@ def measure_memory(window, caches):
         wait frames 400
     """
     laps = max(1, window.arguments.frames // 1000)
-    script = f"wait frames 100\n{lap}report early.json\n{lap * laps}report late.json\nquit\n"
-    window.run(script, ["--size", "64x36", "--spp", "65536", "--no-panel"], caches)
+    script = f"wait frames 100\n{lap * 2}report early.json\n{lap * laps}report late.json\nquit\n"
+    size = ["--size", "64x36", "--no-panel"]
+    window.run("wait complete\nquit\n", size + ["--spp", "1"], caches)  # fills the caches
+    window.run(script, size + ["--spp", "65536"], caches)
     early = window.report("early.json")
     late = window.report("late.json")
     print("| memory | early | late |\n|---|---|---|")

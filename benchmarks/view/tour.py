@@ -46,7 +46,8 @@ TOUR = """
     # two settings beside each other
     key b
     wait complete
-    choose effects none
+    wait control skip-below
+    number skip-below 0.2
     move 20 20
     wait complete
     click Measure
@@ -59,7 +60,7 @@ TOUR = """
     click Compare
     # a view and a layer
     click tab Views
-    click view reflection.hit-distance
+    click view reflection.hit-shader
     move 20 20
     wait complete
     picture view_views.png

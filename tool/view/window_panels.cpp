@@ -64,11 +64,22 @@ void drawField(const std::string& label, const std::string& text) {
     ImGui::TextWrapped("%s", text.c_str());
 }
 
+// Draws a text that ends with dots where it does not fit.
+void drawFitted(const std::string& text) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    std::string shown = text;
+    while (!shown.empty() && ImGui::CalcTextSize(shown.c_str()).x > width) {
+        shown.resize(shown.size() - std::min<std::size_t>(shown.size(), 4));
+        shown += shown.empty() ? "" : "...";
+    }
+    ImGui::TextUnformatted(shown.c_str());
+}
+
 bool beginFields(const char* name) {
     if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) {
         return false;
     }
-    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 9.0F);
+    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 11.0F);
     ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
@@ -188,7 +199,9 @@ void Window::drawStatus(float width, float y, float height) {
         ImGui::SameLine(0.0F, 20.0F);
         const ImVec4 color =
             progress.empty() && error_ ? ImVec4(1.0F, 0.55F, 0.35F, 1.0F) : ImVec4(0.65F, 0.75F, 0.85F, 1.0F);
-        ImGui::TextColored(color, "%s", note.c_str());
+        ImGui::PushStyleColor(ImGuiCol_Text, color);
+        drawFitted(note);
+        ImGui::PopStyleColor();
     }
     ImGui::End();
     ImGui::PopStyleVar(2);
@@ -458,6 +471,11 @@ void Window::drawSidePanel(float x, float width, float height) {
     drawHead();
     drawCompare();
     ImGui::Separator();
+    if (error_) {
+        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.55F, 0.35F, 1.0F});
+        ImGui::TextWrapped("%s", toString(*error_).c_str());
+        ImGui::PopStyleColor();
+    }
     if (ImGui::BeginTabBar("tabs")) {
         const auto tab = [this](const char* name, const std::string& title, const auto& draw) {
             const ImGuiTabItemFlags flags =
