@@ -130,16 +130,16 @@ def measure_memory(window, caches):
         wait frames 400
     """
     laps = max(1, window.arguments.frames // 1000)
-    script = f"wait frames 100\n{lap * 2}report early.json\n{lap * laps}report late.json\nquit\n"
+    script = f"wait frames 100\n{lap}"  # what is made once is there after it
+    script += "".join(f"report {number}.json\n{lap}" for number in range(laps)) + f"report {laps}.json\nquit\n"
     size = ["--size", "64x36", "--no-panel"]
     window.run("wait complete\nquit\n", size + ["--spp", "1"], caches)  # fills the caches
     window.run(script, size + ["--spp", "65536"], caches)
-    early = window.report("early.json")
-    late = window.report("late.json")
-    print("| memory | early | late |\n|---|---|---|")
-    for label, key in (("frames drawn", "frames"), ("samples", "samplesDrawn"), ("resident bytes", "residentBytes"),
-                       ("bytes of the renderer", "rendererBytes"), ("bytes of the scene", "sceneBytes")):
-        print(f"| {label} | {early[key]:,} | {late[key]:,} |")
+    print("| frames | samples | resident, KiB | renderer, KiB | scene, KiB |\n|---|---|---|---|---|")
+    for number in range(laps + 1):
+        report = window.report(f"{number}.json")
+        sizes = " | ".join(f"{report[key] // 1024:,}" for key in ("residentBytes", "rendererBytes", "sceneBytes"))
+        print(f"| {report['frames']:,} | {report['samplesDrawn']:,} | {sizes} |")
 
 
 def main():
