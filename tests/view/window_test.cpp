@@ -375,6 +375,73 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
     EXPECT_TRUE(has(report("refused.json").at("error").get<std::string>(), "window-drop"));
 }
 
+// Views and layers are shown in place of the picture: those of `glint render`, to the pixel. The packages
+// lack their layers until they are chosen.
+TEST_F(WindowTest, ShowsViewsAndLayers) {
+    writeTinyScene(path(""));
+    view(R"(
+        wait complete
+        picture before.png
+        key l
+        click view material
+        wait complete
+        picture material.png
+        report material.json
+        key p
+        wait complete
+        click view reflection.hit-distance
+        wait complete
+        report distance.json
+        click layer depth
+        wait complete
+        picture depth.png
+        report depth.json
+        key p
+        wait complete
+        # moves under the camera
+        drag 100 60 130 70
+        wait complete
+        picture moved.png
+        key l
+        wait complete
+        report after.json
+        quit
+    )",
+         {"--size", "160x400"});
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    constexpr std::uint32_t kSide = 160;
+    constexpr std::uint32_t kHigh = 400;
+    const Json material = report("material.json");
+    EXPECT_EQ(material.at("look"), "material");
+    EXPECT_EQ(material.at("settings").at("layers"), "material");
+    EXPECT_EQ(material.at("view").at("categories").size(), 3U) << material.at("view");
+    // The view is below its label, and the file of the screenshot has its legend below it.
+    fs::rename(path("scene-001.png"), path("shot.png"));
+    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
+    ASSERT_EQ(again.exit, 0) << readText(path("scene-001.sh")) << again.err;
+    const LinearImage rendered = image("scene-001.png");
+    EXPECT_GT(rendered.height, kHigh);
+    EXPECT_EQ(shareDiffering(image("shot.png"), rendered), 0.0);
+    EXPECT_LT(shareDiffering(image("material.png"), rendered, 0, kSide, kHigh), 0.04);
+    EXPECT_GT(shareDiffering(image("material.png"), image("before.png"), 0, kSide, kHigh), 0.5);
+
+    EXPECT_EQ(report("distance.json").at("lookNote"), "");
+    EXPECT_GT(report("distance.json").at("view").at("numbers"), 0);
+    const Json depth = report("depth.json");
+    EXPECT_EQ(depth.at("look"), "depth");
+    EXPECT_NEAR(depth.at("view").at("greatest").get<double>(), 6.0, 0.01);  // the wall
+    EXPECT_GT(shareDiffering(image("depth.png"), image("moved.png"), 0, kSide, kHigh), 0.1);
+    // The layer is in an OpenEXR file.
+    EXPECT_TRUE(has(readText(path("scene-002.sh")), "--layers depth")) << readText(path("scene-002.sh"));
+    fs::rename(path("scene-002.exr"), path("shot.exr"));
+    const Outcome layers = runProgram({"sh", "scene-002.sh"}, {{"PATH", search}});
+    ASSERT_EQ(layers.exit, 0) << layers.err;
+    EXPECT_TRUE(has(readText(path("shot.exr")), "depth.Z"));
+    EXPECT_EQ(readText(path("shot.exr")), readText(path("scene-002.exr")));
+    EXPECT_EQ(report("after.json").at("look"), "");
+    EXPECT_TRUE(report("after.json").at("error").is_null());
+}
+
 // A scene and a pack change under the window. What does not compile leaves the picture as it was.
 TEST_F(WindowTest, FollowsFilesThatChange) {
     const fs::path scene = writeTinyScene(path(""));

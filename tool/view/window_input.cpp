@@ -259,6 +259,13 @@ void Window::handleKey(const KeyPress& press) {
             autoExposure_ = false;
             exposure_ += press.key == GLFW_KEY_LEFT_BRACKET ? -kExposureStep : kExposureStep;
             break;
+        case GLFW_KEY_L:
+            if (look_.isPicture()) {
+                wantedTab_ = "Views";
+            } else {
+                chooseLook({});
+            }
+            break;
         case GLFW_KEY_M:
             divisor_ = divisor_ % 4 + 1;
             break;
@@ -267,8 +274,7 @@ void Window::handleKey(const KeyPress& press) {
             break;
         case GLFW_KEY_V:
             if (sides_[1]) {
-                shown_ = static_cast<Shown>((static_cast<std::uint32_t>(shown_) + 1) %
-                                            static_cast<std::uint32_t>(Shown::Raw));
+                shown_ = static_cast<Shown>((static_cast<std::uint32_t>(shown_) + 1) % kShownCount);
             }
             break;
         default:
@@ -294,6 +300,20 @@ void Window::nextCamera() {
     orbitDistance_ = 0.0;
     cameraIsNew_ = true;
     say("camera " + name);
+}
+
+// Shows a view, a layer, or the picture. What the package lacks for it is compiled, as for any setting.
+void Window::chooseLook(const Look& look) {
+    look_ = look;
+    viewedFrame_ = 0;
+    lookNote_.clear();
+    view_.reset();
+    wakes_ = 4;
+    Side& one = side();
+    if (one.picture.isReady() && one.wanted.package.empty() &&
+        askFor(look, one.picture.build(), one.wanted)) {
+        followPanel();
+    }
 }
 
 void Window::togglePlaying() {
@@ -328,8 +348,9 @@ void Window::pickAt(double x, double y) {
     // In a wipe, the pixel belongs to the picture that is shown there.
     const bool isSecond =
         sides_[1] && sides_[1]->picture.isReady() &&
-        (shown_ == Shown::Second ||
-         (shown_ == Shown::Wipe && x * pixelScale_ > static_cast<double>(border_) * area_.width));
+        (view_ ? edited_ == 1
+               : shown_ == Shown::Second ||
+                     (shown_ == Shown::Wipe && x * pixelScale_ > static_cast<double>(border_) * area_.width));
     Picture& picture = sides_[isSecond ? 1 : 0]->picture;
     if (!picture.isReady() || picture.recordedIn() == 0) {
         return;
@@ -366,6 +387,22 @@ void Window::measureExposure() {
     wakes_ = 4;
 }
 
+Status Window::writeShot(const std::string& file, const Look& shown, const LinearImage& image) {
+    const auto exposure = static_cast<double>(exposure_);
+    if (!shown.view.empty()) {
+        return image::writeImage(file, measure::withLegend(*view_));
+    }
+    std::vector<image::ExrLayer> layers;
+    if (!shown.layer.empty()) {
+        Result<image::ExrLayer> layer = layerForFile(shown, side().picture);
+        if (!layer) {
+            return layer.error();
+        }
+        layers.push_back(std::move(*layer));
+    }
+    return image::writeImage(file, image, exposure, layers);
+}
+
 void Window::saveScreenshot() {
     wantsShot_ = false;
     Picture& picture = side().picture;
@@ -376,11 +413,14 @@ void Window::saveScreenshot() {
     }
     fs::path file;
     const std::string stem = fs::path(scene_).stem().string();
+    // A layer needs a file that holds its numbers.
+    const Look shown = view_ ? look_ : Look();
+    const char* const extension = shown.layer.empty() ? "png" : "exr";
     std::error_code error;
     do {
-        file = fs::path(request_.folder) / fmt::format("{}-{:03}.png", stem, ++shots_);
+        file = fs::path(request_.folder) / fmt::format("{}-{:03}.{}", stem, ++shots_, extension);
     } while (fs::exists(file, error));
-    if (Status written = image::writeImage(file, *image, static_cast<double>(exposure_)); !written) {
+    if (Status written = writeShot(file, shown, *image); !written) {
         report(written.error());
         return;
     }
@@ -390,7 +430,8 @@ void Window::saveScreenshot() {
     compiler::Settings settings = picture.settings();
     const std::vector<std::string> words =
         shotWords(settings, {scene_, file.string(), camera_.name(), static_cast<double>(exposure_),
-                             poses_ ? fmt::format("{}", time_) : std::string(), animation});
+                             poses_ ? fmt::format("{}", time_) : std::string(), animation, shown.view,
+                             shown.layer.empty() ? std::string() : layerWord(shown.layer)});
     fs::path command = file;
     command.replace_extension(".sh");
     const std::string line = base::shellWords(words);
@@ -479,6 +520,9 @@ Status Window::writeReport(const std::string& file) {
         {"rendererBytes", isReady ? one.picture.renderer().footprint().allocatedBytes : 0},
         {"sceneBytes", isReady ? one.picture.gpuScene().allocatedBytes() : 0},
         {"passes", passes},
+        {"look", look_.name()},
+        {"view", view_ ? measure::toJson(*view_) : base::Json(nullptr)},
+        {"lookNote", lookNote_},
         {"pick", picked},
         {"error", error_ ? base::Json(toString(*error_)) : base::Json(nullptr)},
         {"messages", messages}};

@@ -1,5 +1,6 @@
 // What the window draws over and beside the picture.
 #include "settings/table.h"
+#include "view/look_panel.h"
 #include "view/window.h"
 
 #define GLFW_INCLUDE_NONE
@@ -38,6 +39,7 @@ constexpr Shortcut kShortcuts[] = {
     {"1 2 3 4", "switch the strategy"},
     {"B", "compare two settings: A and B"},
     {"V", "show A, B, both with a border, their difference"},
+    {"L", "list the views and layers; back to the picture"},
     {"Space", "play or pause the animation"},
     {"[ ]", "darker, brighter by a third of a stop"},
     {"X", "measure the exposure"},
@@ -131,7 +133,9 @@ void Window::drawMarks() {
                             IM_COL32(0, 0, 0, 170), 3.0F);
         list->AddText({left, 9.0F}, IM_COL32(255, 255, 255, 255), text.c_str());
     };
-    if (sides_[1] && sides_[1]->picture.isReady()) {
+    if (view_) {
+        label(0.0F, look_.name() + (sides_[1] ? edited_ == 0 ? " of A" : " of B" : ""), false);
+    } else if (sides_[1] && sides_[1]->picture.isReady()) {
         switch (shown_) {
             case Shown::First:
                 label(0.0F, "A", false);
@@ -352,6 +356,18 @@ void Window::drawPixel() {
     ImGui::EndChild();
 }
 
+void Window::drawLooksTab() {
+    if (!side().picture.isReady()) {
+        return;
+    }
+    const bool isMade = builder_->isBusy(edited_);
+    const std::string note = lookNote_.empty() ? "" : isMade ? "is being compiled" : lookNote_;
+    if (const std::optional<Look> clicked =
+            drawLooks(controls_, side().picture.build(), look_, view_ ? &*view_ : nullptr, note)) {
+        chooseLook(*clicked);
+    }
+}
+
 void Window::drawScene() {
     Side& one = side();
     if (!one.picture.isReady()) {
@@ -465,6 +481,7 @@ void Window::drawSidePanel(float x, float width, float height) {
             measuresPasses_ = true;
             drawPasses(controls_, side().history, side().counters);
         });
+        tab("Views", "Views", [this] { drawLooksTab(); });
         tab("Pixel", "Pixel", [this] { drawPixel(); });
         tab("Scene", "Scene", [this] { drawScene(); });
         tab("Messages", unread_ > 0 ? fmt::format("Messages ({})", unread_) : "Messages",

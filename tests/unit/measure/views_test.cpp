@@ -92,7 +92,7 @@ TEST(ViewDifference, IsTheLargestRelativeErrorOfAPixel) {
     const View view = colorView(*parseView("difference"), input);
     EXPECT_EQ(view.statistics.numbers, 1U);
     EXPECT_EQ(view.statistics.greatest, 1.0);
-    EXPECT_EQ(view.statistics.categories[0].category.name, "equal");
+    EXPECT_EQ(view.statistics.categories[0].category.name, "up to 0.0001");
 }
 
 // 1000 pixels of 1 m, one of which is 1 km.
@@ -143,6 +143,18 @@ TEST(ViewLegend, IsBelowThePictureAndLegibleAtEverySize) {
     EXPECT_GT(both.height, view.picture.height);
     EXPECT_TRUE(std::equal(view.picture.pixels.begin(), view.picture.pixels.end(), both.pixels.begin()));
     EXPECT_GT(makeLegend(view, 1280).height, makeLegend(view, 320).height) << "text grows with the picture";
+}
+
+TEST(ViewLegend, OnesOfManyAreCounted) {
+    View view = raysView();
+    view.choice = *parseView("bucket");
+    view.statistics = {};
+    view.statistics.categories.push_back({{"no ray", {}}, 1});
+    const std::uint32_t height = makeLegend(view, 320).height;
+    for (int i = 0; i < 100; ++i) {
+        view.statistics.categories.push_back({{"group " + std::to_string(i), {}, true}, 1});
+    }
+    EXPECT_EQ(makeLegend(view, 320).height, height) << "both in one row";
 }
 
 TEST(ViewLegend, ManyCategoriesAreSummedUp) {
