@@ -244,19 +244,21 @@ def main():
     parser.add_argument("--work", required=True, type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=2)
     parser.add_argument("--minutes", type=float, default=4, help="after these no further scene starts, nor switch")
+    parser.add_argument("--switches-only", action="store_true", help="only the naive switch beside Glint's")
     parser.add_argument("scenes", nargs="+", type=pathlib.Path)
     arguments = parser.parse_args()
     begin = time.monotonic()
     make_synthetic(arguments.work / "synthetic.gltf")
     measurer = Measurer(arguments.glint, arguments.work)
     switched = [scene for scene in arguments.scenes if scene.stem in SWITCH_SCENES]
-    results, alike, late = measure_scenes(measurer, arguments.scenes, arguments.runs, arguments.minutes)
-    print_scenes(results)
-    print(f"\nOne key, so that every policy makes the same: {', '.join(alike) or 'none'}.\n")
-    if late:
-        print(f"Not reached in {arguments.minutes:g} minutes (--minutes of measure_merge.py): {', '.join(late)}.\n")
-    print_means(results)
-    print(flush=True)
+    if not arguments.switches_only:
+        results, alike, late = measure_scenes(measurer, arguments.scenes, arguments.runs, arguments.minutes)
+        print_scenes(results)
+        print(f"\nOne key, so that every policy makes the same: {', '.join(alike) or 'none'}.\n")
+        if late:
+            print(f"Not reached in {arguments.minutes:g} minutes (--minutes of measure_merge.py): {', '.join(late)}.\n")
+        print_means(results)
+        print(flush=True)
     switched.sort(key=lambda scene: SWITCH_SCENES.index(scene.stem))
     print_switches(measure_switches(measurer, switched, arguments.minutes))
     seconds = time.monotonic() - begin

@@ -14,7 +14,8 @@ import sys
 
 import xxhash
 
-HEADER_BYTES = 80
+VERSION = 15  # of package_format.h; with another one, look whether the numbers below still hold
+HEADER_BYTES = 152
 CONTENT_HASH = slice(24, 32)
 SECTION = struct.Struct("<IIQQ")  # kind, bytes of an element, offset, number of elements
 MODULE = struct.Struct("<IIIIIIQQ")  # role, index, tracer, pad, offset and length of the file's name, bytes, hash
@@ -23,13 +24,13 @@ KIND_MODULES, KIND_STRINGS = 1, 6
 
 def replace(package, name, other):
     tables = bytearray((package / "tables.bin").read_bytes())
-    magic, _, count = struct.unpack_from("<8sII", tables)
+    magic, version, count = struct.unpack_from("<8sII", tables)
     sections = {}
     for i in range(count):
         kind, size, offset, elements = SECTION.unpack_from(tables, HEADER_BYTES + i * SECTION.size)
         sections[kind] = (size, offset, elements)
     size, offset, elements = sections[KIND_MODULES]
-    if not magic.startswith(b"GLINT") or size != MODULE.size:
+    if not magic.startswith(b"GLINT") or version != VERSION or size != MODULE.size:
         sys.exit(f"replace_module.py: {package} has another format than this script knows")
     code, found = other.read_bytes(), 0
     for i in range(elements):

@@ -1,22 +1,28 @@
 #include "denoiser.h"
 
+#include "denoise_antialias.h"
+#include "denoise_guide.h"
+#include "denoise_modulate.h"
+#include "denoise_temporal.h"
+#include "denoise_variance.h"
+#include "denoise_wavelet.h"
+#include "vulkan.h"
+
 #include <algorithm>
 #include <array>
-#include <cstdlib>
-#include <fstream>
-#include <iostream>
+#include <cstring>
 #include <map>
-#include <optional>
+#include <span>
 #include <utility>
 
 namespace denoise {
 namespace {
 
-void check(VkResult result, const char* what) {
-    if (result != VK_SUCCESS) {
-        fail(std::string(what) + " returned " + std::to_string(result));
-    }
-}
+constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr std::uint32_t kTile = 8;
+constexpr std::uint32_t kSets = 64;
+// Bits of Push::virtualSignals.
+constexpr std::size_t kMostSignals = 32;
 
 // The albedo that a source's light was divided by: that of the lobes that bring it (docs/layers.md).
 std::string albedoOf(const std::string& source) {
@@ -27,24 +33,35 @@ std::string albedoOf(const std::string& source) {
     return found == kAlbedos.end() ? "albedo" : found->second;
 }
 
+glint::Diagnostic callError(const char* call, VkResult result) {
+    return {glint::Severity::Error, "vulkan-call", "",
+            std::string(call) + " failed with " + std::to_string(result),
+            "use smaller pictures, or another device"};
+}
+
+#define DENOISE_CHECK(call)                                              \
+    if (const VkResult checked = state.vk.call; checked != VK_SUCCESS) { \
+        return callError("vk" #call, checked);                           \
+    }
+
 }  // namespace
+
+// The layout of the shaders' push constants: svgf.glsl.
+struct Push {
+    std::int32_t width = 0;
+    std::int32_t height = 0;
+    std::int32_t stride = 1;
+    std::int32_t signal = 0;
+    std::uint32_t virtualSignals = 0;
+    std::uint32_t isFirst = 0;
+    std::uint32_t samples = 1;
+    float alpha = 0.0F;
+};
 
 struct Image {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    VkDeviceSize bytes = 0;
-};
-
-// The layout of the shaders' push constants.
-struct Push {
-    std::int32_t width = 0;
-    std::int32_t height = 0;
-    std::int32_t stride = 1;
-    float alpha = 0.0F;
-    std::uint32_t isFirst = 0;
-    std::uint32_t isVirtual = 0;
-    std::uint32_t samples = 1;
 };
 
 // A compute shader with its bindings: sampled images, then storage images.
@@ -53,106 +70,131 @@ struct Program {
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
     std::uint32_t sampled = 0;
-    std::uint32_t stored = 0;
 };
 
-constexpr VkFormat kFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr std::uint32_t kTile = 8;
-
-// The light of one source on its way through the filter.
+// What is read of the light of one source.
 struct Signal {
     VkImageView light = VK_NULL_HANDLE;
-    VkImageView motion = VK_NULL_HANDLE;
-    VkImageView albedo = VK_NULL_HANDLE;
     VkImageView variance = VK_NULL_HANDLE;
-    bool isVirtual = false;
-    Image mean;                     // over the frames
-    std::array<Image, 2> moments;   // of this frame and of the one before, in turn
-    Image history;                  // what the next frame continues with
-    std::array<Image, 2> filtered;  // in turn
+    VkImageView virtualMotion = VK_NULL_HANDLE;
+    VkImageView albedo = VK_NULL_HANDLE;
 };
 
-void fail(const std::string& message) {
-    std::cerr << "denoise: " << message << "\n";
-    std::exit(1);
-}
-
 std::vector<std::string> wantedLayers() {
-    return {"depth", "normal", "motion", "emission", "demodulated", "variance", "virtual-motion"};
+    return {"depth",    "normal",      "roughness", "motion",
+            "emission", "demodulated", "variance",  "virtual-motion"};
 }
 
 struct Denoiser::State {
     glint::DeviceHandles device;
+    Functions vk;
     Push push;
     FilterSettings settings;
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    Program temporal, variance, wavelet, modulate;
-    std::map<std::string, glint::LayerImage, std::less<>> layers;
+    std::map<std::string, VkImageView, std::less<>> layers;
     std::vector<Signal> signals;
-    Image lastDepth, lastNormal, picture;
+    VkDescriptorPool pool = VK_NULL_HANDLE;
+    Program guide, temporal, variance, wavelet, modulate, antialias;
+    // Of this frame and the one before, in turn.
+    std::array<Image, 2> guides, moments, resolved;
+    Image surfaces, mean, history, picture;
+    std::array<Image, 2> filtered;  // what passes of the wavelet read and write, in turn
     std::vector<Image*> images;
     std::map<std::pair<const Program*, std::vector<VkImageView>>, VkDescriptorSet> sets;
-    bool started = false;  // the images are in their layout
-    bool first = true;     // no frame is known
-    std::size_t turn = 0;  // which of `moments` is this frame's
+    bool isStarted = false;  // the images are in their layout
+    bool isFirst = true;     // no frame is known
+    std::size_t turn = 0;    // which images are this frame's
     VkDeviceSize bytes = 0;
+    // For filter().
+    VkCommandPool commandPool = VK_NULL_HANDLE;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VkQueryPool queries = VK_NULL_HANDLE;
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceMemory bufferMemory = VK_NULL_HANDLE;
+    const float* pixels = nullptr;
+    double milliseconds = 0.0;
 
-    VkImageView layer(const std::string& name) const {
-        const auto found = layers.find(name);
-        if (found == layers.end()) {
-            fail("the package has no layer " + name);
+    ~State() {
+        for (const Image* const image : images) {
+            vk.DestroyImageView(device.device, image->view, nullptr);
+            vk.DestroyImage(device.device, image->image, nullptr);
+            vk.FreeMemory(device.device, image->memory, nullptr);
         }
-        return found->second.view;
-    }
-
-    std::uint32_t memoryType(std::uint32_t allowed) const {
-        VkPhysicalDeviceMemoryProperties properties{};
-        vkGetPhysicalDeviceMemoryProperties(device.physicalDevice, &properties);
-        for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i) {
-            const bool isLocal =
-                (properties.memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) != 0;
-            if (isLocal && (allowed >> i & 1U) != 0) {
-                return i;
+        for (const Program* const program : {&guide, &temporal, &variance, &wavelet, &modulate, &antialias}) {
+            if (program->setLayout != VK_NULL_HANDLE) {
+                vk.DestroyPipeline(device.device, program->pipeline, nullptr);
+                vk.DestroyPipelineLayout(device.device, program->layout, nullptr);
+                vk.DestroyDescriptorSetLayout(device.device, program->setLayout, nullptr);
             }
         }
-        fail("the device has no memory of its own for images");
+        if (pool != VK_NULL_HANDLE) {
+            vk.DestroyDescriptorPool(device.device, pool, nullptr);
+        }
+        if (commandPool != VK_NULL_HANDLE) {
+            vk.DestroyCommandPool(device.device, commandPool, nullptr);
+            vk.DestroyQueryPool(device.device, queries, nullptr);
+            vk.DestroyBuffer(device.device, buffer, nullptr);
+            vk.FreeMemory(device.device, bufferMemory, nullptr);
+        }
     }
 
-    void make(Image& image, VkFormat format) {
+    glint::Result<VkDeviceMemory> allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted) {
+        State& state = *this;
+        VkPhysicalDeviceMemoryProperties properties{};
+        vk.GetPhysicalDeviceMemoryProperties(device.physicalDevice, &properties);
+        VkMemoryAllocateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+        info.allocationSize = needs.size;
+        while (info.memoryTypeIndex < properties.memoryTypeCount &&
+               ((needs.memoryTypeBits >> info.memoryTypeIndex & 1U) == 0 ||
+                (properties.memoryTypes[info.memoryTypeIndex].propertyFlags & wanted) != wanted)) {
+            ++info.memoryTypeIndex;
+        }
+        if (info.memoryTypeIndex == properties.memoryTypeCount) {
+            return callError("vkAllocateMemory", VK_ERROR_OUT_OF_DEVICE_MEMORY);
+        }
+        VkDeviceMemory memory = VK_NULL_HANDLE;
+        DENOISE_CHECK(AllocateMemory(device.device, &info, nullptr, &memory))
+        return memory;
+    }
+
+    // An image of one layer, or an array of `count`.
+    glint::Status make(Image& image, VkImageViewType type, std::uint32_t count = 1) {
+        State& state = *this;
         VkImageCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
         info.imageType = VK_IMAGE_TYPE_2D;
-        info.format = format;
+        info.format = kFormat;
         info.extent = {static_cast<std::uint32_t>(push.width), static_cast<std::uint32_t>(push.height), 1};
         info.mipLevels = 1;
-        info.arrayLayers = 1;
+        info.arrayLayers = count;
         info.samples = VK_SAMPLE_COUNT_1_BIT;
-        info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                     VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        check(vkCreateImage(device.device, &info, nullptr, &image.image), "vkCreateImage");
+        info.usage =
+            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+        images.push_back(&image);
+        DENOISE_CHECK(CreateImage(device.device, &info, nullptr, &image.image))
         VkMemoryRequirements needs{};
-        vkGetImageMemoryRequirements(device.device, image.image, &needs);
-        VkMemoryAllocateInfo memory{};
-        memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        memory.allocationSize = needs.size;
-        memory.memoryTypeIndex = memoryType(needs.memoryTypeBits);
-        check(vkAllocateMemory(device.device, &memory, nullptr, &image.memory), "vkAllocateMemory");
-        check(vkBindImageMemory(device.device, image.image, image.memory, 0), "vkBindImageMemory");
+        vk.GetImageMemoryRequirements(device.device, image.image, &needs);
+        const glint::Result<VkDeviceMemory> memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+        if (!memory) {
+            return memory.error();
+        }
+        image.memory = *memory;
+        DENOISE_CHECK(BindImageMemory(device.device, image.image, image.memory, 0))
         VkImageViewCreateInfo view{};
         view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
         view.image = image.image;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format;
-        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        check(vkCreateImageView(device.device, &view, nullptr, &image.view), "vkCreateImageView");
+        view.viewType = type;
+        view.format = kFormat;
+        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, count};
+        DENOISE_CHECK(CreateImageView(device.device, &view, nullptr, &image.view))
         bytes += needs.size;
-        images.push_back(&image);
+        return glint::okStatus();
     }
 
-    void make(Program& program, const std::filesystem::path& file, std::uint32_t sampled,
-              std::uint32_t stored) {
+    glint::Status make(Program& program, std::span<const std::uint32_t> code, std::uint32_t sampled,
+                       std::uint32_t stored) {
+        State& state = *this;
         program.sampled = sampled;
-        program.stored = stored;
         std::vector<VkDescriptorSetLayoutBinding> bindings;
         for (std::uint32_t i = 0; i < sampled + stored; ++i) {
             bindings.push_back(
@@ -163,8 +205,7 @@ struct Denoiser::State {
         set.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
         set.bindingCount = static_cast<std::uint32_t>(bindings.size());
         set.pBindings = bindings.data();
-        check(vkCreateDescriptorSetLayout(device.device, &set, nullptr, &program.setLayout),
-              "vkCreateDescriptorSetLayout");
+        DENOISE_CHECK(CreateDescriptorSetLayout(device.device, &set, nullptr, &program.setLayout))
         const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Push)};
         VkPipelineLayoutCreateInfo layout{};
         layout.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
@@ -172,45 +213,116 @@ struct Denoiser::State {
         layout.pSetLayouts = &program.setLayout;
         layout.pushConstantRangeCount = 1;
         layout.pPushConstantRanges = &range;
-        check(vkCreatePipelineLayout(device.device, &layout, nullptr, &program.layout),
-              "vkCreatePipelineLayout");
-
-        std::ifstream stream(file, std::ios::binary | std::ios::ate);
-        if (!stream) {
-            fail("there is no shader " + file.string());
-        }
-        std::vector<std::uint32_t> words(static_cast<std::size_t>(stream.tellg()) / sizeof(std::uint32_t));
-        stream.seekg(0);
-        stream.read(reinterpret_cast<char*>(words.data()),
-                    static_cast<std::streamsize>(words.size() * sizeof(std::uint32_t)));
+        DENOISE_CHECK(CreatePipelineLayout(device.device, &layout, nullptr, &program.layout))
         VkShaderModuleCreateInfo module{};
         module.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-        module.codeSize = words.size() * sizeof(std::uint32_t);
-        module.pCode = words.data();
+        module.codeSize = code.size_bytes();
+        module.pCode = code.data();
+        VkShaderModule made = VK_NULL_HANDLE;
+        DENOISE_CHECK(CreateShaderModule(device.device, &module, nullptr, &made))
+        const auto count = static_cast<std::int32_t>(signals.size());
+        const VkSpecializationMapEntry entry{0, 0, sizeof(count)};
+        const VkSpecializationInfo constants{1, &entry, sizeof(count), &count};
         VkComputePipelineCreateInfo pipeline{};
         pipeline.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
         pipeline.layout = program.layout;
         pipeline.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
         pipeline.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+        pipeline.stage.module = made;
         pipeline.stage.pName = "main";
-        check(vkCreateShaderModule(device.device, &module, nullptr, &pipeline.stage.module),
-              "vkCreateShaderModule");
-        check(
-            vkCreateComputePipelines(device.device, VK_NULL_HANDLE, 1, &pipeline, nullptr, &program.pipeline),
-            "vkCreateComputePipelines");
-        vkDestroyShaderModule(device.device, pipeline.stage.module, nullptr);
+        pipeline.stage.pSpecializationInfo = &constants;
+        const VkResult result = vk.CreateComputePipelines(device.device, VK_NULL_HANDLE, 1, &pipeline,
+                                                          nullptr, &program.pipeline);
+        vk.DestroyShaderModule(device.device, made, nullptr);
+        return result == VK_SUCCESS ? glint::okStatus()
+                                    : glint::Status(callError("vkCreateComputePipelines", result));
     }
 
-    void makePool() {
-        constexpr std::uint32_t kSets = 256;
-        const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 8 * kSets},
+    glint::Status makePool() {
+        State& state = *this;
+        const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, 10 * kSets},
                                               {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 2 * kSets}};
         VkDescriptorPoolCreateInfo info{};
         info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-        info.maxSets = kSets;
+        info.maxSets = kSets + 4 * static_cast<std::uint32_t>(signals.size());
         info.poolSizeCount = 2;
         info.pPoolSizes = sizes;
-        check(vkCreateDescriptorPool(device.device, &info, nullptr, &pool), "vkCreateDescriptorPool");
+        DENOISE_CHECK(CreateDescriptorPool(device.device, &info, nullptr, &pool))
+        return glint::okStatus();
+    }
+
+    // What filter() needs: commands, a buffer that the host reads, and two times.
+    glint::Status makeReading() {
+        State& state = *this;
+        VkCommandPoolCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+        info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+        info.queueFamilyIndex = device.queueFamily;
+        DENOISE_CHECK(CreateCommandPool(device.device, &info, nullptr, &commandPool))
+        VkCommandBufferAllocateInfo allocated{};
+        allocated.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+        allocated.commandPool = commandPool;
+        allocated.commandBufferCount = 1;
+        DENOISE_CHECK(AllocateCommandBuffers(device.device, &allocated, &commands))
+        VkQueryPoolCreateInfo times{};
+        times.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+        times.queryType = VK_QUERY_TYPE_TIMESTAMP;
+        times.queryCount = 2;
+        DENOISE_CHECK(CreateQueryPool(device.device, &times, nullptr, &queries))
+        VkBufferCreateInfo size{};
+        size.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+        size.size = VkDeviceSize{16} * static_cast<std::uint32_t>(push.width) *
+                    static_cast<std::uint32_t>(push.height);
+        size.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+        DENOISE_CHECK(CreateBuffer(device.device, &size, nullptr, &buffer))
+        VkMemoryRequirements needs{};
+        vk.GetBufferMemoryRequirements(device.device, buffer, &needs);
+        const glint::Result<VkDeviceMemory> memory =
+            allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
+        if (!memory) {
+            return memory.error();
+        }
+        bufferMemory = *memory;
+        void* mapped = nullptr;
+        DENOISE_CHECK(BindBufferMemory(device.device, buffer, bufferMemory, 0))
+        DENOISE_CHECK(MapMemory(device.device, bufferMemory, 0, VK_WHOLE_SIZE, 0, &mapped))
+        pixels = static_cast<const float*>(mapped);
+        return glint::okStatus();
+    }
+
+    // Finds the layers of each source of light.
+    glint::Status findSignals(const glint::Renderer& renderer) {
+        for (const glint::LayerImage& layer : renderer.layers()) {
+            layers.emplace(layer.name, layer.view);
+        }
+        const auto view = [this](const std::string& name) {
+            const auto found = layers.find(name);
+            return found == layers.end() ? VkImageView{VK_NULL_HANDLE} : found->second;
+        };
+        std::vector<std::string> needed{"depth", "normal", "roughness", "motion", "emission"};
+        for (const glint::LayerImage& layer : renderer.layers()) {
+            if (layer.info->name != "demodulated" || signals.size() == kMostSignals) {
+                continue;
+            }
+            const std::string source(layer.name.substr(0, layer.name.find('.')));
+            const VkImageView virtualMotion = view(source + ".virtual-motion");
+            if (virtualMotion != VK_NULL_HANDLE) {
+                push.virtualSignals |= 1U << signals.size();
+            }
+            needed.insert(needed.end(), {source + ".variance", albedoOf(source)});
+            signals.push_back({layer.view, view(source + ".variance"),
+                               virtualMotion != VK_NULL_HANDLE ? virtualMotion : view("motion"),
+                               view(albedoOf(source))});
+        }
+        needed.resize(needed.size() + (signals.empty() ? 1 : 0), "direct.demodulated");
+        for (const std::string& name : needed) {
+            if (!layers.contains(name)) {
+                return glint::Diagnostic{glint::Severity::Error, "layer-missing", "",
+                                         "the package has no layer " + name + ", which the denoiser reads",
+                                         "compile it with the layers that the denoiser wants"};
+            }
+        }
+        return glint::okStatus();
     }
 
     // Sets are made once for each combination of images; images never change.
@@ -224,7 +336,7 @@ struct Denoiser::State {
         info.descriptorPool = pool;
         info.descriptorSetCount = 1;
         info.pSetLayouts = &program.setLayout;
-        check(vkAllocateDescriptorSets(device.device, &info, &set), "vkAllocateDescriptorSets");
+        vk.AllocateDescriptorSets(device.device, &info, &set);
         for (std::uint32_t i = 0; i < views.size(); ++i) {
             const VkDescriptorImageInfo image{VK_NULL_HANDLE, views[i], VK_IMAGE_LAYOUT_GENERAL};
             VkWriteDescriptorSet write{};
@@ -235,13 +347,13 @@ struct Denoiser::State {
             write.descriptorType =
                 i < program.sampled ? VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
             write.pImageInfo = &image;
-            vkUpdateDescriptorSets(device.device, 1, &write, 0, nullptr);
+            vk.UpdateDescriptorSets(device.device, 1, &write, 0, nullptr);
         }
         return set;
     }
 
     // What came before is visible to what follows.
-    static void barrier(VkCommandBuffer commands) {
+    void barrier(VkCommandBuffer into) const {
         VkMemoryBarrier2 memory{};
         memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
         memory.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -252,10 +364,10 @@ struct Denoiser::State {
         info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
         info.memoryBarrierCount = 1;
         info.pMemoryBarriers = &memory;
-        vkCmdPipelineBarrier2(commands, &info);
+        vk.CmdPipelineBarrier2(into, &info);
     }
 
-    void start(VkCommandBuffer commands) {
+    void start(VkCommandBuffer into) {
         for (const Image* const image : images) {
             VkImageMemoryBarrier2 change{};
             change.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
@@ -265,155 +377,216 @@ struct Denoiser::State {
             change.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
             change.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
             change.image = image->image;
-            change.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+            change.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS};
             VkDependencyInfo info{};
             info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
             info.imageMemoryBarrierCount = 1;
             info.pImageMemoryBarriers = &change;
-            vkCmdPipelineBarrier2(commands, &info);
+            vk.CmdPipelineBarrier2(into, &info);
         }
-        started = true;
+        isStarted = true;
     }
 
-    void run(VkCommandBuffer commands, const Program& program, const std::vector<VkImageView>& views,
+    // Runs a shader for each pixel. What follows it needs a barrier.
+    void run(VkCommandBuffer into, const Program& program, const std::vector<VkImageView>& views,
              const Push& constants) {
         const VkDescriptorSet set = setOf(program, views);
-        vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
-        vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, 1, &set, 0,
-                                nullptr);
-        vkCmdPushConstants(commands, program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(constants),
-                           &constants);
-        vkCmdDispatch(commands, (static_cast<std::uint32_t>(push.width) + kTile - 1) / kTile,
-                      (static_cast<std::uint32_t>(push.height) + kTile - 1) / kTile, 1);
-        barrier(commands);
+        vk.CmdBindPipeline(into, VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline);
+        vk.CmdBindDescriptorSets(into, VK_PIPELINE_BIND_POINT_COMPUTE, program.layout, 0, 1, &set, 0,
+                                 nullptr);
+        vk.CmdPushConstants(into, program.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(constants),
+                            &constants);
+        vk.CmdDispatch(into, (static_cast<std::uint32_t>(push.width) + kTile - 1) / kTile,
+                       (static_cast<std::uint32_t>(push.height) + kTile - 1) / kTile, 1);
     }
 
-    void copy(VkCommandBuffer commands, VkImage from, VkImage to) const {
-        VkImageCopy region{};
-        region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        region.dstSubresource = region.srcSubresource;
-        region.extent = {static_cast<std::uint32_t>(push.width), static_cast<std::uint32_t>(push.height), 1};
-        vkCmdCopyImage(commands, from, VK_IMAGE_LAYOUT_GENERAL, to, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
-    }
-
-    void filter(VkCommandBuffer commands, Signal& signal, bool isFirstSignal) {
-        const VkImageView depth = layer("depth");
-        const VkImageView normal = layer("normal");
+    void accumulate(VkCommandBuffer into) {
         Push constants = push;
-        constants.isFirst = first ? 1 : 0;
-        constants.isVirtual = signal.isVirtual ? 1 : 0;
-        const Image& moments = signal.moments[turn];
-        run(commands, temporal,
-            {signal.light, signal.motion, depth, normal, lastDepth.view, lastNormal.view, signal.history.view,
-             signal.moments[1 - turn].view, signal.mean.view, moments.view},
+        constants.isFirst = isFirst ? 1 : 0;
+        run(into, guide,
+            {layers.at("depth"), layers.at("normal"), layers.at("roughness"), guides[turn].view,
+             surfaces.view},
             constants);
-        run(commands, variance,
-            {signal.mean.view, moments.view, depth, normal, signal.variance, signal.albedo,
-             signal.filtered[0].view},
+        barrier(into);
+        for (const Signal& signal : signals) {
+            run(into, temporal,
+                {signal.light, layers.at("motion"), signal.virtualMotion, signal.variance, signal.albedo,
+                 guides[turn].view, surfaces.view, guides[1 - turn].view, history.view,
+                 moments[1 - turn].view, mean.view, moments[turn].view},
+                constants);
+            ++constants.signal;
+        }
+        barrier(into);
+    }
+
+    // Returns the image that holds the filtered light.
+    VkImageView smooth(VkCommandBuffer into) {
+        Push constants = push;
+        const Image* source = settings.wavelets == 0 ? &history : filtered.data();
+        run(into, variance, {mean.view, moments[turn].view, guides[turn].view, surfaces.view, source->view},
             constants);
-        std::size_t source = 0;
+        barrier(into);
+        const std::uint32_t historyAfter =
+            std::clamp(settings.historyAfter, 1U, std::max(settings.wavelets, 1U));
         for (std::uint32_t i = 0; i < settings.wavelets; ++i) {
-            if (i == settings.historyAfter) {
-                copy(commands, signal.filtered[source].image, signal.history.image);
-                barrier(commands);
-            }
+            const Image* const target = i + 1 == historyAfter       ? &history
+                                        : source == filtered.data() ? &filtered[1]
+                                                                    : filtered.data();
             constants.stride = 1 << i;
-            run(commands, wavelet,
-                {signal.filtered[source].view, depth, normal, signal.filtered[1 - source].view}, constants);
-            source = 1 - source;
+            run(into, wavelet, {source->view, guides[turn].view, surfaces.view, target->view}, constants);
+            barrier(into);
+            source = target;
         }
-        if (settings.historyAfter >= settings.wavelets) {
-            copy(commands, signal.filtered[source].image, signal.history.image);
-            barrier(commands);
-        }
-        constants.isFirst = isFirstSignal ? 1 : 0;
-        run(commands, modulate,
-            {signal.filtered[source].view, signal.albedo, layer("emission"), picture.view}, constants);
+        return source->view;
     }
 };
 
-Denoiser::Denoiser(const glint::DeviceHandles& device, const glint::Renderer& renderer, std::uint32_t width,
-                   std::uint32_t height, const std::filesystem::path& shaders, FilterSettings settings)
-    : state_(std::make_unique<State>()) {
-    State& state = *state_;
-    state.device = device;
+Denoiser::Denoiser(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Denoiser::~Denoiser() = default;
+
+glint::Result<std::unique_ptr<Denoiser>> Denoiser::create(const glint::Context& context,
+                                                          const glint::Renderer& renderer,
+                                                          std::uint32_t width, std::uint32_t height,
+                                                          const FilterSettings& settings) {
+    const glint::Result<Functions> functions = loadFunctions(context.handles());
+    if (!functions) {
+        return functions.error();
+    }
+    auto made = std::make_unique<State>();
+    State& state = *made;
+    state.vk = *functions;
+    state.device = context.handles();
     state.settings = settings;
     state.push.width = static_cast<std::int32_t>(width);
     state.push.height = static_cast<std::int32_t>(height);
     state.push.alpha = settings.alpha;
     state.push.samples = settings.samples;
-    for (const glint::LayerImage& layer : renderer.layers()) {
-        state.layers.emplace(layer.name, layer);
+    if (glint::Status found = state.findSignals(renderer); !found) {
+        return found.error();
     }
-    state.make(state.temporal, shaders / "temporal.comp.spv", 8, 2);
-    state.make(state.variance, shaders / "variance.comp.spv", 6, 1);
-    state.make(state.wavelet, shaders / "wavelet.comp.spv", 3, 1);
-    state.make(state.modulate, shaders / "modulate.comp.spv", 3, 1);
-    state.makePool();
-    // A signal for each source of light.
-    for (const auto& [name, image] : state.layers) {
-        if (image.info->name != "demodulated") {
-            continue;
-        }
-        const std::string source = name.substr(0, name.find('.'));
-        Signal signal;
-        signal.light = image.view;
-        signal.albedo = state.layer(albedoOf(source));
-        signal.variance = state.layer(source + ".variance");
-        signal.isVirtual = state.layers.contains(source + ".virtual-motion");
-        signal.motion = state.layer(signal.isVirtual ? source + ".virtual-motion" : "motion");
-        state.signals.push_back(std::move(signal));
-    }
-    for (Signal& signal : state.signals) {
-        for (Image* const image : {&signal.mean, &signal.moments[0], &signal.moments[1], &signal.history,
-                                   &signal.filtered[0], &signal.filtered[1]}) {
-            state.make(*image, kFormat);
+    const struct {
+        Program* program;
+        std::span<const std::uint32_t> code;
+        std::uint32_t sampled;
+        std::uint32_t stored;
+    } programs[] = {{&state.guide, kGuideShader, 3, 2},       {&state.temporal, kTemporalShader, 10, 2},
+                    {&state.variance, kVarianceShader, 4, 1}, {&state.wavelet, kWaveletShader, 3, 1},
+                    {&state.modulate, kModulateShader, 3, 1}, {&state.antialias, kAntialiasShader, 4, 1}};
+    for (const auto& program : programs) {
+        if (glint::Status done = state.make(*program.program, program.code, program.sampled, program.stored);
+            !done) {
+            return done.error();
         }
     }
-    state.make(state.lastDepth, state.layers.at("depth").format);
-    state.make(state.lastNormal, state.layers.at("normal").format);
-    state.make(state.picture, kFormat);
-}
-
-Denoiser::~Denoiser() {
-    State& state = *state_;
-    const VkDevice device = state.device.device;
-    for (const Image* const image : state.images) {
-        vkDestroyImageView(device, image->view, nullptr);
-        vkDestroyImage(device, image->image, nullptr);
-        vkFreeMemory(device, image->memory, nullptr);
+    const auto count = static_cast<std::uint32_t>(state.signals.size());
+    for (Image* const image : {state.guides.data(), &state.guides[1], state.resolved.data(),
+                               &state.resolved[1], &state.surfaces, &state.picture}) {
+        if (glint::Status done = state.make(*image, VK_IMAGE_VIEW_TYPE_2D); !done) {
+            return done.error();
+        }
     }
-    for (const Program* const program : {&state.temporal, &state.variance, &state.wavelet, &state.modulate}) {
-        vkDestroyPipeline(device, program->pipeline, nullptr);
-        vkDestroyPipelineLayout(device, program->layout, nullptr);
-        vkDestroyDescriptorSetLayout(device, program->setLayout, nullptr);
+    for (Image* const image : {state.moments.data(), &state.moments[1], state.filtered.data(),
+                               &state.filtered[1], &state.mean, &state.history}) {
+        if (glint::Status done = state.make(*image, VK_IMAGE_VIEW_TYPE_2D_ARRAY, count); !done) {
+            return done.error();
+        }
     }
-    vkDestroyDescriptorPool(device, state.pool, nullptr);
+    for (glint::Status done : {state.makePool(), state.makeReading()}) {
+        if (!done) {
+            return done.error();
+        }
+    }
+    return std::unique_ptr<Denoiser>(new Denoiser(std::move(made)));
 }
 
 void Denoiser::record(VkCommandBuffer commands) {
     State& state = *state_;
-    if (!state.started) {
+    if (!state.isStarted) {
         state.start(commands);
     }
-    State::barrier(commands);
-    bool isFirst = true;
-    for (Signal& signal : state.signals) {
-        state.filter(commands, signal, std::exchange(isFirst, false));
-    }
-    state.copy(commands, state.layers.at("depth").image, state.lastDepth.image);
-    state.copy(commands, state.layers.at("normal").image, state.lastNormal.image);
-    State::barrier(commands);
+    state.barrier(commands);
     state.turn = 1 - state.turn;
-    state.first = false;
+    state.accumulate(commands);
+    const VkImageView light = state.smooth(commands);
+    Push constants = state.push;
+    constants.isFirst = 1;
+    for (const Signal& signal : state.signals) {
+        state.run(commands, state.modulate,
+                  {light, signal.albedo, state.layers.at("emission"), state.picture.view}, constants);
+        state.barrier(commands);
+        constants.isFirst = 0;
+        ++constants.signal;
+    }
+    constants.isFirst = state.isFirst ? 1 : 0;
+    state.run(commands, state.antialias,
+              {state.picture.view, state.resolved[1 - state.turn].view, state.layers.at("motion"),
+               state.guides[state.turn].view, state.resolved[state.turn].view},
+              constants);
+    state.barrier(commands);
+    state.isFirst = false;
+}
+
+glint::Result<glint::LinearImage> Denoiser::filter() {
+    State& state = *state_;
+    const Functions& vk = state.vk;
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    DENOISE_CHECK(BeginCommandBuffer(state.commands, &begin))
+    vk.CmdResetQueryPool(state.commands, state.queries, 0, 2);
+    vk.CmdWriteTimestamp2(state.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, state.queries, 0);
+    record(state.commands);
+    vk.CmdWriteTimestamp2(state.commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, state.queries, 1);
+    const auto width = static_cast<std::uint32_t>(state.push.width);
+    const auto height = static_cast<std::uint32_t>(state.push.height);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {width, height, 1};
+    vk.CmdCopyImageToBuffer(state.commands, output(), VK_IMAGE_LAYOUT_GENERAL, state.buffer, 1, &region);
+    state.barrier(state.commands);
+    VkMemoryBarrier2 toHost{};
+    toHost.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
+    toHost.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
+    toHost.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    toHost.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+    toHost.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+    VkDependencyInfo dependency{};
+    dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &toHost;
+    vk.CmdPipelineBarrier2(state.commands, &dependency);
+    DENOISE_CHECK(EndCommandBuffer(state.commands))
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &state.commands;
+    DENOISE_CHECK(QueueSubmit(state.device.queue, 1, &submit, VK_NULL_HANDLE))
+    DENOISE_CHECK(QueueWaitIdle(state.device.queue))
+    std::array<std::uint64_t, 2> times{};
+    DENOISE_CHECK(GetQueryPoolResults(state.device.device, state.queries, 0, 2, sizeof(times), times.data(),
+                                      sizeof(times[0]), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT))
+    VkPhysicalDeviceProperties properties{};
+    vk.GetPhysicalDeviceProperties(state.device.physicalDevice, &properties);
+    state.milliseconds = static_cast<double>(times[1] - times[0]) * properties.limits.timestampPeriod * 1e-6;
+    glint::LinearImage image{width, height, {}};
+    image.pixels.resize(std::size_t{width} * height);
+    std::memcpy(image.pixels.data(), state.pixels, image.pixels.size() * sizeof(image.pixels[0]));
+    for (std::array<float, 4>& pixel : image.pixels) {
+        pixel[3] = 1.0F;
+    }
+    return image;
 }
 
 void Denoiser::restart() {
-    state_->first = true;
+    state_->isFirst = true;
 }
 
 VkImage Denoiser::output() const {
-    return state_->picture.image;
+    return state_->resolved[state_->turn].image;
+}
+
+double Denoiser::milliseconds() const {
+    return state_->milliseconds;
 }
 
 std::uint64_t Denoiser::bytes() const {

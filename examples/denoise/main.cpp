@@ -30,11 +30,15 @@
 
 namespace {
 
-using denoise::fail;
+// Writes a message to stderr and ends the program with 1.
+[[noreturn]] void fail(const std::string& message) {
+    std::cerr << "denoise: " << message << "\n";
+    std::exit(1);
+}
 
 constexpr std::string_view kUsage =
-    "usage: denoise SCENE.gltf SHADERS OUTPUT.png|.exr [OPTION VALUE]...\n"
-    "Draws frames of one sample, filters them, writes the last, and compares it with pictures without the "
+    "usage: denoise SCENE.gltf OUTPUT.png|.exr [OPTION VALUE]...\n"
+    "Draws frames of a few samples, filters them, writes the last, and compares it with pictures without the "
     "filter.\n"
     "\n"
     "  --frames N            frames that are filtered, each with those before it (1)\n"
@@ -42,6 +46,8 @@ constexpr std::string_view kUsage =
     "  --many N              samples of the picture that they are compared with (64)\n"
     "  --reference N         samples of the picture that is taken for the truth (1024); 0: no comparison\n"
     "  --turn DEGREES        the camera turns by that much from frame to frame (0)\n"
+    "  --alpha X             least weight of a new frame, 0 to 1 (0.04)\n"
+    "  --exposure EV         stops, of PNG files (0)\n"
     "  --wavelets N          passes of the wavelet, 0 to 8 (5)\n"
     "  --validation on|off   with the validation layers; their messages are an error (off)\n"
     "\n"
@@ -49,7 +55,7 @@ constexpr std::string_view kUsage =
     "--bounces.\n";
 
 struct Options {
-    std::string scene, shaders, output;
+    std::string scene, output;
     glint::compiler::Settings settings;
     std::uint32_t frames = 1;
     std::uint32_t samples = 4;
@@ -57,6 +63,7 @@ struct Options {
     std::uint32_t reference = 1024;
     double turn = 0.0;
     denoise::FilterSettings filter;
+    double exposure = 0.0;
     bool validation = false;
 };
 
@@ -76,6 +83,15 @@ bool setOption(Options& options, std::string_view name, const std::string& value
     }
     if (name == "--turn") {
         return glint::compiler::parseReal(value, -90.0, 90.0, options.turn);
+    }
+    if (name == "--exposure") {
+        return glint::compiler::parseReal(value, -32.0, 32.0, options.exposure);
+    }
+    if (name == "--alpha") {
+        double alpha = 0.0;
+        const bool valid = glint::compiler::parseReal(value, 0.0, 1.0, alpha);
+        options.filter.alpha = static_cast<float>(alpha);
+        return valid;
     }
     if (name == "--wavelets") {
         const bool valid = glint::compiler::parseWhole(value, 0, 8, whole);
@@ -100,14 +116,13 @@ bool setOption(Options& options, std::string_view name, const std::string& value
 }
 
 std::optional<Options> parse(const std::vector<std::string>& words) {
-    if (words.size() < 3 || words.size() % 2 == 0) {
+    if (words.size() < 2 || words.size() % 2 != 0) {
         return std::nullopt;
     }
     Options options;
     options.scene = words[0];
-    options.shaders = words[1];
-    options.output = words[2];
-    for (std::size_t i = 3; i < words.size(); i += 2) {
+    options.output = words[1];
+    for (std::size_t i = 2; i < words.size(); i += 2) {
         if (!setOption(options, words[i], words[i + 1])) {
             return std::nullopt;
         }
@@ -124,120 +139,15 @@ Value valueOf(glint::Result<Value> result) {
     return std::move(*result);
 }
 
+void succeed(const glint::Status& status) {
+    if (!status) {
+        fail(toString(status.error()));
+    }
+}
+
 double millisecondsSince(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
-
-// Commands that run at once, and a buffer to read pictures with.
-class Queue {
-public:
-    explicit Queue(const glint::DeviceHandles& device) : device_(device) {
-        VkCommandPoolCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-        info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-        info.queueFamilyIndex = device.queueFamily;
-        VkCommandBufferAllocateInfo buffer{};
-        buffer.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-        buffer.commandBufferCount = 1;
-        if (vkCreateCommandPool(device.device, &info, nullptr, &pool_) != VK_SUCCESS) {
-            fail("the device has no room for commands");
-        }
-        buffer.commandPool = pool_;
-        if (vkAllocateCommandBuffers(device.device, &buffer, &commands_) != VK_SUCCESS) {
-            fail("the device has no room for commands");
-        }
-    }
-    ~Queue() {
-        vkDestroyCommandPool(device_.device, pool_, nullptr);
-    }
-    Queue(const Queue&) = delete;
-    Queue& operator=(const Queue&) = delete;
-
-    // Returns how long the commands took, wall clock.
-    template <typename Record>
-    double run(const Record& record) {
-        VkCommandBufferBeginInfo begin{};
-        begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-        begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-        vkBeginCommandBuffer(commands_, &begin);
-        record(commands_);
-        vkEndCommandBuffer(commands_);
-        VkSubmitInfo submit{};
-        submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-        submit.commandBufferCount = 1;
-        submit.pCommandBuffers = &commands_;
-        const auto start = std::chrono::steady_clock::now();
-        if (vkQueueSubmit(device_.queue, 1, &submit, VK_NULL_HANDLE) != VK_SUCCESS ||
-            vkQueueWaitIdle(device_.queue) != VK_SUCCESS) {
-            fail("the device was lost");
-        }
-        return millisecondsSince(start);
-    }
-
-    glint::LinearImage read(VkImage image, std::uint32_t width, std::uint32_t height) {
-        glint::LinearImage picture{width, height, {}};
-        picture.pixels.resize(std::size_t{width} * height);
-        const VkDeviceSize bytes = picture.pixels.size() * sizeof(picture.pixels[0]);
-        VkBufferCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-        info.size = bytes;
-        info.usage = VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-        VkBuffer buffer = VK_NULL_HANDLE;
-        vkCreateBuffer(device_.device, &info, nullptr, &buffer);
-        VkMemoryRequirements needs{};
-        vkGetBufferMemoryRequirements(device_.device, buffer, &needs);
-        VkMemoryAllocateInfo memory{};
-        memory.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-        memory.allocationSize = needs.size;
-        memory.memoryTypeIndex = hostMemory(needs.memoryTypeBits);
-        VkDeviceMemory allocated = VK_NULL_HANDLE;
-        void* mapped = nullptr;
-        if (vkAllocateMemory(device_.device, &memory, nullptr, &allocated) != VK_SUCCESS ||
-            vkBindBufferMemory(device_.device, buffer, allocated, 0) != VK_SUCCESS ||
-            vkMapMemory(device_.device, allocated, 0, VK_WHOLE_SIZE, 0, &mapped) != VK_SUCCESS) {
-            fail("the device has no room for the picture");
-        }
-        run([&](VkCommandBuffer commands) {
-            VkBufferImageCopy region{};
-            region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-            region.imageExtent = {width, height, 1};
-            vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_GENERAL, buffer, 1, &region);
-            VkMemoryBarrier2 toHost{};
-            toHost.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-            toHost.srcStageMask = VK_PIPELINE_STAGE_2_COPY_BIT;
-            toHost.srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-            toHost.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
-            toHost.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
-            VkDependencyInfo dependency{};
-            dependency.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-            dependency.memoryBarrierCount = 1;
-            dependency.pMemoryBarriers = &toHost;
-            vkCmdPipelineBarrier2(commands, &dependency);
-        });
-        std::memcpy(picture.pixels.data(), mapped, bytes);
-        vkDestroyBuffer(device_.device, buffer, nullptr);
-        vkFreeMemory(device_.device, allocated, nullptr);
-        return picture;
-    }
-
-private:
-    std::uint32_t hostMemory(std::uint32_t allowed) const {
-        constexpr VkMemoryPropertyFlags kWanted =
-            VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-        VkPhysicalDeviceMemoryProperties properties{};
-        vkGetPhysicalDeviceMemoryProperties(device_.physicalDevice, &properties);
-        for (std::uint32_t i = 0; i < properties.memoryTypeCount; ++i) {
-            if ((allowed >> i & 1U) != 0 && (properties.memoryTypes[i].propertyFlags & kWanted) == kWanted) {
-                return i;
-            }
-        }
-        fail("the device has no memory that the host sees");
-    }
-
-    glint::DeviceHandles device_;
-    VkCommandPool pool_ = VK_NULL_HANDLE;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;
-};
 
 // Turns a camera about its own upward axis.
 glint::CameraView turned(glint::CameraView camera, double degrees) {
@@ -291,33 +201,23 @@ void run(Options& options) {
     rendererOptions.accumulate = options.samples > 1;
     const auto renderer = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
     options.filter.samples = options.samples;
-    denoise::Denoiser denoiser(context->handles(), *renderer, width, height, options.shaders, options.filter);
-    Queue queue(context->handles());
+    const auto denoiser =
+        valueOf(denoise::Denoiser::create(*context, *renderer, width, height, options.filter));
     glint::FrameOptions frame = glint::measure::frameOptions(settings, camera.view, sky, nullptr);
-    double samplesMs = 0.0;
-    double filterMs = 0.0;
+    glint::LinearImage filtered;
+    double samplesMs = 0.0;  // of the last frame
     for (std::uint32_t i = 0; i < options.frames; ++i) {
         frame.camera = turned(camera.view, options.turn * (static_cast<double>(i) - (options.frames - 1)));
         // The seed shifts the pixels' samples and all random numbers.
         frame.seed = i + 1;
-        frame.averagedSamples = options.samples;
-        for (frame.sampleIndex = 0; frame.sampleIndex < options.samples; ++frame.sampleIndex) {
-            samplesMs += queue.run([&](VkCommandBuffer commands) {
-                const glint::Status recorded = renderer->record(commands, frame);
-                if (!recorded) {
-                    fail(toString(recorded.error()));
-                }
-            });
-        }
-        filterMs += queue.run([&](VkCommandBuffer commands) { denoiser.record(commands); });
+        const auto begin = std::chrono::steady_clock::now();
+        succeed(renderer->renderSamples(frame, options.samples));
+        samplesMs = millisecondsSince(begin);
+        filtered = valueOf(denoiser->filter());
     }
-    const glint::LinearImage filtered = queue.read(denoiser.output(), width, height);
-    const glint::Status written = glint::image::writeImage(options.output, filtered, 0.0);
-    if (!written) {
-        fail(toString(written.error()));
-    }
+    succeed(glint::image::writeImage(options.output, filtered, options.exposure));
     std::printf("%s, %u x %u, filter: %.1f MiB of images\n", context->deviceName().c_str(), width, height,
-                static_cast<double>(denoiser.bytes()) / (1024.0 * 1024.0));
+                static_cast<double>(denoiser->bytes()) / (1024.0 * 1024.0));
     if (options.reference > 0) {
         rendererOptions.accumulate = true;
         const auto means = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
@@ -333,7 +233,7 @@ void run(Options& options) {
         const glint::LinearImage truth = mean(options.reference, 7777, milliseconds);
         std::printf("%-24s %10s %10s %12s %12s\n", "picture", "relMSE", "RMSE", "samples ms", "filter ms");
         const std::string few = std::to_string(options.samples) + " samples";
-        printRow(few + ", filtered", filtered, truth, samplesMs, filterMs);
+        printRow(few + ", filtered", filtered, truth, samplesMs, denoiser->milliseconds());
         const glint::LinearImage plain = mean(options.samples, 1, milliseconds);
         printRow(few, plain, truth, milliseconds, 0.0);
         const glint::LinearImage many = mean(options.many, 1, milliseconds);

@@ -138,13 +138,14 @@ float levelOfGradients(vec4 gradients, vec2 texels, float anisotropy) {
 
 const float kNoLevel = 65504.0;  // the surface reads no texture
 
+#if GLINT_LAYER_TEXTURE_LEVEL
 vec4 primaryTextureLevel(PrimaryPoint at) {
     float finest = kNoLevel;
 #if GLINT_TEXTURE_SLOTS > 0
+    uint read = GLINT_SLOTS_READ(at.features);
     for (uint slot = 0u; slot < GLINT_TEXTURE_SLOTS; ++slot) {
         TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(at.hit), slot);
-        // Slots without a texture are 0.
-        if (record.rowU != vec3(0.0) || record.rowV != vec3(0.0)) {
+        if ((read >> slot & 1u) != 0u) {
             vec4 edges = readsSecondSet(at.hit, slot, at.features) ? at.hit.uvEdges[1] : at.hit.uvEdges[0];
             edges = vec4(dot(record.rowU.xy, edges.xy), dot(record.rowV.xy, edges.xy), dot(record.rowU.xy, edges.zw),
                          dot(record.rowV.xy, edges.zw));
@@ -156,6 +157,7 @@ vec4 primaryTextureLevel(PrimaryPoint at) {
 #endif
     return vec4(finest, 0.0, 0.0, 0.0);
 }
+#endif
 
 #if GLINT_LAYER_HISTORY
 vec4 primaryMotion(PrimaryPoint at) {

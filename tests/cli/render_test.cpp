@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -31,6 +32,21 @@ TEST_F(RenderCommand, CompileInspectRenderCompare) {
     ASSERT_EQ(visibility.exit, 0) << visibility.err;
     const Outcome same = run({"compare", "uber.exr", "visibility.exr", "--max-error", "1e-4"});
     EXPECT_EQ(same.exit, 0) << same.out << same.err;
+}
+
+TEST_F(RenderCommand, DenoisesOnlyWhereOpenImageDenoiseIsLinked) {
+    const Outcome viewed = run({"render", scene_, "-o", "a.png", "--denoise", "--view", "key"});
+    EXPECT_EQ(viewed.exit, 2);
+    EXPECT_NE(viewed.err.find("--view"), std::string::npos) << viewed.err;
+    const Outcome denoised = render("a.png", {"--denoise"});
+    if (denoised.exit == 0) {
+        EXPECT_TRUE(image::readImage(path("a.png")).ok());
+        return;
+    }
+    EXPECT_EQ(denoised.exit, 1);
+    EXPECT_NE(denoised.err.find("[denoise-missing]"), std::string::npos) << denoised.err;
+    EXPECT_NE(denoised.err.find("OpenImageDenoise_ROOT"), std::string::npos) << denoised.err;
+    EXPECT_FALSE(std::filesystem::exists(path("a.png")));
 }
 
 TEST_F(RenderCommand, LayersAreInTheFileOfThePicture) {

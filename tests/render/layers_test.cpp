@@ -141,6 +141,34 @@ TEST(Layers, LeaveThePictureAsItIs) {
     EXPECT_EQ(imagesOf(with), imagesOf(without) + with.package().layers().size());
 }
 
+// A layer that needs nothing but its image adds its image; no package has a buffer or a pass of layers that
+// are off.
+TEST(Layers, LeaveNoBufferOrPassWhereTheyAreOff) {
+    const gltf::Scene scene = hallScene();
+    const auto footprintWith = [&](std::vector<std::string> layers) {
+        compiler::CompileSettings settings = everyLayer();
+        settings.layers = std::move(layers);
+        const LoadedScene loaded(scene, settings);
+        EXPECT_TRUE(loaded.ok());
+        RendererOptions options;
+        options.width = 16;
+        options.height = 16;
+        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+        EXPECT_TRUE(renderer.ok());
+        return renderer ? (*renderer)->footprint() : Renderer::Footprint{};
+    };
+    const Renderer::Footprint none = footprintWith({});
+    const Renderer::Footprint depth = footprintWith({"depth"});
+    const Renderer::Footprint distance = footprintWith({"reflection.distance"});
+    ASSERT_GT(none.buffers, 0U);
+    EXPECT_EQ(depth.images, none.images + 1);
+    EXPECT_EQ(depth.buffers, none.buffers);
+    EXPECT_EQ(depth.pipelines, none.pipelines);
+    EXPECT_EQ(distance.images, none.images + 1);
+    EXPECT_EQ(distance.buffers, none.buffers + 1) << "what each ray hit";
+    EXPECT_EQ(distance.pipelines, none.pipelines);
+}
+
 TEST(Layers, ShowThePrimarySurface) {
     // A red metal wall 3 m ahead, turned by 45 degrees about Y, and an unlit one beside it.
     gltf::Scene scene = emptyScene();

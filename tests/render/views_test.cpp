@@ -1,13 +1,18 @@
 // What views read: layers whose values can be known, equal in every strategy.
+#include "context/context_state.h"
+#include "render/edited_scene.h"
 #include "render/hall.h"
 #include "render/layered_scene.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "scene/gpu_scene_state.h"
 
 #include <glint/measure/views.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -30,6 +35,9 @@ gltf::Scene litWall() {
     const int texture = addTexture(scene, 64, 64, texels);
     materials::Material paper;
     paper.texture("baseColorTexture").texture = texture;
+    // Changes nothing, so that no pixel reads it. Its texels are much larger.
+    paper.texture("normalTexture").texture = addTexture(scene, 2, 2, std::vector<std::uint8_t>(16, 200));
+    paper["normalScale"] = 0.0F;
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, paper), {-6, -3, -3}, {6, 0, 0}, {0, 6, 0})));
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
@@ -112,11 +120,166 @@ TEST(Views, CountInfiniteSamples) {
     EXPECT_EQ(layers.integer("non-finite", 8 * 16 + 12), 0U);
 }
 
+// A wall on the left and one on the right, 3 m ahead. They share their mesh's shape alone.
+gltf::Scene twoWalls(const materials::Material& left, const materials::Material& right, float z) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, left), {-9, -9, z}, {9, 0, 0}, {0, 18, 0})));
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, right), {0, -9, z}, {9, 0, 0}, {0, 18, 0})));
+    addDirectionalLight(scene, {0, 0, -1}, 3.0F);
+    return scene;
+}
+
+std::uint64_t pixelsOf(const measure::View& view, std::string_view category) {
+    for (const measure::ViewStatistics::Category& one : view.statistics.categories) {
+        if (one.category.name == category) {
+            return one.pixels;
+        }
+    }
+    return 0;
+}
+
+TEST(Views, FindWhatIsNotANumber) {
+    materials::Material plain;
+    plain["metallicFactor"] = 0.0F;
+    materials::Material broken = plain;
+    broken["emissiveFactor"] = {1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F};
+    const gltf::Scene scene = twoWalls(plain, broken, -3);
+    LayeredScene shown(scene, settingsWith({"non-finite"}), 16, 16);
+    ASSERT_TRUE(shown.ok());
+    shown.render();
+    measure::ViewInput input;
+    input.package = &shown.package();
+    const Result<measure::View> view =
+        measure::makeView(*measure::parseView("non-finite"), shown.renderer(), input);
+    ASSERT_TRUE(view.ok()) << toString(view.error());
+    EXPECT_EQ(pixelsOf(*view, "not a number"), 128U);
+    EXPECT_EQ(pixelsOf(*view, "finite"), 128U);
+    for (std::size_t i = 0; i < 16 * 16; ++i) {
+        EXPECT_EQ(view->picture.pixels[i] == view->picture.pixels[15], i % 16 >= 8) << i;
+    }
+}
+
+// A mirror that fills the picture shows two walls. No case has the lobes of one and the inputs of the other
+// together.
+gltf::Scene mirroredWalls() {
+    materials::Material textured;
+    textured.texture("baseColorTexture").texture = 0;
+    materials::Material coated;
+    coated.give("KHR_materials_clearcoat");
+    coated["clearcoatFactor"] = 1.0F;
+    gltf::Scene scene = twoWalls(textured, coated, 3);
+    addTexture(scene, 2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 9, 9, 255});
+    for (gltf::Mesh& mesh : scene.meshes) {
+        mesh.primitives[0].indices = {0, 2, 1, 0, 3, 2};  // they face the mirror
+    }
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-9, -9, -3}, {18, 0, 0},
+                                               {0, 18, 0})));
+    return scene;
+}
+
+// Draws the scene, and expects the view to find the right half of the hits in that category and the rest to
+// have cases.
+void expectRightHalf(const gltf::Scene& scene, const LoadedScene& loaded, GpuScene& gpuScene,
+                     std::string_view category) {
+    RendererOptions options;
+    options.width = 16;
+    options.height = 16;
+    const auto renderer = Renderer::create(sharedContext(), loaded.package(), gpuScene, options);
+    ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
+    ASSERT_TRUE((*renderer)->render(defaultSetup(scene, 16, 16).frame, 1).ok());
+    measure::ViewInput input;
+    input.package = &loaded.package();
+    const Result<measure::View> view = measure::makeView(*measure::parseView("fallback"), **renderer, input);
+    ASSERT_TRUE(view.ok()) << toString(view.error());
+    EXPECT_EQ(pixelsOf(*view, category), 128U);
+    EXPECT_EQ(pixelsOf(*view, "has a case"), 128U);
+    for (std::size_t i = 0; i < 16 * 16; ++i) {
+        EXPECT_EQ(view->picture.pixels[i] == view->picture.pixels[15], i % 16 >= 8) << i;
+    }
+    expectNoValidationMessages();
+}
+
+compiler::CompileSettings settingsOfHits(bool hasFallback) {
+    compiler::CompileSettings settings;
+    settings.layers = {"hit-shader"};
+    settings.plan.fallback = hasFallback;
+    settings.plan.merge = compiler::MergePolicy::None;
+    return settings;
+}
+
+TEST(Views, FindHitsOfTheFallback) {
+    const gltf::Scene scene = mirroredWalls();
+    const LoadedScene loaded(scene, settingsOfHits(true));
+    ASSERT_TRUE(loaded.ok());
+    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    SceneView uploaded = data.view();
+    uploaded.editable = true;
+    const auto gpuScene = GpuScene::upload(sharedContext(), loaded.package(), uploaded);
+    ASSERT_TRUE(gpuScene.ok()) << toString(gpuScene.error());
+    SceneEditor& editor = *(*gpuScene)->editor();
+    materials::Material both = scene.materials[1];
+    both.texture("baseColorTexture").texture = 0;
+    const scene_view::MaterialSourceData source = scene_view::makeMaterialSource(
+        loaded.package(), scene_view::recordLayoutOf(loaded.package(), both.model()), scene, both,
+        scene_view::uploadedTextures(editor, loaded.package().scene(0), scene));
+    const Result<MaterialHandle> added = editor.addMaterial(source.view());
+    ASSERT_TRUE(added.ok()) << toString(added.error());
+    const Result<EditReport> set = editor.setInstanceMaterial(editor.instance(1), 0, *added);
+    ASSERT_TRUE(set.ok()) << toString(set.error());
+    EXPECT_EQ(set->missing.size(), 1U);
+    TwoFrames frames(sharedContext());
+    ASSERT_TRUE(editor.record(frames.begin(), frames.frame()).ok());
+    frames.submit();
+    frames.drain();
+    expectRightHalf(scene, loaded, **gpuScene, "fallback");
+}
+
+// A defect is planted, because an editor without a fallback takes no material without a case.
+TEST(Views, FindHitsWithoutACase) {
+    constexpr std::uint32_t kUnknown = 77;
+    const gltf::Scene scene = mirroredWalls();
+    const LoadedScene loaded(scene, settingsOfHits(false));
+    ASSERT_TRUE(loaded.ok());
+    const GpuScene::State& state = loaded.gpuScene().state();
+    const std::uint32_t wall = loaded.package().scene(0).primitives[1].shaderId;
+    const auto place = std::ranges::find(state.shaderIds, wall) - state.shaderIds.begin();
+    TwoFrames frames(sharedContext());
+    const VkCommandBuffer commands = frames.begin();
+    const Context::State& context = sharedContext().state();
+    const VkDeviceSize record = static_cast<VkDeviceSize>(place) * sizeof(gpu::GeometryRecord);
+    context.vk.CmdFillBuffer(commands, state.geometries.handle.get(),
+                             record + offsetof(gpu::GeometryRecord, shaderId), sizeof kUnknown, kUnknown);
+    frames.submit();
+    frames.drain();
+    expectRightHalf(scene, loaded, loaded.gpuScene(), "no case: magenta");
+}
+
+TEST(Views, CostNeedsNoRays) {
+    const measure::ViewChoice cost = *measure::parseView("cost");
+    materials::Material plain;
+    plain["metallicFactor"] = 0.0F;
+    materials::Material coated = plain;
+    coated.give("KHR_materials_clearcoat");
+    coated["clearcoatFactor"] = 1.0F;
+    LayeredScene shown(twoWalls(plain, coated, -3), settingsWith(measure::layersFor(cost)), 16, 16);
+    ASSERT_TRUE(shown.ok());
+    shown.render();
+    measure::ViewInput input;
+    input.package = &shown.package();
+    const Result<measure::View> view = measure::makeView(cost, shown.renderer(), input);
+    ASSERT_TRUE(view.ok()) << toString(view.error());
+    EXPECT_EQ(view->statistics.numbers, 256U);
+    EXPECT_LT(view->statistics.least, view->statistics.greatest) << "the coat costs more";
+    EXPECT_NEAR(view->statistics.mean, (view->statistics.least + view->statistics.greatest) / 2.0, 1e-6);
+}
+
 TEST(Views, EveryStrategyGivesTheSame) {
     const gltf::Scene scene = hallScene();
     compiler::CompileSettings settings;
-    const std::vector<std::string> same{"shader", "lobes", "material", "reflection.hit-shader",
-                                        "rays"};
+    const std::vector<std::string> same{"shader", "lobes", "material", "reflection.hit-shader", "rays"};
     settings.layers = same;
     settings.layers.insert(settings.layers.end(), {"cases-run", "workgroup"});
     settings.plan.merge = compiler::MergePolicy::None;

@@ -6,6 +6,7 @@
 #include "cli/options/effect_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/frames.h"
+#include "cli/render/open_image_denoise.h"
 #include "cli/render/pipeline_cache.h"
 #include "cli/render/report.h"
 #include "gltf/import.h"
@@ -350,6 +351,9 @@ int run(const Console& console, const RenderArguments& arguments) {
         if (status && !file.empty()) {
             status = checkOutputFile(file);
         }
+    }
+    if (status && arguments.denoise) {
+        status = checkDenoiser();
     }
     if (!status) {
         console.report(status.error());

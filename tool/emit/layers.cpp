@@ -1,6 +1,8 @@
 #include "emit/layers.h"
 
 #include "base/suggest.h"
+#include "emit/material_layout.h"
+#include "settings/layer_words.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -236,7 +238,9 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
                                               const std::string& where) {
     std::vector<LayerEntry> entries;
     const std::uint32_t bounces = layerBouncesOf(plan, settings);
-    for (const std::string& word : settings.layers) {
+    for (const std::string& asked : settings.layers) {
+        const bool isOptional = asked.ends_with(kOptionalLayer);
+        const std::string word = asked.substr(0, asked.size() - (isOptional ? 1 : 0));
         const std::vector<const LayerInfo*> named = layersNamed(word);
         const std::size_t before = entries.size();
         for (const LayerInfo* const info : named) {
@@ -246,7 +250,7 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
             if (Status added = addOfSource(word, plan, bounces, where, entries); !added) {
                 return added.error();
             }
-        } else if (entries.size() == before) {
+        } else if (entries.size() == before && !isOptional) {
             return makeError("layer-effect", where,
                              fmt::format("nothing in the package has the layer {}", word),
                              "add an effect with rays by --effects, and --bounces for layers of bounces");
@@ -265,6 +269,27 @@ std::string layerNameOf(const LayerEntry& entry, const materials::MaterialModel&
         entry.effect == 0 ? package::kDirectLight : declarationOf(model, entry.effect).name;
     return package::layerName(infoOf(entry), source, entry.bounce);
 }
+
+namespace {
+
+// The macro GLINT_SLOTS_READ(features): a bit for each texture of a record that a surface with these features
+// reads.
+std::string slotsRead(const Plan& plan) {
+    const MaterialLayout layout = materialLayoutOf(plan);
+    std::vector<std::string> bits;
+    for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
+        const materials::MaterialTexture& texture =
+            plan.model->textures[static_cast<std::size_t>(layout.textures[slot])];
+        const std::string& macro = plan.model->features[static_cast<std::size_t>(texture.feature)].macro;
+        // The macro of a feature begins with GLINT_.
+        bits.push_back(
+            fmt::format("(GLINT_HAS_{}(features) ? {}u : 0u)", macro.substr(6), std::uint64_t{1} << slot));
+    }
+    return fmt::format("#define GLINT_SLOTS_READ(features) ({})\n",
+                       bits.empty() ? "0u" : fmt::format("{}", fmt::join(bits, " | ")));
+}
+
+}  // namespace
 
 std::string layerDefines(const Plan& plan, bool deforms) {
     std::uint32_t demands = 0;
@@ -297,11 +322,15 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         "#define GLINT_LAYER_CLOCK {}\n"
         "#define GLINT_LAYER_BRANCHES {}\n"
         "#define GLINT_LAYER_GROUPS {}\n"
+        "#define GLINT_LAYER_TEXTURE_LEVEL {}\n"
         "#define GLINT_TALLIES {}\n",
         flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
         flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
         flag((demands & package::kLayerClock) != 0), flag(findEntry(plan, "branches", 0) != nullptr),
-        flag(groups), flag(!tallies.empty()));
+        flag(groups), flag(findEntry(plan, "texture-level", 0) != nullptr), flag(!tallies.empty()));
+    if (findEntry(plan, "texture-level", 0) != nullptr) {
+        text += slotsRead(plan);
+    }
     // What no layer counts leaves no code.
     for (const LayerInfo& info : package::layerTable()) {
         if (!info.tally.empty() && !tallies.contains(info.tally)) {

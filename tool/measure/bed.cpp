@@ -79,10 +79,32 @@ double stretchMs(std::span<const PassTiming> stretches, Pass pass) {
     return sum;
 }
 
+// Renders the frames before the picture, each with samples of its own, and filters them.
+Status Mount::showFramesBefore(FrameOptions frame) const {
+    constexpr std::uint32_t kSeedsOfFrames = 0xF17E0000U;  // far from those of rounds
+    filter_->restart();
+    for (std::uint32_t i = 1; i < frames_; ++i) {
+        FrameOptions before = frame;
+        before.seed = frame.seed + kSeedsOfFrames + (i << 8U);
+        if (Status rendered = renderer_->renderSamples(before, samples_); !rendered) {
+            return rendered;
+        }
+        if (const Result<LinearImage> filtered = filter_->filter(); !filtered) {
+            return filtered.error();
+        }
+    }
+    return okStatus();
+}
+
 Result<Exposure> Mount::expose(std::uint32_t seed) const {
     FrameOptions frame = frame_;
     frame.seed = seed;
     Exposure exposure;
+    if (filter_ != nullptr) {
+        if (Status shown = showFramesBefore(frame); !shown) {
+            return shown.error();
+        }
+    }
     const auto add = [&]() -> Status {
         const Result<std::vector<PassTiming>> stretches = renderer_->timings();
         if (!stretches) {
@@ -99,6 +121,14 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
     Result<FrameCounters> counters = renderer_->counters();
     if (!counters) {
         return counters.error();
+    }
+    if (filter_ != nullptr) {
+        image = filter_->filter();
+        if (!image) {
+            return image.error();
+        }
+        exposure.milliseconds += filter_->milliseconds();
+        exposure.passes[std::string(kFilterPass)] = filter_->milliseconds();
     }
     exposure.image = std::move(*image);
     exposure.counters = std::move(*counters);
@@ -255,12 +285,34 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::S
 Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, const std::string& package) {
     compiler::Settings render = withSettings(base_, configuration);
     render.package = package;
-    const std::string key =
-        fmt::format("{} {}", package, decided(render, [](const compiler::Descriptor& row) {
-                        // With --effects auto, the limit of roughness decides too.
-                        return isCompiled(row) || row.stage == compiler::SettingStage::Scene ||
-                               row.name == "max-roughness";
-                    }));
+    return mount(std::move(render));
+}
+
+Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t frames) {
+    compiler::Settings render = base_;
+    render.compile.layers = filter.layers;
+    Result<Mount> mounted = mount(render);
+    if (!mounted) {
+        return mounted;
+    }
+    Result<std::unique_ptr<PictureFilter>> made = filter.make(
+        *context_, *mounted->renderer_, render.renderer.width, render.renderer.height, render.samples);
+    if (!made) {
+        return made.error();
+    }
+    mounted->filter_ = std::move(*made);
+    mounted->frames_ = frames;
+    return mounted;
+}
+
+Result<Mount> BenchBed::mount(compiler::Settings render) {
+    const std::string key = fmt::format("{} {} {}", render.package, fmt::join(render.compile.layers, ","),
+                                        decided(render, [](const compiler::Descriptor& row) {
+                                            // With --effects auto, the limit of roughness decides too.
+                                            return isCompiled(row) ||
+                                                   row.stage == compiler::SettingStage::Scene ||
+                                                   row.name == "max-roughness";
+                                        }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {
         Result<std::shared_ptr<MountedPackage>> made = mountPackage(render);

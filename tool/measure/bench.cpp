@@ -9,12 +9,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
 namespace glint::measure {
 
 namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr Interval kNoOffer{kNever, kNever, kNever, kNever, kNever};
 
 BenchPoint makePoint(PointKind kind, compiler::Configuration configuration) {
     BenchPoint point;
@@ -37,7 +41,8 @@ public:
         }
         base_ = makePoint(PointKind::Default, {});
         const MeasureOptions options{static_cast<std::uint32_t>(settings_.rounds), report_.seed,
-                                     static_cast<std::uint32_t>(settings_.batch), report_.metric};
+                                     static_cast<std::uint32_t>(settings_.batch), settings_.filter,
+                                     report_.metric};
         const Truth truth{report_.reference.image, report_.reference.exposure};
         observer_.progress("compiling the default");
         Result<Measurer> measurer = Measurer::create(observer_, bed_, options, truth, base_);
@@ -52,6 +57,9 @@ public:
             points.push_back(std::move(point));
         }
         add(points, PointKind::Single, singles(report_.settings, report_.base));
+        if (settings_.filter != nullptr) {
+            addFiltered(points);
+        }
         if (settings_.depth != "singles") {
             add(points, PointKind::Pair, pairs(report_.settings, report_.base, settings_.quick));
         }
@@ -77,6 +85,7 @@ public:
     }
 
 private:
+    static constexpr std::uint32_t kFilteredFrames = 16;
     static constexpr std::size_t kProposals = 12;
     static constexpr std::size_t kQuickProposals = 4;
 
@@ -127,6 +136,20 @@ private:
         }
     }
 
+    // The filter's pictures, and one of many samples, which they are to be compared with.
+    void addFiltered(std::vector<BenchPoint>& points) const {
+        for (const std::uint32_t frames : {1U, kFilteredFrames}) {
+            BenchPoint point = makePoint(PointKind::Filtered, {});
+            point.name = frames == 1 ? std::string("denoised") : fmt::format("denoised, frame {}", frames);
+            point.filteredFrames = frames;
+            points.push_back(std::move(point));
+        }
+        const compiler::Configuration many = simplified({{"spp", "64"}}, report_.base);
+        if (!many.empty() && std::ranges::find(points, many, &BenchPoint::configuration) == points.end()) {
+            add(points, PointKind::Single, {many});
+        }
+    }
+
     Status measure(Measurer& measurer, std::vector<BenchPoint> points) {
         if (Status measured = measurer.measure(points); !measured) {
             return measured;
@@ -143,7 +166,7 @@ private:
     std::vector<Rated> rated() const {
         std::vector<Rated> all;
         const auto add = [&](const BenchPoint& point) {
-            if (point.kind != PointKind::Package) {
+            if (isOfSettings(point.kind)) {
                 const double error = errorOf(point, report_.metric).median;
                 all.push_back({point.configuration, timeRatio(point).median, additive(report_.metric, error),
                                isTimeTie(point), isErrorTie(point)});
@@ -184,6 +207,10 @@ private:
         for (std::size_t i = 0; i < report_.points.size(); ++i) {
             const BenchPoint& point = report_.points[i];
             offers.push_back({timeOf(report_, i), errorOf(point, report_.metric)});
+            if (point.kind == PointKind::Filtered) {
+                offers.back().error = kNoOffer;  // settings alone don't make its picture
+                offers.back().time = kNoOffer;
+            }
             fastest = offers[i].time.median < offers[fastest].time.median ? i : fastest;
             best = offers[i].error.median < offers[best].error.median ? i : best;
         }

@@ -34,7 +34,7 @@ Causes causesOf(const BenchPoint& point, ErrorMetric metric) {
 
 const BenchPoint* find(std::span<const BenchPoint> points, const compiler::Configuration& configuration) {
     const auto found = std::ranges::find_if(points, [&](const BenchPoint& point) {
-        return point.kind != PointKind::Package && point.configuration == configuration;
+        return isOfSettings(point.kind) && point.configuration == configuration;
     });
     return found == points.end() ? nullptr : &*found;
 }

@@ -81,7 +81,9 @@ Result<Measurer> Measurer::create(const Observer& observer, BenchBed& bed, const
 }
 
 Result<Measurer::Entry> Measurer::mount(BenchPoint& point) const {
-    Result<Mount> mount = bed_.mount(point.configuration, point.package);
+    Result<Mount> mount = point.filteredFrames > 0
+                              ? bed_.mountFiltered(*options_.filter, point.filteredFrames)
+                              : bed_.mount(point.configuration, point.package);
     if (!mount) {
         return mount.error();
     }

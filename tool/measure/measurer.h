@@ -18,6 +18,7 @@ struct MeasureOptions {
     std::uint32_t rounds = 9;
     std::uint32_t seed = 1;   // of the order; round r renders with random numbers of its own, seed + r
     std::uint32_t batch = 8;  // configurations that are mounted at a time, besides the default
+    const FilterMaker* filter = nullptr;  // of points with filteredFrames
     ErrorMetric metric = ErrorMetric::RelMse;
 };
 

@@ -9,7 +9,8 @@ namespace glint::measure {
 namespace {
 
 constexpr std::array<std::string_view, 4> kMetrics{"relMse", "trimmed", "rmse", "flip"};
-constexpr std::array<std::string_view, 6> kKinds{"default", "single", "pair", "search", "package", "exact"};
+constexpr std::array<std::string_view, 7> kKinds{"default", "single", "pair",    "search",
+                                                 "package", "exact",  "filtered"};
 
 }  // namespace
 

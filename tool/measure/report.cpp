@@ -74,6 +74,7 @@ base::Json pointToJson(const BenchReport& report, std::size_t index) {
             {"kind", nameOf(point.kind)},
             {"settings", settingsToJson(point.configuration)},
             {"package", base::textOrNull(point.package)},
+            {"filteredFrames", point.filteredFrames},
             {"command", renderCommand(report, point)},
             {"time", std::move(time)},
             {"ratio", toJson(timeRatio(point))},
@@ -241,7 +242,12 @@ std::uint32_t pictureScale(const BenchReport& report) {
 }
 
 std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
+    const bool isFiltered = point.kind == PointKind::Filtered;
     std::vector<std::string> words{"glint", "render", report.scene.file, "-o", "picture.png"};
+    if (isFiltered) {
+        words = {"denoise", report.scene.file, "picture.png", "--frames",
+                 fmt::format("{}", point.filteredFrames)};
+    }
     words.insert(words.end(), report.viewWords.begin(), report.viewWords.end());
     // With these options the command renders the picture of the first round exactly.
     words.insert(words.end(), {"--seed", fmt::format("{}", report.seed), "--exposure",
@@ -255,6 +261,10 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
         if (own != value && !isPackaged) {
             given[name] = own;
         }
+    }
+    if (isFiltered) {
+        words.insert(words.end(), {"--samples", given.contains("spp") ? given["spp"] : "1"});
+        given.erase("spp");
     }
     for (const std::string& word : compiler::wordsOf(given)) {
         words.push_back(word);

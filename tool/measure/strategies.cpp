@@ -123,7 +123,7 @@ StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::
         const auto own = configuration.find("strategy");
         const bool isAlone =
             configuration.empty() || (own != configuration.end() && configuration.size() == 1);
-        if (!isAlone || points[i].times.empty() || points[i].kind == PointKind::Package) {
+        if (!isAlone || points[i].times.empty() || !isOfSettings(points[i].kind)) {
             continue;
         }
         report.rows.push_back(rowOf(points[i], i, own == configuration.end() ? base : own->second));

@@ -2,6 +2,7 @@
 // where several members belong together.
 #pragma once
 
+#include "settings/layer_words.h"
 #include "settings/table.h"
 
 #include <glint/layers.h>
@@ -393,8 +394,14 @@ inline std::vector<SettingWord> layerWords() {
     return words;
 }
 
-// "EFFECT.LAYER", where the effect may be one of a pack.
-inline bool isLayerOfSource(std::string_view text) {
+// "EFFECT.LAYER", where the effect may be one of a pack, or the word of a layer that may be lacking.
+inline bool isLayerWord(std::string_view text) {
+    if (text.ends_with(kOptionalLayer)) {
+        text.remove_suffix(1);
+        if (package::findLayer(text) != nullptr) {
+            return true;
+        }
+    }
     const std::size_t dot = std::min(text.find('.'), text.size());
     const package::LayerInfo* const layer = package::findLayer(text.substr(std::min(dot + 1, text.size())));
     return layer != nullptr && package::hasSources(*layer) && materials::isEffectName(text.substr(0, dot));
@@ -406,7 +413,7 @@ inline constexpr SettingValues kLayers{
     .set = setLayers,
     .words = layerWords,
     .type = "none|all|LIST",
-    .accepts = isLayerOfSource,
+    .accepts = isLayerWord,
     .further = "a layer of one source of light, such as reflection.radiance"};
 
 inline constexpr SettingValues kHitLobes{.form = ValueForm::List,

@@ -1,22 +1,31 @@
 #version 460
-// Estimates the variance of the luminance: over time, or over the pixels around where few frames are known (section
-// 4.2 of the paper). A frame of several samples has a variance of its own, which says where there is no noise to
-// remove; the paper, with one sample, has to guess it from the pixels around.
+// Estimates the variance of the mean over frames: by their moments, or over the pixels around where few frames are
+// known (section 4.2 of the paper). A frame of several samples has a variance of its own, which tells noise from what
+// the light looks like; the paper, with one sample, can't.
 #extension GL_GOOGLE_include_directive : require
 #include "svgf.glsl"
 
-layout(binding = 0) uniform texture2D light;
-layout(binding = 1) uniform texture2D moments;
-layout(binding = 2) uniform texture2D depths;
-layout(binding = 3) uniform texture2D normals;
-layout(binding = 4) uniform texture2D sampled;  // variance of the luminance of samples, not demodulated
-layout(binding = 5) uniform texture2D albedo;
-layout(binding = 6, rgba32f) uniform writeonly image2D result;  // light, variance
+layout(binding = 0) uniform texture2DArray lights;
+layout(binding = 1) uniform texture2DArray moments;
+layout(binding = 2) uniform texture2D guides;
+layout(binding = 3) uniform texture2D surfaces;
+layout(binding = 4, rgba32f) uniform writeonly image2DArray result; // light, variance
 
-// The variance of this frame's mean, demodulated.
-float varianceOfFrame(ivec2 pixel) {
-    float scale = max(luminance(texelFetch(albedo, pixel, 0).rgb), 1e-4);
-    return texelFetch(sampled, pixel, 0).x / (scale * scale * float(samples));
+// With fewer frames the pixels around are asked.
+const float kFewFrames = 4.0;
+
+// The light of a pixel, no brighter than the brightest around it if chance explains the difference: one sample that
+// found a small light outweighs all others while frames are few.
+vec3 withoutFirefly(ivec2 pixel, int s, vec3 light, float variance) {
+    float most = 0.0;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 tap = pixel + ivec2(i % 3, i / 3) - 1;
+        if (i != 4 && isInside(tap)) {
+            most = max(most, luminance(texelFetch(lights, ivec3(tap, s), 0).rgb));
+        }
+    }
+    float own = luminance(light);
+    return own > most && own - most < 2.0 * sqrt(variance) ? light * (most / own) : light;
 }
 
 void main() {
@@ -24,54 +33,48 @@ void main() {
     if (!isInside(pixel)) {
         return;
     }
-    vec3 value = texelFetch(light, pixel, 0).rgb;
-    vec3 moment = texelFetch(moments, pixel, 0).xyz;
-    float depth = texelFetch(depths, pixel, 0).x;
-    if (depth <= 0.0) {
-        imageStore(result, pixel, vec4(value, 0.0));
-        return;
+    vec4 guide = texelFetch(guides, pixel, 0);
+    bool isNew = false;
+    vec4 sums[kSignals]; // luminance, its square, variance by samples, weights
+    for (int s = 0; s < kSignals; ++s) {
+        vec4 moment = texelFetch(moments, ivec3(pixel, s), 0);
+        sums[s] = vec4(moment.xyw, 1.0);
+        isNew = isNew || moment.z < kFewFrames;
     }
-    float frames = max(moment.z, 1.0);
-    float variance = max(moment.y - moment.x * moment.x, 0.0);
-    if (frames < 4.0 && samples > 1u) {
-        // Few samples know their variance badly: it is smoothed over the surface.
-        vec3 normal = unit(texelFetch(normals, pixel, 0).xyz);
-        vec2 slope = depthSlope(depths, pixel, depth);
-        variance = varianceOfFrame(pixel);
-        float weights = 1.0;
-        for (int i = 0; i < 9; ++i) {
-            ivec2 tap = pixel + ivec2(i % 3, i / 3) - 1;
-            if (i == 4 || !isInside(tap)) {
-                continue;
-            }
-            float weight = edgeWeight(depth, texelFetch(depths, tap, 0).x, slope, vec2(tap - pixel), normal,
-                                      unit(texelFetch(normals, tap, 0).xyz));
-            variance += weight * varianceOfFrame(tap);
-            weights += weight;
+    if (isNew && guide.w > 0.0) {
+        vec3 surface = texelFetch(surfaces, pixel, 0).xyz;
+        float powers[kSignals];
+        for (int s = 0; s < kSignals; ++s) {
+            powers[s] = normalPower(s, surface.z);
         }
-        variance /= weights * frames;
-    } else if (frames < 4.0) {
-        vec3 normal = unit(texelFetch(normals, pixel, 0).xyz);
-        vec2 slope = depthSlope(depths, pixel, depth);
-        vec3 sum = value;
-        vec2 sums = moment.xy;
-        float weights = 1.0;
-        for (int y = -3; y <= 3; ++y) {
-            for (int x = -3; x <= 3; ++x) {
+        int reach = samples > 1u ? 2 : 3;
+        for (int y = -reach; y <= reach; ++y) {
+            for (int x = -reach; x <= reach; ++x) {
                 ivec2 tap = pixel + ivec2(x, y);
                 if ((x == 0 && y == 0) || !isInside(tap)) {
                     continue;
                 }
-                float weight = edgeWeight(depth, texelFetch(depths, tap, 0).x, slope, vec2(x, y), normal,
-                                          unit(texelFetch(normals, tap, 0).xyz));
-                sum += weight * texelFetch(light, tap, 0).rgb;
-                sums += weight * texelFetch(moments, tap, 0).xy;
-                weights += weight;
+                vec2 edge = edgeDistance(guide, texelFetch(guides, tap, 0), surface.xy, vec2(x, y));
+                if (edge.x >= kBarred) {
+                    continue;
+                }
+                for (int s = 0; s < kSignals; ++s) {
+                    float weight = exp(-edge.x - powers[s] * edge.y);
+                    sums[s] += weight * vec4(texelFetch(moments, ivec3(tap, s), 0).xyw, 1.0);
+                }
             }
         }
-        value = sum / weights;
-        sums /= weights;
-        variance = max(sums.y - sums.x * sums.x, 0.0) * 4.0 / frames;
     }
-    imageStore(result, pixel, vec4(value, variance));
+    for (int s = 0; s < kSignals; ++s) {
+        vec4 light = texelFetch(lights, ivec3(pixel, s), 0);
+        float frames = texelFetch(moments, ivec3(pixel, s), 0).z;
+        vec3 mean = sums[s].xyz / sums[s].w;
+        if (frames < kFewFrames) {
+            float own = texelFetch(moments, ivec3(pixel, s), 0).w;
+            light.rgb = withoutFirefly(pixel, s, light.rgb, samples > 1u ? own / frames : 1e30);
+        }
+        float ofFrame = samples > 1u ? mean.z : max(mean.y - mean.x * mean.x, 0.0);
+        float share = shareOf(frames);
+        imageStore(result, ivec3(pixel, s), vec4(light.rgb, guide.w > 0.0 ? light.w + share * share * ofFrame : 0.0));
+    }
 }

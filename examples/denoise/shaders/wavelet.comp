@@ -3,22 +3,22 @@
 #extension GL_GOOGLE_include_directive : require
 #include "svgf.glsl"
 
-layout(binding = 0) uniform texture2D light;  // with variance
-layout(binding = 1) uniform texture2D depths;
-layout(binding = 2) uniform texture2D normals;
-layout(binding = 3, rgba32f) uniform writeonly image2D result;
+layout(binding = 0) uniform texture2DArray lights; // with variance
+layout(binding = 1) uniform texture2D guides;
+layout(binding = 2) uniform texture2D surfaces;
+layout(binding = 3, rgba32f) uniform writeonly image2DArray result;
 
 const float kKernel[3] = float[3](3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0);
 
 // The variance over 3 x 3 pixels, which alone would be noisy (equation 5).
-float smoothVariance(ivec2 pixel) {
+float smoothVariance(ivec2 pixel, int s) {
     float sum = 0.0;
     float weights = 0.0;
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
             if (isInside(pixel + ivec2(x, y))) {
                 float weight = (x == 0 ? 0.5 : 0.25) * (y == 0 ? 0.5 : 0.25);
-                sum += weight * texelFetch(light, pixel + ivec2(x, y), 0).w;
+                sum += weight * texelFetch(lights, ivec3(pixel + ivec2(x, y), s), 0).w;
                 weights += weight;
             }
         }
@@ -31,33 +31,51 @@ void main() {
     if (!isInside(pixel)) {
         return;
     }
-    vec4 centre = texelFetch(light, pixel, 0);
-    float depth = texelFetch(depths, pixel, 0).x;
-    if (depth <= 0.0) {
-        imageStore(result, pixel, centre);
+    vec4 guide = texelFetch(guides, pixel, 0);
+    if (guide.w <= 0.0) {
+        for (int s = 0; s < kSignals; ++s) {
+            imageStore(result, ivec3(pixel, s), texelFetch(lights, ivec3(pixel, s), 0));
+        }
         return;
     }
-    vec3 normal = unit(texelFetch(normals, pixel, 0).xyz);
-    vec2 slope = depthSlope(depths, pixel, depth);
-    float deviation = kSigmaLight * sqrt(max(smoothVariance(pixel), 0.0)) + 1e-6;
-    vec3 sum = kKernel[0] * kKernel[0] * centre.rgb;
-    float variance = pow(kKernel[0], 4.0) * centre.w;
-    float weights = kKernel[0] * kKernel[0];
+    vec3 surface = texelFetch(surfaces, pixel, 0).xyz;
+    const float middle = kKernel[0] * kKernel[0];
+    vec4 sums[kSignals]; // light, and its variance
+    float weights[kSignals];
+    vec3 own[kSignals]; // light
+    float factors[kSignals];
+    float powers[kSignals];
+    for (int s = 0; s < kSignals; ++s) {
+        vec4 light = texelFetch(lights, ivec3(pixel, s), 0);
+        sums[s] = vec4(middle * light.rgb, middle * middle * light.w);
+        weights[s] = middle;
+        own[s] = light.rgb;
+        // Where there is no noise, nothing that differs takes part.
+        factors[s] = 1.0 / (kSigmaLight * sqrt(max(smoothVariance(pixel, s), 0.0)) + 1e-6);
+        powers[s] = normalPower(s, surface.z);
+    }
     for (int y = -2; y <= 2; ++y) {
         for (int x = -2; x <= 2; ++x) {
             ivec2 tap = pixel + stride * ivec2(x, y);
             if ((x == 0 && y == 0) || !isInside(tap)) {
                 continue;
             }
-            vec4 other = texelFetch(light, tap, 0);
-            float weight = kKernel[abs(x)] * kKernel[abs(y)] *
-                           edgeWeight(depth, texelFetch(depths, tap, 0).x, slope, float(stride) * vec2(x, y), normal,
-                                      unit(texelFetch(normals, tap, 0).xyz)) *
-                           exp(-abs(luminance(other.rgb) - luminance(centre.rgb)) / deviation);
-            sum += weight * other.rgb;
-            variance += weight * weight * other.w;
-            weights += weight;
+            vec2 edge =
+                edgeDistance(guide, texelFetch(guides, tap, 0), surface.xy, float(stride) * vec2(x, y));
+            if (edge.x + kSigmaNormal * edge.y >= kBarred) {
+                continue;
+            }
+            for (int s = 0; s < kSignals; ++s) {
+                vec4 other = texelFetch(lights, ivec3(tap, s), 0);
+                float weight = kKernel[abs(x)] * kKernel[abs(y)] *
+                               exp(-edge.x - powers[s] * edge.y - lightDistance(other.rgb, own[s]) * factors[s]);
+                sums[s] += vec4(weight, weight, weight, weight * weight) * other;
+                weights[s] += weight;
+            }
         }
     }
-    imageStore(result, pixel, vec4(sum / weights, variance / (weights * weights)));
+    for (int s = 0; s < kSignals; ++s) {
+        imageStore(result, ivec3(pixel, s),
+                   vec4(sums[s].rgb / weights[s], sums[s].w / (weights[s] * weights[s])));
+    }
 }

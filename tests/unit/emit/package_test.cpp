@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <map>
+#include <regex>
 #include <set>
 
 namespace glint {
@@ -69,6 +70,74 @@ TEST(CompilePackage, WithAFallbackHasASmallDraft) {
     EXPECT_NE(shown.sometimes, 0U);
     for (const materials::Feature& feature : package.plan.model->features) {
         EXPECT_TRUE(feature.isInDraft || (shown.sometimes & feature.mask()) == 0) << feature.name;
+    }
+}
+
+// It has no function that samples them, and its sky is there in any case.
+TEST(CompilePackage, DraftsLeaveOutLightsThatRaysFind) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.fallback = true;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    settings.skyLight = compiler::SkyLight::On;
+    EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::LightingDraft], 1);
+}
+
+// The texts of all modules that a package would have, with every strategy and tracer.
+std::string textsWithLayers(std::vector<std::string> layers) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::allStrategies();
+    settings.tracers = package::kAllTracers;
+    settings.effects = {false,
+                        compiler::builtinEffects({"shadow", "reflection", "refraction", "indirect-diffuse"})};
+    settings.plan.fallback = true;
+    settings.maxBounces = 4;
+    settings.layers = std::move(layers);
+    const gltf::Scene scene = makeSampleScene();
+    const Result<compiler::PackagePlan> planned = compiler::planPackage({&scene, 1}, settings);
+    EXPECT_TRUE(planned.ok()) << (planned.ok() ? std::string() : toString(planned.error()));
+    std::string texts;
+    for (std::size_t i = 0; planned && i < planned->modules.size(); ++i) {
+        texts += planned->modules[i].text;
+    }
+    return texts;
+}
+
+// Returns the conditions on layers that hold in a text: its GLINT_LAYER macros that are not 0.
+std::set<std::string> layerConditions(const std::string& texts) {
+    static const std::regex kMacro("#define (GLINT_LAYER_\\w+) (\\S+)");
+    std::set<std::string> conditions;
+    for (std::sregex_iterator at(texts.begin(), texts.end(), kMacro), end; at != end; ++at) {
+        if ((*at)[2] != "0") {
+            conditions.insert((*at)[1]);
+        }
+    }
+    return conditions;
+}
+
+// What is not asked for leaves no code: neither layers as such, nor one layer beside another.
+TEST(CompilePackage, LayersThatAreOffLeaveNoCode) {
+    const std::string none = textsWithLayers({});
+    const std::string depth = textsWithLayers({"depth"});
+    const std::string all = textsWithLayers({"all"});
+    ASSERT_NE(none.find("#define GLINT_LAYER_RAYS 0"), std::string::npos);
+    EXPECT_EQ(layerConditions(none), std::set<std::string>{});
+    EXPECT_EQ(layerConditions(depth), std::set<std::string>{"GLINT_LAYER_MEMBERS"});
+    EXPECT_TRUE(layerConditions(all).contains("GLINT_LAYER_HISTORY"));
+    EXPECT_TRUE(layerConditions(all).contains("GLINT_LAYER_RAYS"));
+    for (const package::LayerInfo& layer : package::layerTable()) {
+        if (layer.function.empty() || layer.isDiagnostic) {
+            continue;
+        }
+        const std::string function(layer.function);
+        EXPECT_EQ(none.find(function), std::string::npos) << function;
+        EXPECT_NE(all.find(function), std::string::npos) << function;
+        EXPECT_EQ(depth.find(function) != std::string::npos, layer.name == "depth") << function;
+    }
+    for (const char* const function : {"demodulated(", "varianceWith(", "meanWith("}) {
+        EXPECT_NE(all.find(function), std::string::npos) << function;
+        EXPECT_EQ(depth.find(function), std::string::npos) << function;
+        EXPECT_EQ(none.find(function), std::string::npos) << function;
     }
 }
 

@@ -1,6 +1,7 @@
 #include "cli/bench/arguments.h"
 
 #include "base/text.h"
+#include "cli/bench/denoise_filter.h"
 #include "cli/options/options.h"
 
 #include <fmt/format.h>
@@ -19,6 +20,7 @@ constexpr double kQuickReferenceError = 0.04;
 constexpr std::int64_t kReferenceSamples = 16384;
 constexpr std::int64_t kQuickReferenceSamples = 768;
 constexpr const char* kQuickSize = "80x45";
+constexpr const char* kDenoise = "denoise";  // of --only; it is no setting
 
 // These options decide about the picture, but no bench sweeps them. A point's command includes those that
 // were given.
@@ -72,9 +74,12 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
               "pairs: then the pairs that matter; search: then a search\n"
               "for the Pareto front")
         .group(sweep);
-    addChoices(command, "--only", arguments.only, compiler::settingNames(),
+    std::vector<std::string> parts = compiler::settingNames();
+    parts.emplace_back(kDenoise);
+    addChoices(command, "--only", arguments.only, parts,
                "sweep only these settings, separated by commas (default:\n"
-               "all)")
+               "all); denoise: the picture filtered by examples/denoise,\n"
+               "beside one of 64 samples")
         .type_name("LIST")
         ->group(sweep);
     addInteger(command, "--rounds", arguments.rounds, 0, 1000,
@@ -132,6 +137,14 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
         const CLI::Option* const option = command.get_option(name);
         if (option->count() > 0 && !(option->as<double>() > 0.0)) {
             throw CLI::ValidationError(name, "no setting can reach 0; give a larger number");
+        }
+    }
+    if (std::ranges::find(arguments.only, kDenoise) != arguments.only.end()) {
+        arguments.filter = exampleFilter();
+        if (arguments.filter == nullptr) {
+            throw CLI::ValidationError(
+                "--only",
+                "denoise needs a glint that was built with its examples: -DGLINT_BUILD_EXAMPLES=ON");
         }
     }
     for (const std::string& text : arguments.candidateWords) {

@@ -94,6 +94,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"context-queue", kError, "The runtime was given a queue without graphics and compute."},
     {"data-uri", kError, "A data URI is malformed."},
     {"declaration", kError, "A declaration of a material feature is malformed."},
+    {"denoise-failed", kError, "`glint render --denoise`: Open Image Denoise can't do its work."},
+    {"denoise-missing", kError, "`glint render --denoise`: glint was built without Open Image Denoise."},
     {"depfile-name", kError,
      "`--depfile`: the name of a file can't be written to a file for Make and Ninja."},
     {"device-features", kError, "The device lacks features that Glint needs."},
@@ -376,6 +378,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"vulkan-call", kError, "A call of Vulkan failed."},
     {"vulkan-function", kError, "The Vulkan implementation lacks a function."},
     {"vulkan-loader", kError, "There is no Vulkan loader."},
+    {"werror", kError, "There are warnings that count as errors."},
     {"window-drop", kError, "`glint view`: the file is neither a scene nor an environment map."},
     {"window-missing", kError, "`glint view`: this glint was built without its window."},
     {"window-open", kError, "`glint view`: no window can be opened."},
@@ -383,7 +386,6 @@ constexpr DiagnosticInfo kTable[] = {
     {"window-shot", kNote,
      "`glint view`: a screenshot was written; the hint is the command that makes it again."},
     {"window-surface", kError, "`glint view`: the device can't show pictures in the window."},
-    {"werror", kError, "There are warnings that count as errors."},
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "cli/render/open_image_denoise.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
 
@@ -98,19 +99,29 @@ std::string viewNames() {
     return text;
 }
 
+// Says what is wrong with a text that names no view.
+std::string complaintAboutView(const std::string& text) {
+    const std::size_t dot = text.find('.');
+    const std::string name = dot == std::string::npos ? text : text.substr(dot + 1);
+    if (measure::findView(name) != nullptr && dot > 0) {
+        return fmt::format("\"{}\" is no view, because {} is not about the rays of one effect; use {}", text,
+                           name, name);
+    }
+    std::vector<std::string> known;
+    for (const measure::ViewInfo& view : measure::viewTable()) {
+        known.emplace_back(view.name);
+    }
+    const std::string suggestion = base::suggestion(name, known);
+    return fmt::format("\"{}\" is no view{}", text, suggestion.empty() ? "; --help lists them" : suggestion);
+}
+
 void addViewOptions(CLI::App& command, RenderArguments& arguments) {
     addText(command, kView, arguments.view, "NAME",
             "write a debug picture instead, with a legend below it, and\nits numbers into --stats:\n" +
-                viewNames() + ";\nof rays also EFFECT.NAME (docs/views.md)")
+                viewNames() + ";\nEFFECT.NAME for the rays of another effect than the first\n(docs/views.md)")
         .check(CLI::Validator(
             [](const std::string& text) {
-                std::vector<std::string> known;
-                for (const measure::ViewInfo& view : measure::viewTable()) {
-                    known.emplace_back(view.name);
-                }
-                return measure::parseView(text)
-                           ? std::string()
-                           : "\"" + text + "\" is no view" + base::suggestion(text, known);
+                return measure::parseView(text) ? std::string() : complaintAboutView(text);
             },
             ""))
         ->group("Picture");
@@ -148,6 +159,22 @@ void settleView(const CLI::App& command, RenderArguments& arguments) {
         for (std::string& layer : measure::layersFor(*view)) {
             arguments.compile.layers.push_back(std::move(layer));
         }
+    }
+}
+
+// Adds the layers that the denoiser reads. Throws a CLI::ParseError if the line contradicts itself.
+void settleDenoising(RenderArguments& arguments) {
+    if (!arguments.denoise) {
+        return;
+    }
+    if (!arguments.view.empty()) {
+        throw CLI::ValidationError("--denoise",
+                                   "changes the picture that --view replaces; leave out one of them");
+    }
+    std::vector<std::string>& layers = arguments.compile.layers;
+    if (arguments.package.empty()) {
+        const std::vector<std::string> wanted = denoiserLayers();
+        layers.insert(layers.end(), wanted.begin(), wanted.end());
     }
 }
 
@@ -251,6 +278,10 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             "(excludes --host, --profile, and all settings that are\n"
             "decided for the package: docs/cli.md)")
         .group("Shaders");
+    addFlag(command, "--denoise", arguments->denoise,
+            "remove the noise of each picture with Open Image Denoise,\n"
+            "if glint was built with it (docs/layers.md)")
+        .group("Picture");
     addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);
     command.callback([arguments, then, &command] {
@@ -268,6 +299,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
             throw CLI::ValidationError("--layers", "needs a file that has room for layers: -o FILE.exr");
         }
         settleView(command, *arguments);
+        settleDenoising(*arguments);
         settleProfileOutput(command, *arguments);
         checkProfile(command, *arguments);
         then();

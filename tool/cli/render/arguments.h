@@ -25,6 +25,7 @@ struct RenderArguments : compiler::Settings {
     std::string stats;
     bool pipelineStatistics = false;
     std::string coverage;
+    bool denoise = false;
     std::string view;           // with which view the picture is drawn; empty: none
     std::string viewReference;  // a file that it compares with
     std::string profileOutput;  // counts hits by key; Settings::profile is the file that planning reads

@@ -1,6 +1,7 @@
 #include "cli/render/frames.h"
 
 #include "base/clock.h"
+#include "cli/render/open_image_denoise.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 
@@ -128,7 +129,7 @@ public:
         if (Status measured = measure(frame); !measured) {
             return measured.error();
         }
-        return image;
+        return setup_.arguments.denoise ? denoised(*image, *renderer_) : std::move(image);
     }
 
     // Returns the layers of the last picture, for a file that has room for them.

@@ -8,7 +8,7 @@ const MOST_LADDERS = 5;
 function laddersOf(setting) {
     const lines = new Map();
     for (const point of points) {
-        if (!isMeasured(point) || point.package || ["search", "exact"].includes(point.kind)) {
+        if (!isMeasured(point) || point.package || point.filteredFrames > 0 || ["search", "exact"].includes(point.kind)) {
             continue;
         }
         const others = Object.entries(point.settings ?? {}).filter(([name]) => name !== setting.name);

@@ -131,6 +131,7 @@ const KINDS = {
     pair: {name: "two settings changed", color: "var(--green)", shape: "square"},
     search: {name: "found by the search", color: "var(--purple)", shape: "triangle"},
     package: {name: "another package", color: "var(--orange)", shape: "cross"},
+    filtered: {name: "denoised", color: "var(--purple)", shape: "cross"},
     exact: {name: "every approximation off", color: "var(--front)", shape: "triangle"},
 };
 

@@ -49,13 +49,12 @@ const ViewInfo& infoOfLayer(const package::LayerInfo& layer) {
         for (const package::LayerInfo& one : package::layerTable()) {
             const bool isNumber =
                 one.format == package::LayerFormat::Integer && one.mean != package::LayerMean::Sum;
-            infos.push_back({one.name,
-                             one.what,
-                             isNumber ? ViewScale::Categories : ViewScale::Linear,
-                             "",
-                             {one.name},
-                             false,
-                             showLayer});
+            infos.push_back({.name = one.name,
+                             .what = one.what,
+                             .scale = isNumber ? ViewScale::Categories : ViewScale::Linear,
+                             .unit = {},
+                             .layers = {one.name},
+                             .evaluate = showLayer});
         }
         return infos;
     }();

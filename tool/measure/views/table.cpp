@@ -42,7 +42,7 @@ const ViewCategory& plain(Mark mark) {
         {kMarkScreen, {"found on screen", {210, 210, 210}}},
         {kMarkUntextured, {"no texture", {100, 100, 100}}},
         {kMarkUngrouped, {"no workgroup known", {110, 110, 110}}},
-        {kMarkEqual, {"equal", {64, 64, 64}}},
+        {kMarkEqual, {"up to 0.0001", {64, 64, 64}}},
         {kMarkNotFinite, {"not finite", {255, 0, 255}}},
     };
     return kPlain.at(mark);
@@ -73,6 +73,10 @@ public:
     void category(std::size_t pixel, std::uint32_t number, std::string_view name, image::Color8 color) {
         values_.marks[pixel] = number;
         values_.categories.try_emplace(number, ViewCategory{std::string(name), color});
+    }
+    void oneOfMany(std::size_t pixel, std::uint32_t number, const std::function<std::string()>& name) {
+        category(pixel, number, name);
+        values_.categories.at(number).isOneOfMany = true;
     }
     std::size_t size() const {
         return values_.marks.size();
@@ -126,6 +130,7 @@ void showMaterials(const ViewInput& input, ViewValues& values) {
 // A set of lobes has the place among those of the scene as its number, so that its colour depends on the
 // scene alone.
 void showKeys(const ViewInput& input, ViewValues& values) {
+    constexpr std::uint32_t kBaseAlone = 0x10000;  // no set of lobes has this number
     Filler filler(input, values);
     std::set<std::uint32_t> known;
     for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
@@ -134,16 +139,21 @@ void showKeys(const ViewInput& input, ViewValues& values) {
     const std::vector<std::uint32_t>& lobes = integersOf(input, "lobes");
     known.insert(lobes.begin(), lobes.end());
     known.erase(kNoLayerValue);
+    known.erase(0);
     const std::vector<std::uint32_t> ordered(known.begin(), known.end());
     for (std::size_t i = 0; i < filler.size(); ++i) {
         if (lobes[i] == kNoLayerValue) {
             filler.mark(i, kMarkSurfaceless);
             continue;
         }
+        if (lobes[i] == 0) {
+            filler.category(i, kBaseAlone, "base alone", {44, 52, 66});
+            continue;
+        }
         const auto place = std::ranges::lower_bound(ordered, lobes[i]) - ordered.begin();
         filler.category(i, static_cast<std::uint32_t>(place), [&] {
             const std::vector<std::string> names = input.package->featureNames(lobes[i]);
-            return names.empty() ? std::string("base alone") : fmt::format("{}", fmt::join(names, " "));
+            return fmt::format("{}", fmt::join(names, " "));
         });
     }
 }
@@ -286,7 +296,7 @@ void showGroups(const ViewInput& input, ViewValues& values) {
             continue;
         }
         const std::pair group(input.dispatchesCases ? shaders[i] : 0U, groups[i]);
-        filler.category(i, numbers.at(group), [&] {
+        filler.oneOfMany(i, numbers.at(group), [&] {
             return input.dispatchesCases ? fmt::format("group {} of shader {}", group.second, group.first)
                                          : fmt::format("group {}", group.second);
         });
@@ -311,7 +321,8 @@ double weightOfFeatures(materials::FeatureMask always, materials::FeatureMask so
     return code.instructions + compiler::kFetchCost * code.fetches;
 }
 
-// What the model says of shading a pixel: of its surface by its material's key, and of the hit by the case.
+// What the model says of shading a pixel: of its surface by its material's key, and of the hits of all
+// effects by their cases.
 void showCost(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
     std::map<std::uint32_t, double> ofMaterial;
@@ -326,15 +337,20 @@ void showCost(const ViewInput& input, ViewValues& values) {
         ofCase.push_back(weightOfFeatures(entry.always, entry.sometimes, input));
     }
     const std::vector<std::uint32_t>& materials = integersOf(input, "material");
-    const auto hits = input.layers.find("hit-shader");
+    std::vector<const std::vector<std::uint32_t>*> hits;  // of each effect
+    for (const auto& [name, layer] : input.layers) {
+        if (name.ends_with(".hit-shader")) {
+            hits.push_back(&layer.integers);
+        }
+    }
     for (std::size_t i = 0; i < filler.size(); ++i) {
         if (materials[i] == kNoLayerValue) {
             filler.mark(i, kMarkSurfaceless);
             continue;
         }
         double weight = ofMaterial[materials[i]];
-        if (hits != input.layers.end()) {
-            const std::uint32_t shader = hits->second.integers[i];
+        for (const std::vector<std::uint32_t>* const shaders : hits) {
+            const std::uint32_t shader = (*shaders)[i];
             weight += shader < ofCase.size() ? ofCase[shader] : 0.0;
         }
         filler.number(i, weight);
@@ -371,6 +387,7 @@ void showFootprint(const ViewInput& input, ViewValues& values) {
 
 // The error of a pixel is that of `glint compare`: the largest of the channels, |a - b| / max(1, |b|).
 void showDifference(const ViewInput& input, ViewValues& values) {
+    constexpr double kEqual = 1e-4;  // strategies differ by no more
     Filler filler(input, values);
     for (std::size_t i = 0; i < filler.size(); ++i) {
         double largest = 0.0;
@@ -386,7 +403,7 @@ void showDifference(const ViewInput& input, ViewValues& values) {
         }
         if (!std::isfinite(largest)) {
             filler.mark(i, kMarkNotFinite);
-        } else if (largest == 0.0) {
+        } else if (largest <= kEqual) {
             filler.mark(i, kMarkEqual);
         } else {
             filler.number(i, largest);
@@ -404,15 +421,24 @@ const std::vector<ViewInfo>& rows() {
          "case",
          {"shader"},
          false,
+         {},
          showShaders},
-        {"key", "set of lobes of the surface's key", Categories, "lobes", {"lobes"}, false, showKeys},
-        {"material", "material of the surface", Categories, "material", {"material"}, false, showMaterials},
+        {"key", "set of lobes of the surface's key", Categories, "lobes", {"lobes"}, false, {}, showKeys},
+        {"material",
+         "material of the surface",
+         Categories,
+         "material",
+         {"material"},
+         false,
+         {},
+         showMaterials},
         {"hit-shader",
          "case that shades what the ray hits",
          Categories,
          "case",
          {"hit-shader"},
          false,
+         {},
          showHitShaders},
         {"fallback",
          "hits that the fallback shades, and hits without a case",
@@ -420,6 +446,7 @@ const std::vector<ViewInfo>& rows() {
          "hits",
          {"hit-shader"},
          false,
+         {},
          showFallbacks},
         {"bucket",
          "workgroup that shades the hit; neighbours in order have different colours",
@@ -427,13 +454,15 @@ const std::vector<ViewInfo>& rows() {
          "workgroup",
          {"workgroup", "hit-shader"},
          false,
+         {},
          showGroups},
         {"divergence",
          "cases that the hit's subgroup runs one after the other",
-         FromZero,
+         FromOne,
          "cases",
          {"cases-run", "hit-shader"},
          false,
+         {},
          showDivergence},
         {"branches",
          "optional features that the lighting pass runs for the pixel's subgroup",
@@ -441,28 +470,39 @@ const std::vector<ViewInfo>& rows() {
          "features",
          {"branches"},
          false,
+         {},
          showBranches},
-        {"rays", "rays that are traced for the pixel", FromZero, "rays a sample", {"rays"}, false, showRays},
+        {"rays",
+         "rays that are traced for the pixel",
+         FromZero,
+         "rays a sample",
+         {"rays"},
+         false,
+         {},
+         showRays},
         {"candidates",
          "triangles whose alpha these rays test",
          FromZero,
          "tests a sample",
          {"candidates"},
          false,
+         {},
          showCandidates},
         {"cost",
-         "instructions that shade surface and hit, by the cost model",
+         "instructions that shade the surface and what its rays hit, by the cost model",
          FromZero,
          "instructions",
-         {"material", "hit-shader"},
+         {"material"},
          false,
+         "hit-shader",
          showCost},
         {"clocks",
          "ticks of the device's clock for lighting, tracing and shading",
-         FromZero,
+         Logarithmic,
          "ticks a sample",
          {"clocks"},
          false,
+         {},
          showClocks},
         {"texture-level",
          "finest level of the surface's textures; below 0 they are magnified",
@@ -470,6 +510,7 @@ const std::vector<ViewInfo>& rows() {
          "levels",
          {"texture-level", "footprint"},
          false,
+         {},
          showTextureLevel},
         {"footprint",
          "width of the pixel on the surface",
@@ -477,6 +518,7 @@ const std::vector<ViewInfo>& rows() {
          "metres",
          {"footprint"},
          false,
+         {},
          showFootprint},
         {"hit-distance",
          "distance that the ray travels",
@@ -484,6 +526,7 @@ const std::vector<ViewInfo>& rows() {
          "metres",
          {"distance"},
          false,
+         {},
          showDistance},
         {"non-finite",
          "samples that are not a number or infinite, and count as black",
@@ -491,6 +534,7 @@ const std::vector<ViewInfo>& rows() {
          "pixels",
          {"non-finite"},
          false,
+         {},
          showNonFinite},
         {"difference",
          "relative error against the picture of --view-reference",
@@ -498,6 +542,7 @@ const std::vector<ViewInfo>& rows() {
          "relative error",
          {},
          true,
+         {},
          showDifference},
     };
     return kRows;

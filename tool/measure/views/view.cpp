@@ -1,6 +1,7 @@
 // Makes views of a renderer's frames.
 #include "base/json.h"
 #include "image/palette.h"
+#include "settings/layer_words.h"
 
 #include <glint/measure/views.h>
 
@@ -49,6 +50,8 @@ void measureNumbers(const ViewValues& values, ViewStatistics& statistics) {
     statistics.mean = sum / static_cast<double>(sorted.size());
     statistics.median = quantile(sorted, 0.5);
     statistics.percentile99 = quantile(sorted, 0.99);
+    statistics.percentileHalf = quantile(sorted, 0.005);
+    statistics.percentile99Half = quantile(sorted, 0.995);
 }
 
 void countCategories(const ViewValues& values, ViewStatistics& statistics) {
@@ -63,9 +66,30 @@ void countCategories(const ViewValues& values, ViewStatistics& statistics) {
     std::ranges::stable_sort(statistics.categories, std::greater(), &ViewStatistics::Category::pixels);
 }
 
+// A few pixels far away from all others would leave these a single colour, so they share the colour of an
+// end.
 std::array<double, 2> scaleOf(ViewScale scale, const ViewStatistics& statistics) {
-    const double first = scale == ViewScale::FromZero ? std::min(0.0, statistics.least) : statistics.least;
-    return {first, statistics.greatest};
+    // Counts keep their few large values, which people look for; a clock is off by more when its thread has
+    // to wait.
+    constexpr double kFar = 2.0;
+    constexpr double kFarOfCounts = 16.0;
+    const double low = statistics.percentileHalf;
+    const double high = statistics.percentile99Half;
+    const bool isLogarithmic = scale == ViewScale::Logarithmic;
+    const bool isFarAbove = isLogarithmic
+                                ? statistics.greatest > kFar * high
+                                : statistics.greatest - low > kFarOfCounts * (high - low) && high > low;
+    const double last = isFarAbove ? high : statistics.greatest;
+    switch (scale) {
+        case ViewScale::FromZero:
+            return {std::min(0.0, statistics.least), last};
+        case ViewScale::FromOne:
+            return {std::min(1.0, statistics.least), last};
+        case ViewScale::Logarithmic:
+            return {kFar * statistics.least < low ? low : statistics.least, last};
+        default:
+            return {statistics.least, last};
+    }
 }
 
 Diagnostic missingLayer(const ViewChoice& choice, std::string_view layer) {
@@ -95,6 +119,30 @@ Result<package::Effect> effectOf(const ViewChoice& choice, const Package& packag
         "--effects decides which effects the package has");
 }
 
+// Reads the layer ViewInfo::everySource of each effect with rays.
+Status readEverySource(const ViewChoice& choice, Renderer& renderer, ViewInput& input) {
+    const std::string_view wanted = choice.info->everySource;
+    if (wanted.empty()) {
+        return okStatus();
+    }
+    for (const package::EffectInfo& effect : input.package->effects()) {
+        if (effect.kind != package::EffectKind::Rays) {
+            continue;
+        }
+        const std::string name = package::layerName(*package::findLayer(wanted), effect.name, 0);
+        if (std::ranges::find(input.package->layers(), name, &package::PackageLayer::name) ==
+            input.package->layers().end()) {
+            return missingLayer(choice, name);
+        }
+        Result<LayerValues> values = renderer.readLayer(name);
+        if (!values) {
+            return values.error();
+        }
+        input.layers.insert_or_assign(name, std::move(*values));
+    }
+    return okStatus();
+}
+
 }  // namespace
 
 std::string ViewChoice::name() const {
@@ -116,6 +164,9 @@ std::vector<std::string> layersFor(const ViewChoice& view) {
     for (const std::string_view layer : view.info->layers) {
         const bool ofSource = package::hasSources(*package::findLayer(layer)) && !view.source.empty();
         words.push_back(ofSource ? view.source + "." + std::string(layer) : std::string(layer));
+    }
+    if (!view.info->everySource.empty()) {
+        words.push_back(std::string(view.info->everySource) + compiler::kOptionalLayer);
     }
     return words;
 }
@@ -178,6 +229,9 @@ Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput in
         input.height = values->height;
         input.layers.insert_or_assign(std::string(wanted), std::move(*values));
     }
+    if (Status read = readEverySource(choice, renderer, input); !read) {
+        return read.error();
+    }
     if (choice.info->readsReference) {
         if (input.picture == nullptr || input.reference == nullptr) {
             return makeError(
@@ -211,7 +265,7 @@ base::Json toJson(const View& view) {
                               {"color", fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2])},
                               {"pixels", one.pixels}});
     }
-    constexpr std::string_view kScales[] = {"categories", "linear", "linear", "logarithmic"};
+    constexpr std::string_view kScales[] = {"categories", "linear", "linear", "linear", "logarithmic"};
     return {{"name", view.choice.name()},
             {"what", std::string(view.choice.info->what)},
             {"unit", std::string(view.choice.info->unit)},

@@ -7,6 +7,7 @@
 #include <glint/environment.h>
 #include <glint/measure/hit_times.h>
 #include <glint/measure/observer.h>
+#include <glint/measure/picture_filter.h>
 #include <glint/measure/render_settings.h>
 #include <glint/measure/settings.h>
 #include <glint/package.h>
@@ -55,7 +56,8 @@ struct MountedPackage {
 // A configuration that is ready to render.
 class Mount {
 public:
-    // Has the errors of Renderer::render().
+    // With a filter, renders the frames before the picture, too; the times are those of the picture and of
+    // its filter. Has the errors of Renderer::render().
     Result<Exposure> expose(std::uint32_t seed) const;
     // Renders with other samples and without measuring times.
     Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
@@ -77,9 +79,12 @@ public:
 private:
     friend class BenchBed;
     Status addSplit(FrameOptions frame, Exposure& exposure) const;
+    Status showFramesBefore(FrameOptions frame) const;
 
     std::shared_ptr<MountedPackage> package_;
     std::shared_ptr<Renderer> renderer_;
+    std::shared_ptr<PictureFilter> filter_;  // null: none
+    std::uint32_t frames_ = 1;               // that the filter sees, with the picture
     FrameOptions frame_;
     std::uint32_t samples_ = 1;
     bool ordersHits_ = false;
@@ -110,6 +115,9 @@ public:
     // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
     // ones. Has the errors of each of these steps.
     Result<Mount> mount(const compiler::Configuration& configuration, const std::string& package = {});
+    // Does the same for pictures that are the last of `frames` frames, which a filter has seen. `filter` is
+    // read during the call.
+    Result<Mount> mountFiltered(const FilterMaker& filter, std::uint32_t frames);
 
     Context& context() {
         return *context_;
@@ -144,6 +152,7 @@ private:
              compiler::ModuleCache* cache, compiler::CacheStore* store)
         : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache), store_(store) {}
     Status settleChoices();
+    Result<Mount> mount(compiler::Settings render);
     Result<std::shared_ptr<MountedPackage>> mountPackage(const compiler::Settings& arguments);
     Result<std::shared_ptr<const scene_view::TextureSet>> textures(const compiler::Settings& settings,
                                                                    const Package& package);

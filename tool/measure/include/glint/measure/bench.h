@@ -8,6 +8,7 @@
 
 #include <glint/measure/bed.h>
 #include <glint/measure/observer.h>
+#include <glint/measure/picture_filter.h>
 #include <glint/measure/report.h>
 
 #include <cstdint>
@@ -33,6 +34,9 @@ struct BenchSettings {
     std::int64_t batch = 8;
     std::string depth = "search";   // singles, pairs or search
     std::vector<std::string> only;  // settings; empty: all
+    // Measures the default's picture filtered, alone and after 15 frames, and one of 64 samples beside it.
+    // Null: no filter.
+    const FilterMaker* filter = nullptr;
     std::string metric = "trimmed";
     // The reference has all of light transport. Otherwise it shares the default's effects, bounces and
     // whatever else decides how light travels.

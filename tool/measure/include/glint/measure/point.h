@@ -25,11 +25,17 @@ double valueOf(ErrorMetric metric, const image::ImageErrors& errors);
 // Returns the error in a measure that adds up over independent causes: that of RMSE is its square.
 double additive(ErrorMetric metric, double error);
 
-enum class PointKind { Default, Single, Pair, Search, Package, Exact };
+enum class PointKind { Default, Single, Pair, Search, Package, Exact, Filtered };
 std::string_view nameOf(PointKind kind);
+// Whether settings alone tell a point from the default.
+constexpr bool isOfSettings(PointKind kind) {
+    return kind != PointKind::Package && kind != PointKind::Filtered;
+}
 
 // The name under which the passes of all cases count together: "shade <case>".
 inline constexpr std::string_view kShadeCases = "shade cases";
+// The name of the time of a filter.
+inline constexpr std::string_view kFilterPass = "denoise";
 
 // Each list has one entry for each round, in the order of rounds. Times are milliseconds of the device.
 struct BenchPoint {
@@ -37,6 +43,7 @@ struct BenchPoint {
     compiler::Configuration configuration;  // what differs from the default
     std::string name;                       // for people
     std::string package;                    // folder of one that was given; empty: compiled
+    std::uint32_t filteredFrames = 0;       // pictures that a filter has seen, with the last; 0: no filter
     std::vector<double> times;              // of a picture
     std::vector<double> ratios;             // to the default in the same round
     std::map<std::string, std::vector<double>> passes;

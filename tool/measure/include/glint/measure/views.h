@@ -30,6 +30,7 @@ enum class ViewScale : std::uint8_t {
     Categories,   // each pixel is of a kind
     Linear,       // from the least to the greatest number
     FromZero,     // from 0 to the greatest
+    FromOne,      // from 1 to the greatest, for counts of which 1 is the best
     Logarithmic,  // from the least to the greatest number above 0
 };
 
@@ -46,6 +47,8 @@ struct ViewInfo {
     // about.
     std::vector<std::string_view> layers;
     bool readsReference = false;  // it compares with another picture
+    // A further layer that it reads of every source of light that has it; empty if there is none.
+    std::string_view everySource{};
     void (*evaluate)(const ViewInput& input, ViewValues& values) = nullptr;
 };
 
@@ -66,7 +69,8 @@ struct ViewChoice {
 };
 // Returns no value if the text names no view.
 std::optional<ViewChoice> parseView(std::string_view text);
-// Returns the words that CompileSettings::layers needs for the view.
+// Returns the words that CompileSettings::layers needs for the view. A package without effects may lack those
+// that end with a question mark.
 std::vector<std::string> layersFor(const ViewChoice& view);
 
 // What a view reads. What it points to must outlive it.
@@ -80,14 +84,17 @@ struct ViewInput {
     std::vector<std::string> materialNames;                                      // by number; may be empty
     const materials::MaterialModel* model = &materials::builtinMaterialModel();  // of the scene's materials
     const LinearImage* picture = nullptr;
-    const LinearImage* reference = nullptr;     // if the view compares, of equal size
-    std::map<std::string, LayerValues> layers;  // by ViewInfo::layers
+    const LinearImage* reference = nullptr;  // if the view compares, of equal size
+    // By ViewInfo::layers; those of ViewInfo::everySource by their whole names, such as
+    // "reflection.hit-shader".
+    std::map<std::string, LayerValues> layers;
 };
 
 // A kind of pixels.
 struct ViewCategory {
     std::string name;
     image::Color8 color{};
+    bool isOneOfMany = false;  // The legend counts those, and names none of them.
 };
 
 // The values of the pixels of a view, row by row from the top.
@@ -111,8 +118,11 @@ struct ViewStatistics {
     double mean = 0.0;
     double median = 0.0;
     double percentile99 = 0.0;
+    double percentileHalf = 0.0;    // that of 0.5 %
+    double percentile99Half = 0.0;  // that of 99.5 %
     // Pixels in equal steps from scale[0] to scale[1]; of a logarithmic view the steps are equal in the
-    // logarithm.
+    // logarithm. The first and the last step have what is beyond the scale, too: it leaves out the outermost
+    // half percent of the numbers where these are far from the others.
     std::array<double, 2> scale{};
     std::vector<std::uint64_t> histogram;
 };
