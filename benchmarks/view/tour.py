@@ -77,9 +77,9 @@ def main():
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--glint", default=str(ROOT / "build/release/bin/glint"))
-    parser.add_argument("--size", default="480x540")
-    parser.add_argument("--spp", default="16")
-    parser.add_argument("--pixel", default="240 330", help="of the window, which is explained")
+    parser.add_argument("--size", default="440x500")
+    parser.add_argument("--spp", default="8")
+    parser.add_argument("--pixel", default="220 305", help="of the window, which is explained")
     arguments = parser.parse_args()
     with Screen() as screen, tempfile.TemporaryDirectory() as work:
         script = pathlib.Path(work) / "tour"
