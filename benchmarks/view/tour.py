@@ -25,11 +25,10 @@ TOUR = """
     wait complete
     picture view_settings.png
     click find
-    key ctrl+a
-    key BackSpace
+    key ctrl+a BackSpace
     key F1
     picture view_help.png
-    key Escape
+    key F1
     # why a pixel looks as it does
     click {pixel}
     wait control tab Pixel
@@ -44,9 +43,10 @@ TOUR = """
     picture view_passes.png
     click tab Settings
     # two settings beside each other
-    key b
+    click find
+    type weight
+    key Return b
     wait complete
-    wait control skip-below
     number skip-below 0.2
     move 20 20
     wait complete

@@ -157,10 +157,14 @@ void Window::handleInput(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     // Keys belong to a list that is open: Escape closes it and nothing else.
     const bool hasList = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    if (!io.WantTextInput && !hasList) {
-        for (const KeyPress& press : keys_) {
+    const bool isTyping = io.WantTextInput || hasList;
+    for (const KeyPress& press : keys_) {
+        const bool isFunction = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;
+        if (!isTyping || isFunction) {
             handleKey(press);
         }
+    }
+    if (!isTyping) {
         fly(seconds);
     }
     keys_.clear();

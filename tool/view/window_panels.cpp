@@ -64,17 +64,6 @@ void drawField(const std::string& label, const std::string& text) {
     ImGui::TextWrapped("%s", text.c_str());
 }
 
-// Draws a text that ends with dots where it does not fit.
-void drawFitted(const std::string& text) {
-    const float width = ImGui::GetContentRegionAvail().x;
-    std::string shown = text;
-    while (!shown.empty() && ImGui::CalcTextSize(shown.c_str()).x > width) {
-        shown.resize(shown.size() - std::min<std::size_t>(shown.size(), 4));
-        shown += shown.empty() ? "" : "...";
-    }
-    ImGui::TextUnformatted(shown.c_str());
-}
-
 bool beginFields(const char* name) {
     if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) {
         return false;
@@ -200,7 +189,7 @@ void Window::drawStatus(float width, float y, float height) {
         const ImVec4 color =
             progress.empty() && error_ ? ImVec4(1.0F, 0.55F, 0.35F, 1.0F) : ImVec4(0.65F, 0.75F, 0.85F, 1.0F);
         ImGui::PushStyleColor(ImGuiCol_Text, color);
-        drawFitted(note);
+        fittedText(note);
         ImGui::PopStyleColor();
     }
     ImGui::End();
@@ -534,10 +523,10 @@ void Window::followPanel() {
 }
 
 void Window::drawHelp() {
-    const ImVec2 middle{0.5F * static_cast<float>(area_.width) / pixelScale_,
-                        0.5F * static_cast<float>(area_.height) / pixelScale_};
-    ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
-    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, {2.0F * middle.x, 2.0F * middle.y});
+    // Over the panel, too, where the picture is narrow.
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, size);
     ImGui::Begin("Keys and mouse", &showsHelp_,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
