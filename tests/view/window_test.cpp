@@ -456,6 +456,30 @@ TEST_F(WindowTest, ShowsViewsAndLayers) {
     EXPECT_TRUE(report("after.json").at("error").is_null());
 }
 
+// Each view and layer of the list is shown, from a package that has all layers.
+TEST_F(WindowTest, ShowsEveryViewAndLayer) {
+    writeTinyScene(path(""));
+    view("wait complete\nreport list.json\nquit\n", {"--size", "100x400"});
+    std::string script = "wait complete\nkey l\n";
+    std::string layers;
+    const std::vector<std::string> looks = report("list.json").at("looks");
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        script += "click " + looks[i] + "\nwait complete\nreport " + std::to_string(i) + ".json\n";
+        if (looks[i].starts_with("layer ")) {
+            layers += (layers.empty() ? "" : ",") + looks[i].substr(looks[i].find(' ') + 1);
+        }
+    }
+    view(script + "quit\n", {"--size", "100x400", "--layers", layers});
+    EXPECT_GT(looks.size(), 40U);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        const Json shown = report(std::to_string(i) + ".json");
+        EXPECT_EQ(shown.at("look"), looks[i].substr(looks[i].find(' ') + 1));
+        EXPECT_EQ(shown.at("lookNote"), "") << looks[i];
+        EXPECT_FALSE(shown.at("view").is_null()) << looks[i];
+        EXPECT_TRUE(shown.at("error").is_null()) << shown.at("error");
+    }
+}
+
 // A scene and a pack change under the window. What does not compile leaves the picture as it was.
 TEST_F(WindowTest, FollowsFilesThatChange) {
     const fs::path scene = writeTinyScene(path(""));

@@ -1,5 +1,7 @@
 #include "view/look.h"
 
+#include "settings/layer_words.h"
+
 #include <glint/measure/layer_view.h>
 
 #include <algorithm>
@@ -33,9 +35,28 @@ bool hasLayer(const std::vector<std::string>& names, std::string_view word) {
     });
 }
 
-std::vector<std::string> wordsFor(const Look& look) {
+// Returns the layers that the view needs, and those that it reads where a package may have them.
+std::vector<std::string> wordsFor(const measure::ViewChoice& view, const Build& build) {
+    std::vector<std::string> words;
+    for (std::string& word : measure::layersFor(view)) {
+        if (!word.ends_with(compiler::kOptionalLayer)) {
+            words.push_back(std::move(word));
+            continue;
+        }
+        word.pop_back();
+        if (hasLayer(build.layers, word)) {
+            words.push_back(std::move(word));
+        }
+    }
+    return words;
+}
+
+std::vector<std::string> wordsFor(const Look& look, const Build& build) {
+    if (look.isPicture()) {
+        return {};
+    }
     return look.view.empty() ? std::vector<std::string>{layerWord(look.layer)}
-                             : measure::layersFor(*measure::parseView(look.view));
+                             : wordsFor(*measure::parseView(look.view), build);
 }
 
 // The effects whose rays a view may be about; the empty name if it is about none.
@@ -67,7 +88,7 @@ std::vector<Look> looksOf(const Build& build) {
         }
         for (const std::string& source : sourcesOf(view, build)) {
             const measure::ViewChoice choice{&view, source};
-            const std::vector<std::string> words = measure::layersFor(choice);
+            const std::vector<std::string> words = wordsFor(choice, build);
             if (std::ranges::all_of(words, [&](const auto& word) { return hasLayer(build.layers, word); })) {
                 looks.push_back({choice.name(), ""});
             }
@@ -93,7 +114,7 @@ bool askFor(const Look& look, const Build& build, compiler::Settings& settings) 
         there.push_back(layer.name);
     }
     bool isNew = false;
-    for (std::string& word : look.isPicture() ? std::vector<std::string>() : wordsFor(look)) {
+    for (std::string& word : wordsFor(look, build)) {
         std::vector<std::string>& layers = settings.compile.layers;
         if (!hasLayer(there, word) && std::ranges::find(layers, word) == layers.end()) {
             layers.push_back(std::move(word));

@@ -525,6 +525,10 @@ Status Window::writeReport(const std::string& file) {
     for (std::size_t i = 0; i < one.history.names().size(); ++i) {
         passes[one.history.names()[i]] = one.history.median(i);
     }
+    base::Json looks = base::Json::array();
+    for (const Look& look : one.picture.isReady() ? looksOf(one.picture.build()) : std::vector<Look>()) {
+        looks.push_back((look.view.empty() ? "layer " : "view ") + look.name());
+    }
     const double samples = static_cast<double>(sampleTimes_.size());
     const double seconds = std::accumulate(sampleTimes_.begin(), sampleTimes_.end(), 0.0);
     const bool isReady = one.picture.isReady();
@@ -555,6 +559,7 @@ Status Window::writeReport(const std::string& file) {
         {"sceneBytes", isReady ? one.picture.gpuScene().allocatedBytes() : 0},
         {"passes", passes},
         {"look", look_.name()},
+        {"looks", looks},
         {"view", view_ ? measure::toJson(*view_) : base::Json(nullptr)},
         {"lookNote", lookNote_},
         {"pick", picked},
