@@ -120,12 +120,12 @@ std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look
     const float height = chosen.isPicture() ? 0.0F : 0.5F * ImGui::GetContentRegionAvail().y;
     ImGui::BeginChild("looks", {0.0F, height});
     row({}, "picture", "picture");
-    bool inLayers = false;
-    ImGui::TextDisabled("views");
+    std::string above;
     for (const Look& look : looksOf(build)) {
-        if (look.view.empty() && !inLayers) {
-            ImGui::TextDisabled("layers");
-            inLayers = true;
+        const std::string title = look.view.empty() ? "layers" : "views";
+        if (above != title) {
+            ImGui::TextDisabled("%s", title.c_str());
+            above = title;
         }
         row(look, look.name(), (look.view.empty() ? "layer " : "view ") + look.name());
     }
