@@ -2,9 +2,10 @@
 """Measures the window: frames a second, the time to the first picture, and memory over many frames.
 
     benchmarks/view/measure.py SCENE [--glint FILE] [--size WxH] [--runs N] [--frames N] [--only rate,start,memory]
+                               [--options WORDS]
 
 Everything runs in an Xvfb of its own, with caches of its own: GLINT_CACHE and MESA_SHADER_CACHE_DIR are folders that
-are made for it. Prints Markdown.
+are made for it. WORDS are further options of glint view. Prints Markdown.
 
 rate     samples a second while the picture accumulates, over the last 32 of 64 samples: without the panel, with it,
          and while the chart of passes waits for each pass
@@ -65,7 +66,7 @@ class Window:
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         start = time.monotonic()
         process = subprocess.Popen([self.arguments.glint, "view", str(self.arguments.scene.resolve()), "--script",
-                                    "script", "--verbose"] + more, cwd=self.folder, env=environment, text=True,
+                                    "script", "--verbose"] + more + self.arguments.options.split(), cwd=self.folder, env=environment, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         first = None
         said = []
@@ -130,14 +131,16 @@ def measure_memory(window, caches):
         wait frames 400
     """
     laps = max(1, window.arguments.frames // 1000)
-    script = f"wait frames 100\n{lap}report early.json\n{lap * laps}report late.json\nquit\n"
-    window.run(script, ["--size", "64x36", "--spp", "65536", "--no-panel"], caches)
-    early = window.report("early.json")
-    late = window.report("late.json")
-    print("| memory | early | late |\n|---|---|---|")
-    for label, key in (("frames drawn", "frames"), ("samples", "samplesDrawn"), ("resident bytes", "residentBytes"),
-                       ("bytes of the renderer", "rendererBytes"), ("bytes of the scene", "sceneBytes")):
-        print(f"| {label} | {early[key]:,} | {late[key]:,} |")
+    script = f"wait frames 100\n{lap}"  # what is made once is there after it
+    script += "".join(f"report {number}.json\n{lap}" for number in range(laps)) + f"report {laps}.json\nquit\n"
+    size = ["--size", "64x36", "--no-panel"]
+    window.run("wait complete\nquit\n", size + ["--spp", "1"], caches)  # fills the caches
+    window.run(script, size + ["--spp", "65536"], caches)
+    print("| frames | samples | resident, KiB | renderer, KiB | scene, KiB |\n|---|---|---|---|---|")
+    for number in range(laps + 1):
+        report = window.report(f"{number}.json")
+        sizes = " | ".join(f"{report[key] // 1024:,}" for key in ("residentBytes", "rendererBytes", "sceneBytes"))
+        print(f"| {report['frames']:,} | {report['samplesDrawn']:,} | {sizes} |")
 
 
 def main():
@@ -148,6 +151,7 @@ def main():
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--frames", type=int, default=10000)
     parser.add_argument("--only", default="rate,start,memory")
+    parser.add_argument("--options", default="")
     arguments = parser.parse_args()
     with Screen() as screen, tempfile.TemporaryDirectory() as folder:
         window = Window(arguments, screen.display, pathlib.Path(folder))

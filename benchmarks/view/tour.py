@@ -25,11 +25,10 @@ TOUR = """
     wait complete
     picture view_settings.png
     click find
-    key ctrl+a
-    key BackSpace
+    key ctrl+a BackSpace
     key F1
     picture view_help.png
-    key Escape
+    key F1
     # why a pixel looks as it does
     click {pixel}
     wait control tab Pixel
@@ -44,9 +43,11 @@ TOUR = """
     picture view_passes.png
     click tab Settings
     # two settings beside each other
-    key b
+    click find
+    type weight
+    key Return b
     wait complete
-    choose effects none
+    number skip-below 0.2
     move 20 20
     wait complete
     click Measure
@@ -59,7 +60,7 @@ TOUR = """
     click Compare
     # a view and a layer
     click tab Views
-    click view reflection.hit-distance
+    click view reflection.hit-shader
     move 20 20
     wait complete
     picture view_views.png
@@ -76,9 +77,9 @@ def main():
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--glint", default=str(ROOT / "build/release/bin/glint"))
-    parser.add_argument("--size", default="480x540")
-    parser.add_argument("--spp", default="16")
-    parser.add_argument("--pixel", default="240 330", help="of the window, which is explained")
+    parser.add_argument("--size", default="440x500")
+    parser.add_argument("--spp", default="8")
+    parser.add_argument("--pixel", default="220 305", help="of the window, which is explained")
     arguments = parser.parse_args()
     with Screen() as screen, tempfile.TemporaryDirectory() as work:
         script = pathlib.Path(work) / "tour"

@@ -294,6 +294,8 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
         number time 0.5
         wait complete
         picture moved.png
+        key p
+        wait complete
         click Rest
         wait complete
         picture rest.png
@@ -328,6 +330,9 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
         drop other/scene.gltf
         wait complete
         report dropped.json
+        drop missing.gltf
+        wait failed
+        report missing.json
         drop script
         wait failed
         report refused.json
@@ -356,6 +361,13 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
     constexpr std::uint32_t kHigh = 580;
     EXPECT_GT(shareDiffering(image("moved.png"), image("rest.png"), 0, kNarrow, kHigh), 0.02);
 
+    // The command beside a screenshot makes the moment of the animation again.
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    fs::rename(path("scene-001.png"), path("shot.png"));
+    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
+    ASSERT_EQ(again.exit, 0) << readText(path("scene-001.sh")) << again.err;
+    EXPECT_EQ(shareDiffering(image("shot.png"), image("scene-001.png")), 0.0);
+
     EXPECT_TRUE(has(report("compare.json").at("difference"), "FLIP")) << report("compare.json");
     const LinearImage a = image("a.png");
     const LinearImage b = image("b.png");
@@ -372,6 +384,8 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
     EXPECT_FALSE(report("third.json").at("compares"));
     EXPECT_EQ(report("dropped.json").at("scene"), "other/scene.gltf");
     EXPECT_TRUE(report("dropped.json").at("error").is_null());
+    EXPECT_TRUE(has(report("missing.json").at("error").get<std::string>(), "missing.gltf"));
+    EXPECT_EQ(report("missing.json").at("scene"), "other/scene.gltf");
     EXPECT_TRUE(has(report("refused.json").at("error").get<std::string>(), "window-drop"));
 }
 

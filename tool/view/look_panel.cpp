@@ -96,7 +96,8 @@ void drawLegend(const measure::View& view, const Look& look) {
                                                   packed(all[i].category.color));
         ImGui::Dummy({side, side});
         ImGui::SameLine();
-        ImGui::TextWrapped("%5.1f %%  %s", percentOf(all[i].pixels, view), all[i].category.name.c_str());
+        fittedText(fmt::format("{:5.1f} %  {}", percentOf(all[i].pixels, view), all[i].category.name));
+        tip(all[i].category.name);
     }
     if (count < all.size()) {
         ImGui::TextDisabled("%zu more", all.size() - count);

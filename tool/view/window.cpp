@@ -210,7 +210,7 @@ void Window::report(const Diagnostic& message) {
 void Window::fail(const Diagnostic& error) {
     error_ = error;
     report(error);
-    status_ = "failed, the picture stays as it was: " + error.message;
+    status_ = "failed, the picture stays as it was";
 }
 
 void Window::say(const std::string& text) {
@@ -335,6 +335,7 @@ Status Window::takeBuilds() {
         Status installed = *done ? install(i, std::move(**done)) : Status((*done).error());
         sides_[i]->buildFailed = !installed;
         if (installed) {
+            opening_.reset();
             error_.reset();
             continue;
         }
@@ -342,6 +343,7 @@ Status Window::takeBuilds() {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }
+        keepScene();
         fail(installed.error());
     }
     return okStatus();

@@ -104,6 +104,8 @@ private:
     void handleMouse();
     void fly(double seconds);
     void openFile(const std::string& file);
+    void keepScene();
+    void showTitle();
     void pickAt(double x, double y);
     void measureExposure();
     void saveScreenshot();
@@ -141,6 +143,12 @@ private:
     std::unique_ptr<Script> script_;
 
     std::string scene_;
+    // What was shown while another scene is being opened.
+    struct Opening {
+        std::string scene;
+        std::vector<compiler::Settings> wanted;  // of the sides that are there
+    };
+    std::optional<Opening> opening_;
     std::size_t edited_ = 0;  // side
     Shown shown_ = Shown::First;
     float border_ = 0.5F;

@@ -53,7 +53,9 @@ std::uint64_t residentBytes() {
 
 void Window::onKey(int key, int action, int modifiers) {
     wakes_ = 4;
-    if (action == GLFW_PRESS || (action == GLFW_REPEAT && key != GLFW_KEY_SPACE)) {
+    // A key that is held while the window is busy must not do its work several times. Steps may repeat.
+    const bool steps = key == GLFW_KEY_LEFT_BRACKET || key == GLFW_KEY_RIGHT_BRACKET;
+    if (action == GLFW_PRESS || (action == GLFW_REPEAT && steps)) {
         keys_.push_back({key, modifiers});
     }
 }
@@ -71,9 +73,11 @@ void Window::onDrop(const std::string& file) {
 void Window::openFile(const std::string& file) {
     const std::string extension = lowerExtension(file);
     if (extension == ".gltf" || extension == ".glb") {
+        opening_ = Opening{scene_, {}};
         scene_ = file;
         for (std::unique_ptr<Side>& one : sides_) {
             if (one) {
+                opening_->wanted.push_back(one->wanted);
                 one->wanted.camera.clear();
                 one->wanted.package.clear();
                 one->wanted.variant.clear();
@@ -81,7 +85,7 @@ void Window::openFile(const std::string& file) {
         }
         poses_ = plays_ = false;
         time_ = 0.0;
-        glfwSetWindowTitle(window_, ("glint view: " + scene_).c_str());
+        showTitle();
         say("opening " + file);
     } else if (extension == ".hdr" || extension == ".exr") {
         for (std::unique_ptr<Side>& one : sides_) {
@@ -102,6 +106,29 @@ void Window::openFile(const std::string& file) {
             order(i, false);
         }
     }
+}
+
+// Goes back to the scene that is shown, because another one could not be opened.
+void Window::keepScene() {
+    if (!opening_) {
+        return;
+    }
+    scene_ = opening_->scene;
+    auto wanted = opening_->wanted.begin();
+    for (std::size_t i = 0; i < kPictures; ++i) {
+        if (sides_[i] && wanted != opening_->wanted.end()) {
+            builder_->cancel(i);
+            sides_[i]->buildFailed = false;
+            sides_[i]->wanted = *wanted;
+            sides_[i]->ordered = *wanted++;
+        }
+    }
+    opening_.reset();
+    showTitle();
+}
+
+void Window::showTitle() {
+    glfwSetWindowTitle(window_, ("glint view: " + scene_).c_str());
 }
 
 void Window::fly(double seconds) {
@@ -130,10 +157,14 @@ void Window::handleInput(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     // Keys belong to a list that is open: Escape closes it and nothing else.
     const bool hasList = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    if (!io.WantTextInput && !hasList) {
-        for (const KeyPress& press : keys_) {
+    const bool isTyping = io.WantTextInput || hasList;
+    for (const KeyPress& press : keys_) {
+        const bool isFunction = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;
+        if (!isTyping || isFunction) {
             handleKey(press);
         }
+    }
+    if (!isTyping) {
         fly(seconds);
     }
     keys_.clear();
@@ -428,8 +459,11 @@ void Window::saveScreenshot() {
                                       ? std::string("all")
                                       : std::to_string(animationChoice_);
     compiler::Settings settings = picture.settings();
+    // A camera that frames everything was placed for another moment.
+    const bool isPlaced = poses_ && scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera);
+    const std::string camera = isPlaced ? scene_view::toText(camera_.placed()) : camera_.name();
     const std::vector<std::string> words =
-        shotWords(settings, {scene_, file.string(), camera_.name(), static_cast<double>(exposure_),
+        shotWords(settings, {scene_, file.string(), camera, static_cast<double>(exposure_),
                              poses_ ? fmt::format("{}", time_) : std::string(), animation, shown.view,
                              shown.layer.empty() ? std::string() : layerWord(shown.layer)});
     fs::path command = file;

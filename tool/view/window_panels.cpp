@@ -68,7 +68,7 @@ bool beginFields(const char* name) {
     if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) {
         return false;
     }
-    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 9.0F);
+    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 11.0F);
     ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
@@ -188,7 +188,9 @@ void Window::drawStatus(float width, float y, float height) {
         ImGui::SameLine(0.0F, 20.0F);
         const ImVec4 color =
             progress.empty() && error_ ? ImVec4(1.0F, 0.55F, 0.35F, 1.0F) : ImVec4(0.65F, 0.75F, 0.85F, 1.0F);
-        ImGui::TextColored(color, "%s", note.c_str());
+        ImGui::PushStyleColor(ImGuiCol_Text, color);
+        fittedText(note);
+        ImGui::PopStyleColor();
     }
     ImGui::End();
     ImGui::PopStyleVar(2);
@@ -458,6 +460,11 @@ void Window::drawSidePanel(float x, float width, float height) {
     drawHead();
     drawCompare();
     ImGui::Separator();
+    if (error_) {
+        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.55F, 0.35F, 1.0F});
+        ImGui::TextWrapped("%s", toString(*error_).c_str());
+        ImGui::PopStyleColor();
+    }
     if (ImGui::BeginTabBar("tabs")) {
         const auto tab = [this](const char* name, const std::string& title, const auto& draw) {
             const ImGuiTabItemFlags flags =
@@ -516,10 +523,10 @@ void Window::followPanel() {
 }
 
 void Window::drawHelp() {
-    const ImVec2 middle{0.5F * static_cast<float>(area_.width) / pixelScale_,
-                        0.5F * static_cast<float>(area_.height) / pixelScale_};
-    ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
-    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, {2.0F * middle.x, 2.0F * middle.y});
+    // Over the panel, too, where the picture is narrow.
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, size);
     ImGui::Begin("Keys and mouse", &showsHelp_,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);
