@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Measures what each layer of docs/layers.md costs in time, and its bytes.
 
-    benchmarks/measure_layers.py SCENE [--size 160x90] [--rounds N] [--effects LIST] [--strategy NAME]
+    benchmarks/measure_layers.py SCENE [--size 160x90] [--rounds N] [--effects LIST] [--strategy NAME] [OPTION]...
 
 Compiles a package for each layer, and one with no layer, and lets `glint bench` measure all of them: each round renders
 a picture with every package, in random order, and divides its device time by that of the package without layers. What a
 layer is computed from comes with it, and its time and bytes count. Layers of light are those of one source each.
+Further options, such as --tracer, go to `glint compile` and `glint bench`.
 Prints Markdown: the median of the rounds' ratios and its interval, and bytes a pixel.
 """
 import argparse
@@ -43,8 +44,8 @@ def main():
     parser.add_argument("--rounds", type=int, default=11, help="default 11")
     parser.add_argument("--effects", default="auto,indirect-diffuse", help="default auto,indirect-diffuse")
     parser.add_argument("--strategy", default="visibility", help="default visibility")
-    arguments = parser.parse_args()
-    same = ["--effects", arguments.effects, "--strategy", arguments.strategy]
+    arguments, further = parser.parse_known_args()
+    same = ["--effects", arguments.effects, "--strategy", arguments.strategy, *further]
     with tempfile.TemporaryDirectory(prefix="glint-layers-") as name:
         work = pathlib.Path(name)
         run("compile", arguments.scene, "-o", work / "all", "--layers", "all", *same)

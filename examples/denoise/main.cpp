@@ -46,7 +46,7 @@ constexpr std::string_view kUsage =
     "  --many N              samples of the picture that they are compared with (64)\n"
     "  --reference N         samples of the picture that is taken for the truth (1024); 0: no comparison\n"
     "  --turn DEGREES        the camera turns by that much from frame to frame (0)\n"
-    "  --alpha X             least weight of a new frame, 0 to 1 (0.04)\n"
+    "  --share X             least weight of a new frame, 0 to 1 (0.04)\n"
     "  --exposure EV         stops, of PNG files (0)\n"
     "  --wavelets N          passes of the wavelet, 0 to 8 (5)\n"
     "  --validation on|off   with the validation layers; their messages are an error (off)\n"
@@ -87,7 +87,7 @@ bool setOption(Options& options, std::string_view name, const std::string& value
     if (name == "--exposure") {
         return glint::compiler::parseReal(value, -32.0, 32.0, options.exposure);
     }
-    if (name == "--alpha") {
+    if (name == "--share") {
         double alpha = 0.0;
         const bool valid = glint::compiler::parseReal(value, 0.0, 1.0, alpha);
         options.filter.alpha = static_cast<float>(alpha);

@@ -47,6 +47,29 @@ TEST_F(Bench, MeasuresPacks) {
     }
 }
 
+// A denoised picture is a row beside the default's and one of 64 samples; it is no offer of settings.
+TEST_F(Bench, MeasuresTheFilterOfTheExample) {
+    const Outcome outcome =
+        bench({"--only", "denoise", "--rounds", "2", "--depth", "singles", "--max-error", "1000"});
+    if (outcome.exit == 2) {
+        EXPECT_NE(outcome.err.find("GLINT_BUILD_EXAMPLES"), std::string::npos) << outcome.err;
+        return;
+    }
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Json report = outcome.json();
+    expectFits("bench", report);
+    ASSERT_NE(point(report, "spp 64"), nullptr);
+    for (const auto& [name, frames] : {std::pair("denoised", 1), std::pair("denoised, frame 16", 16)}) {
+        const Json* const one = point(report, name);
+        ASSERT_NE(one, nullptr);
+        EXPECT_EQ(one->at("kind"), "filtered");
+        EXPECT_EQ(one->at("filteredFrames"), frames);
+        EXPECT_FALSE(one->at("sameImage").get<bool>());
+        EXPECT_TRUE(has(one->at("passes").dump(), "denoise"));
+        EXPECT_NE(report.at("advice").at("point"), one->at("id"));
+    }
+}
+
 TEST_F(Bench, WritesWhatItMeasured) {
     const Outcome outcome = bench({"--only", "spp,strategy,max-roughness,ssr", "--max-error", "1000"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;

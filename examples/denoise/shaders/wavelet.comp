@@ -10,20 +10,33 @@ layout(binding = 3, rgba32f) uniform writeonly image2DArray result;
 
 const float kKernel[3] = float[3](3.0 / 8.0, 1.0 / 4.0, 1.0 / 16.0);
 
-// The variance over 3 x 3 pixels, which alone would be noisy (equation 5).
-float smoothVariance(ivec2 pixel, int s) {
-    float sum = 0.0;
+// The variance over 3 x 3 pixels, which alone would be noisy (equation 5), of the same surface: a pixel at its border
+// has a high variance that is no noise of its neighbours.
+void smoothVariances(ivec2 pixel, vec4 guide, vec2 slope, out float variances[kSignals]) {
     float weights = 0.0;
+    for (int s = 0; s < kSignals; ++s) {
+        variances[s] = 0.0;
+    }
     for (int y = -1; y <= 1; ++y) {
         for (int x = -1; x <= 1; ++x) {
-            if (isInside(pixel + ivec2(x, y))) {
-                float weight = (x == 0 ? 0.5 : 0.25) * (y == 0 ? 0.5 : 0.25);
-                sum += weight * texelFetch(lights, ivec3(pixel + ivec2(x, y), s), 0).w;
-                weights += weight;
+            ivec2 tap = pixel + ivec2(x, y);
+            if (!isInside(tap)) {
+                continue;
             }
+            float weight = (x == 0 ? 0.5 : 0.25) * (y == 0 ? 0.5 : 0.25);
+            if (x != 0 || y != 0) {
+                vec2 edge = edgeDistance(guide, texelFetch(guides, tap, 0), slope, vec2(x, y));
+                weight *= exp(-edge.x - kSigmaNormal * edge.y);
+            }
+            for (int s = 0; s < kSignals; ++s) {
+                variances[s] += weight * texelFetch(lights, ivec3(tap, s), 0).w;
+            }
+            weights += weight;
         }
     }
-    return sum / weights;
+    for (int s = 0; s < kSignals; ++s) {
+        variances[s] /= weights;
+    }
 }
 
 void main() {
@@ -45,13 +58,15 @@ void main() {
     vec3 own[kSignals]; // light
     float factors[kSignals];
     float powers[kSignals];
+    float variances[kSignals];
+    smoothVariances(pixel, guide, surface.xy, variances);
     for (int s = 0; s < kSignals; ++s) {
         vec4 light = texelFetch(lights, ivec3(pixel, s), 0);
         sums[s] = vec4(middle * light.rgb, middle * middle * light.w);
         weights[s] = middle;
         own[s] = light.rgb;
         // Where there is no noise, nothing that differs takes part.
-        factors[s] = 1.0 / (kSigmaLight * sqrt(max(smoothVariance(pixel, s), 0.0)) + 1e-6);
+        factors[s] = 1.0 / (kSigmaLight * sqrt(max(variances[s], 0.0)) + 1e-6);
         powers[s] = normalPower(s, surface.z);
     }
     for (int y = -2; y <= 2; ++y) {

@@ -6,6 +6,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -36,6 +40,22 @@ TEST(ViewTable, RowsNameLayersThatExist) {
             EXPECT_NE(package::findLayer(layer), nullptr) << layer;
         }
     }
+}
+
+TEST(ViewTable, TheDocumentShowsEachView) {
+    const std::filesystem::path folder = std::filesystem::path(GLINT_SOURCE_DIR) / "docs";
+    std::ifstream file(folder / "views.md");
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    std::uintmax_t bytes = 0;
+    for (const ViewInfo& view : viewTable()) {
+        std::string picture = "images/views_" + std::string(view.name) + ".png";
+        std::ranges::replace(picture, '-', '_');
+        EXPECT_NE(text.find("![](" + picture + ")"), std::string::npos) << picture;
+        EXPECT_NE(text.find("`" + std::string(view.name) + "`"), std::string::npos) << view.name;
+        ASSERT_TRUE(std::filesystem::exists(folder / picture)) << "scripts/views.py makes " << picture;
+        bytes += std::filesystem::file_size(folder / picture);
+    }
+    EXPECT_LT(bytes, 600'000U) << "keep the pictures small";
 }
 
 TEST(ViewTable, NamesAreReadWithTheirEffect) {
