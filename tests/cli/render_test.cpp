@@ -71,6 +71,29 @@ TEST_F(RenderCommand, LayersAreInTheFileOfThePicture) {
     EXPECT_NE(none.err.find("--bounces"), std::string::npos) << none.err;
 }
 
+TEST_F(RenderCommand, ViewsAreDrawnWithALegendAndTheirNumbers) {
+    const Outcome drawn = render("a.png", {"--view", "rays", "--stats", "stats.json"});
+    ASSERT_EQ(drawn.exit, 0) << drawn.err;
+    const nlohmann::json stats = nlohmann::json::parse(readText(path("stats.json")));
+    EXPECT_EQ(stats["view"]["name"], "rays");
+    EXPECT_EQ(stats["view"]["numbers"], stats["width"].get<int>() * stats["height"].get<int>());
+    const Result<LinearImage> picture = image::readImage(path("a.png"));
+    ASSERT_TRUE(picture.ok());
+    EXPECT_EQ(picture->width, stats["width"]);
+    EXPECT_GT(picture->height, stats["height"]);
+
+    ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
+    const Outcome lacking = render("b.png", {"--view", "rays", "--package", "package"});
+    EXPECT_EQ(lacking.exit, 1);
+    EXPECT_NE(lacking.err.find("--layers rays"), std::string::npos) << lacking.err;
+    // The legend makes the view higher than a picture, which is found before anything is drawn.
+    const Outcome sized =
+        render("b.png", {"--view", "difference", "--view-reference", path("a.png").string()});
+    EXPECT_EQ(sized.exit, 1);
+    EXPECT_NE(sized.err.find("[view-reference]"), std::string::npos) << sized.err;
+    EXPECT_FALSE(std::filesystem::exists(path("b.png")));
+}
+
 class GalleryPackage : public RenderCommand {
 protected:
     // Renders the gallery from a package compiled with `options`, and compares the strategies.

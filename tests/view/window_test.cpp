@@ -294,6 +294,8 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
         number time 0.5
         wait complete
         picture moved.png
+        key p
+        wait complete
         click Rest
         wait complete
         picture rest.png
@@ -328,6 +330,9 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
         drop other/scene.gltf
         wait complete
         report dropped.json
+        drop missing.gltf
+        wait failed
+        report missing.json
         drop script
         wait failed
         report refused.json
@@ -356,6 +361,13 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
     constexpr std::uint32_t kHigh = 580;
     EXPECT_GT(shareDiffering(image("moved.png"), image("rest.png"), 0, kNarrow, kHigh), 0.02);
 
+    // The command beside a screenshot makes the moment of the animation again.
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    fs::rename(path("scene-001.png"), path("shot.png"));
+    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
+    ASSERT_EQ(again.exit, 0) << readText(path("scene-001.sh")) << again.err;
+    EXPECT_EQ(shareDiffering(image("shot.png"), image("scene-001.png")), 0.0);
+
     EXPECT_TRUE(has(report("compare.json").at("difference"), "FLIP")) << report("compare.json");
     const LinearImage a = image("a.png");
     const LinearImage b = image("b.png");
@@ -372,7 +384,100 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
     EXPECT_FALSE(report("third.json").at("compares"));
     EXPECT_EQ(report("dropped.json").at("scene"), "other/scene.gltf");
     EXPECT_TRUE(report("dropped.json").at("error").is_null());
+    EXPECT_TRUE(has(report("missing.json").at("error").get<std::string>(), "missing.gltf"));
+    EXPECT_EQ(report("missing.json").at("scene"), "other/scene.gltf");
     EXPECT_TRUE(has(report("refused.json").at("error").get<std::string>(), "window-drop"));
+}
+
+// Views and layers are shown in place of the picture: those of `glint render`, to the pixel. The packages
+// lack their layers until they are chosen.
+TEST_F(WindowTest, ShowsViewsAndLayers) {
+    writeTinyScene(path(""));
+    view(R"(
+        wait complete
+        picture before.png
+        key l
+        click view material
+        wait complete
+        picture material.png
+        report material.json
+        key p
+        wait complete
+        click view reflection.hit-distance
+        wait complete
+        report distance.json
+        click layer depth
+        wait complete
+        picture depth.png
+        report depth.json
+        key p
+        wait complete
+        # moves under the camera
+        drag 100 60 130 70
+        wait complete
+        picture moved.png
+        key l
+        wait complete
+        report after.json
+        quit
+    )",
+         {"--size", "160x400"});
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    constexpr std::uint32_t kSide = 160;
+    constexpr std::uint32_t kHigh = 400;
+    const Json material = report("material.json");
+    EXPECT_EQ(material.at("look"), "material");
+    EXPECT_EQ(material.at("settings").at("layers"), "material");
+    EXPECT_EQ(material.at("view").at("categories").size(), 3U) << material.at("view");
+    // The view is below its label, and the file of the screenshot has its legend below it.
+    fs::rename(path("scene-001.png"), path("shot.png"));
+    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
+    ASSERT_EQ(again.exit, 0) << readText(path("scene-001.sh")) << again.err;
+    const LinearImage rendered = image("scene-001.png");
+    EXPECT_GT(rendered.height, kHigh);
+    EXPECT_EQ(shareDiffering(image("shot.png"), rendered), 0.0);
+    EXPECT_LT(shareDiffering(image("material.png"), rendered, 0, kSide, kHigh), 0.04);
+    EXPECT_GT(shareDiffering(image("material.png"), image("before.png"), 0, kSide, kHigh), 0.5);
+
+    EXPECT_EQ(report("distance.json").at("lookNote"), "");
+    EXPECT_GT(report("distance.json").at("view").at("numbers"), 0);
+    const Json depth = report("depth.json");
+    EXPECT_EQ(depth.at("look"), "depth");
+    EXPECT_NEAR(depth.at("view").at("greatest").get<double>(), 6.0, 0.01);  // the wall
+    EXPECT_GT(shareDiffering(image("depth.png"), image("moved.png"), 0, kSide, kHigh), 0.1);
+    // The layer is in an OpenEXR file.
+    EXPECT_TRUE(has(readText(path("scene-002.sh")), "--layers depth")) << readText(path("scene-002.sh"));
+    fs::rename(path("scene-002.exr"), path("shot.exr"));
+    const Outcome layers = runProgram({"sh", "scene-002.sh"}, {{"PATH", search}});
+    ASSERT_EQ(layers.exit, 0) << layers.err;
+    EXPECT_TRUE(has(readText(path("shot.exr")), "depth.Z"));
+    EXPECT_EQ(readText(path("shot.exr")), readText(path("scene-002.exr")));
+    EXPECT_EQ(report("after.json").at("look"), "");
+    EXPECT_TRUE(report("after.json").at("error").is_null());
+}
+
+// Each view and layer of the list is shown, from a package that has all layers.
+TEST_F(WindowTest, ShowsEveryViewAndLayer) {
+    writeTinyScene(path(""));
+    view("wait complete\nreport list.json\nquit\n", {"--size", "100x400"});
+    std::string script = "wait complete\nkey l\n";
+    std::string layers;
+    const std::vector<std::string> looks = report("list.json").at("looks");
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        script += "click " + looks[i] + "\nwait complete\nreport " + std::to_string(i) + ".json\n";
+        if (looks[i].starts_with("layer ")) {
+            layers += (layers.empty() ? "" : ",") + looks[i].substr(looks[i].find(' ') + 1);
+        }
+    }
+    view(script + "quit\n", {"--size", "100x400", "--layers", layers});
+    EXPECT_GT(looks.size(), 40U);
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+        const Json shown = report(std::to_string(i) + ".json");
+        EXPECT_EQ(shown.at("look"), looks[i].substr(looks[i].find(' ') + 1));
+        EXPECT_EQ(shown.at("lookNote"), "") << looks[i];
+        EXPECT_FALSE(shown.at("view").is_null()) << looks[i];
+        EXPECT_TRUE(shown.at("error").is_null()) << shown.at("error");
+    }
 }
 
 // A scene and a pack change under the window. What does not compile leaves the picture as it was.

@@ -231,6 +231,24 @@ Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movem
     return camera;
 }
 
+// Returns what --view difference compares with, if there is any.
+Result<std::optional<LinearImage>> readReference(const RenderArguments& arguments) {
+    if (arguments.viewReference.empty()) {
+        return std::optional<LinearImage>();
+    }
+    Result<LinearImage> read = image::readImage(arguments.viewReference);
+    if (!read) {
+        return read.error();
+    }
+    if (read->width != arguments.renderer.width || read->height != arguments.renderer.height) {
+        return makeError("view-reference", arguments.viewReference,
+                         fmt::format("has {}x{} pixels, and the picture {}x{}", read->width, read->height,
+                                     arguments.renderer.width, arguments.renderer.height),
+                         "render both with the same --size");
+    }
+    return std::optional<LinearImage>(std::move(*read));
+}
+
 // Does all the work between reading the scene and writing the files.
 Status render(const Console& console, const RenderArguments& asked, gltf::Scene& scene,
               const gltf::SceneList& scenes, const compiler::PlanOptions& plan, RenderReport& report) {
@@ -240,6 +258,11 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     if (!movement) {
         return movement.error();
     }
+    const Result<std::optional<LinearImage>> compared = readReference(arguments);
+    if (!compared) {
+        return compared.error();
+    }
+    const std::optional<LinearImage>& reference = *compared;
     scene_view::SceneViewData data = measure::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
     const Result<scene_view::CameraChoice> camera = chooseView(*movement, arguments, scene, data, aspect);
@@ -298,7 +321,13 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
                                   "has no VK_KHR_pipeline_executable_properties: there are no statistics",
                                   "leave out --pipeline-statistics, or use another device"});
     }
-    const FrameSetup setup{arguments, options, environment->get(), *movement, camera->view, aspect};
+    const FrameSetup setup{arguments,
+                           options,
+                           environment->get(),
+                           *movement,
+                           camera->view,
+                           aspect,
+                           reference ? &*reference : nullptr};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = measure::checkValidation(console, **context); !valid) {

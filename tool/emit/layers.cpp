@@ -253,7 +253,9 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
         } else if (entries.size() == before && !isOptional) {
             return makeError("layer-effect", where,
                              fmt::format("nothing in the package has the layer {}", word),
-                             "add an effect with rays by --effects, and --bounces for layers of bounces");
+                             named.front()->subject == LayerSubject::Bounce
+                                 ? "add an effect with rays by --effects, and --bounces"
+                                 : "add an effect with rays by --effects");
         }
     }
     if (!entries.empty() && settings.passes != package::Passes::Frame) {

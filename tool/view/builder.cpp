@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "emit/compile.h"
 #include "emit/host.h"
+#include "emit/layers.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "materials/packs.h"
@@ -21,6 +22,25 @@
 #include <utility>
 
 namespace glint::view {
+
+namespace {
+
+// Returns the names of all layers that the package may have.
+std::vector<std::string> possibleLayers(const compiler::Plan& plan, compiler::CompileSettings settings) {
+    std::vector<std::string> names;
+    for (const package::LayerInfo& info : package::layerTable()) {
+        settings.layers = {std::string(info.name)};
+        const Result<std::vector<package::LayerEntry>> entries = compiler::resolveLayers(plan, settings, "");
+        for (const package::LayerEntry& entry : entries ? *entries : std::vector<package::LayerEntry>()) {
+            if (entry.layer == info.number) {
+                names.push_back(compiler::layerNameOf(entry, *plan.model));
+            }
+        }
+    }
+    return names;
+}
+
+}  // namespace
 
 bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b) {
     return a.variant == b.variant && std::ranges::equal(a.files, b.files, [](const auto& x, const auto& y) {
@@ -201,6 +221,9 @@ Status Builder::makePackage(Build& build) {
         }
         build.plan = compiler::makePlan(scenes.materials(), scenes.primitives(), build.options);
         build.package = std::make_shared<const Package>(std::move(*given));
+        for (const package::PackageLayer& layer : build.package->layers()) {
+            build.layers.push_back(layer.name);
+        }
     } else {
         say("compiling " + build.scene->path);
         compiler::CompileSettings compile =
@@ -233,6 +256,7 @@ Status Builder::makePackage(Build& build) {
             }
         }
         build.plan = std::move(compiled->plan);
+        build.layers = possibleLayers(build.plan, compile);
     }
     build.compileMs = base::millisecondsSince(start);
     build.facts = measure::factsOf(settings, *build.scene, build.options);

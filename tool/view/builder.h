@@ -32,6 +32,7 @@ struct Build {
     std::shared_ptr<const scene_view::TextureSet> textures;
     // By shader ID: SPIR-V instructions of the shader of that case alone; 0: it has none, or it is unknown.
     std::vector<std::uint32_t> instructions;
+    std::vector<std::string> layers;  // names of those that its packages may have (PackageLayer::name)
     compiler::BenchFacts facts;       // of the scene, about settings that change nothing
     std::vector<std::string> inputs;  // files to watch
     // Wall clock.

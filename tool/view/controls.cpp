@@ -28,6 +28,15 @@ void closeByEscape() {
     }
 }
 
+void fittedText(const std::string& text) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    std::string shown = text;
+    for (std::size_t length = text.size(); length > 0 && ImGui::CalcTextSize(shown.c_str()).x > width;) {
+        shown = text.substr(0, --length) + "...";
+    }
+    ImGui::TextUnformatted(shown.c_str());
+}
+
 void tip(const std::string& text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
         ImGui::BeginTooltip();

@@ -34,6 +34,9 @@ private:
 // Closes the list that is open if Escape is pressed. Call it in the list.
 void closeByEscape();
 
+// Draws a text that ends with dots where the line has no room for it.
+void fittedText(const std::string& text);
+
 // Shows a text while the mouse is over ImGui's last item.
 void tip(const std::string& text);
 

@@ -1,6 +1,8 @@
 #include "view/display.h"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 namespace glint::view {
 
@@ -109,6 +111,48 @@ Result<bool> Display::resize(std::uint32_t width, std::uint32_t height) {
     return true;
 }
 
+// Makes the image wait for all commands so far, in its layout.
+void Display::prepare(VkCommandBuffer commands) {
+    recordBarrier(commands);
+    if (fresh_) {
+        recordLayout(commands, image_.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
+        fresh_ = false;
+    }
+}
+
+Status Display::keep(const image::DisplayImage& picture) {
+    constexpr std::size_t kPixelBytes = 4;
+    const std::size_t bytes = picture.pixels.size() * kPixelBytes;
+    if (kept_.bytes() < bytes) {
+        Result<HostBuffer> made = HostBuffer::create(context_, bytes);
+        if (!made) {
+            return made.error();
+        }
+        kept_ = std::move(*made);
+    }
+    std::uint8_t* to = kept_.data();
+    for (const std::array<std::uint8_t, 3>& pixel : picture.pixels) {
+        to = std::ranges::copy(pixel, to).out;
+        *to++ = 0xFF;
+    }
+    keptWidth_ = picture.width;
+    keptHeight_ = picture.height;
+    return okStatus();
+}
+
+bool Display::recordCopy(VkCommandBuffer commands) {
+    if (kept_.bytes() == 0 || image_.width != keptWidth_ || image_.height != keptHeight_) {
+        return false;
+    }
+    prepare(commands);
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {keptWidth_, keptHeight_, 1};
+    vkCmdCopyBufferToImage(commands, kept_.handle(), image_.image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    recordBarrier(commands);
+    return true;
+}
+
 void Display::record(VkCommandBuffer commands, VkImageView first, VkImageView second,
                      const DisplayOptions& options) {
     VkDescriptorSet set = sets_[next_];
@@ -127,11 +171,7 @@ void Display::record(VkCommandBuffer commands, VkImageView first, VkImageView se
     }
     vkUpdateDescriptorSets(context_.handles().device, static_cast<std::uint32_t>(writes.size()),
                            writes.data(), 0, nullptr);
-    recordBarrier(commands);
-    if (fresh_) {
-        recordLayout(commands, image_.image, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL);
-        fresh_ = false;
-    }
+    prepare(commands);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_);
     vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_, 0, 1, &set, 0, nullptr);
     vkCmdPushConstants(commands, layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(options), &options);

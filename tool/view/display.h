@@ -2,6 +2,7 @@
 // for the display.
 #pragma once
 
+#include "image/png.h"
 #include "view/vulkan.h"
 
 #include <cstdint>
@@ -9,7 +10,8 @@
 
 namespace glint::view {
 
-enum class Shown : std::uint32_t { First, Second, Wipe, Difference, Raw };
+enum class Shown : std::uint32_t { First, Second, Wipe, Difference };
+inline constexpr std::uint32_t kShownCount = 4;
 
 // The layout is that of shaders/display.comp.
 struct DisplayOptions {
@@ -17,9 +19,6 @@ struct DisplayOptions {
     Shown shown = Shown::First;
     float border = 0.5F;  // with Wipe: the share of the width that shows the first picture
     float gain = 8.0F;    // with Difference: factor of the difference of encoded values
-    float low = 0.0F;     // with Raw: the values that are shown as black and as white
-    float high = 1.0F;
-    std::uint32_t channels = 3;  // with Raw: 1 to 4; 1 is shown as grey
 };
 
 class Display {
@@ -35,6 +34,12 @@ public:
     // be null unless it is shown. The pass waits for all commands before it, and all after it for the pass.
     void record(VkCommandBuffer commands, VkImageView first, VkImageView second,
                 const DisplayOptions& options);
+    // Keeps a picture of the host's, which is encoded for the display, for recordCopy(). No frame may be in
+    // flight.
+    Status keep(const image::DisplayImage& picture);
+    // Records that the image shows the kept picture, with the same dependencies. Returns false, and records
+    // nothing, if there is none of the image's size.
+    bool recordCopy(VkCommandBuffer commands);
     const DeviceImage& image() const {
         return image_;
     }
@@ -42,11 +47,15 @@ public:
 private:
     explicit Display(Context& context) : context_(context) {}
     Status createPipeline();
+    void prepare(VkCommandBuffer commands);
 
     // Sets are used in turn, as those of frames in flight must not change.
     static constexpr std::uint32_t kSets = 4;
     Context& context_;
     DeviceImage image_;
+    HostBuffer kept_;
+    std::uint32_t keptWidth_ = 0;  // pixels
+    std::uint32_t keptHeight_ = 0;
     bool fresh_ = true;  // the image has no layout yet
     VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;

@@ -24,6 +24,9 @@ std::vector<std::string> shotWords(const compiler::Settings& settings, const Sho
         if (!settings.package.empty() && row.stage == compiler::SettingStage::Package) {
             continue;  // the package has decided
         }
+        if (row.name == "layers") {
+            continue;  // files of pictures hold none
+        }
         if (row.values.form == compiler::ValueForm::Switch) {
             words.push_back("--" + std::string(row.name));
         } else {
@@ -39,6 +42,8 @@ std::vector<std::string> shotWords(const compiler::Settings& settings, const Sho
         {"host", settings.compile.host},
         {"camera", options.camera},
         {"time", options.time},
+        {"view", options.view},
+        {"layers", options.layers},
     };
     for (const auto& [name, value] : files) {
         // Profiles are only for policies that count hits, whose word names the file.

@@ -16,6 +16,8 @@ struct ShotOptions {
     double exposure = 0.0;  // stops
     std::string time;       // seconds; empty: the rest pose
     std::string animation;  // with `time`: what --animation takes
+    std::string view{};     // what --view takes; empty: the picture itself
+    std::string layers{};   // what --layers takes, with an `output` that holds layers; empty: none
 };
 
 // Returns the words, from "glint" on. `settings` has the size of the picture and the number of its samples.

@@ -12,6 +12,72 @@ Diagnostic callError(const char* call, VkResult result) {
                                                     : "use a smaller window, or another device");
 }
 
+namespace {
+
+// Allocates memory of the first type that has all these properties. Vulkan has one for each use here.
+VkResult allocate(const Context& context, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties,
+                  VkDeviceMemory& memory) {
+    VkPhysicalDeviceMemoryProperties types{};
+    vkGetPhysicalDeviceMemoryProperties(context.handles().physicalDevice, &types);
+    std::uint32_t type = 0;
+    while (type < types.memoryTypeCount &&
+           ((needs.memoryTypeBits >> type & 1U) == 0 ||
+            (types.memoryTypes[type].propertyFlags & properties) != properties)) {
+        ++type;
+    }
+    VkMemoryAllocateInfo allocation{};
+    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
+    allocation.allocationSize = needs.size;
+    allocation.memoryTypeIndex = type;
+    return vkAllocateMemory(context.handles().device, &allocation, nullptr, &memory);
+}
+
+}  // namespace
+
+HostBuffer& HostBuffer::operator=(HostBuffer&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(buffer_, other.buffer_);
+    std::swap(memory_, other.memory_);
+    std::swap(data_, other.data_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+}
+
+HostBuffer::~HostBuffer() {
+    if (device_ != VK_NULL_HANDLE) {
+        vkDestroyBuffer(device_, buffer_, nullptr);
+        vkFreeMemory(device_, memory_, nullptr);
+    }
+}
+
+Result<HostBuffer> HostBuffer::create(const Context& context, std::size_t bytes) {
+    HostBuffer made;
+    made.device_ = context.handles().device;
+    made.bytes_ = bytes;
+    VkBufferCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
+    info.size = bytes;
+    info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    VkResult result = vkCreateBuffer(made.device_, &info, nullptr, &made.buffer_);
+    if (result != VK_SUCCESS) {
+        return callError("vkCreateBuffer", result);
+    }
+    VkMemoryRequirements needs{};
+    vkGetBufferMemoryRequirements(made.device_, made.buffer_, &needs);
+    result =
+        allocate(context, needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                 made.memory_);
+    if (result == VK_SUCCESS) {
+        result = vkBindBufferMemory(made.device_, made.buffer_, made.memory_, 0);
+    }
+    void* data = nullptr;
+    if (result == VK_SUCCESS) {
+        result = vkMapMemory(made.device_, made.memory_, 0, VK_WHOLE_SIZE, 0, &data);
+    }
+    made.data_ = static_cast<std::uint8_t*>(data);
+    return result == VK_SUCCESS ? Result<HostBuffer>(std::move(made)) : callError("vkAllocateMemory", result);
+}
+
 DeviceImage& DeviceImage::operator=(DeviceImage&& other) noexcept {
     std::swap(image, other.image);
     std::swap(view, other.view);
@@ -43,26 +109,15 @@ Result<DeviceImage> DeviceImage::create(const Context& context, std::uint32_t wi
     info.mipLevels = 1;
     info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    info.usage =
+        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
     VkResult result = vkCreateImage(made.device_, &info, nullptr, &made.image);
     if (result != VK_SUCCESS) {
         return callError("vkCreateImage", result);
     }
     VkMemoryRequirements needs{};
     vkGetImageMemoryRequirements(made.device_, made.image, &needs);
-    VkPhysicalDeviceMemoryProperties memory{};
-    vkGetPhysicalDeviceMemoryProperties(context.handles().physicalDevice, &memory);
-    std::uint32_t type = 0;
-    while (type < memory.memoryTypeCount &&
-           ((needs.memoryTypeBits >> type & 1U) == 0 ||
-            (memory.memoryTypes[type].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT) == 0)) {
-        ++type;
-    }
-    VkMemoryAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocation.allocationSize = needs.size;
-    allocation.memoryTypeIndex = type;
-    result = vkAllocateMemory(made.device_, &allocation, nullptr, &made.memory_);
+    result = allocate(context, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, made.memory_);
     if (result == VK_SUCCESS) {
         result = vkBindImageMemory(made.device_, made.image, made.memory_, 0);
     }

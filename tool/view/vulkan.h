@@ -7,6 +7,7 @@
 
 #include <vulkan/vulkan.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -15,7 +16,7 @@ namespace glint::view {
 // Returns the error "vulkan-call" for a call that failed.
 Diagnostic callError(const char* call, VkResult result);
 
-// An image of RGBA with 8 bits that shaders write and that is copied to the window.
+// An image of RGBA with 8 bits that shaders and copies write and that is copied to the window.
 class DeviceImage {
 public:
     // Leaves the image in the layout UNDEFINED.
@@ -37,6 +38,38 @@ public:
 private:
     VkDevice device_ = VK_NULL_HANDLE;
     VkDeviceMemory memory_ = VK_NULL_HANDLE;
+};
+
+// A buffer in the host's memory that is copied to the device.
+class HostBuffer {
+public:
+    static Result<HostBuffer> create(const Context& context, std::size_t bytes);
+    HostBuffer() = default;
+    HostBuffer(const HostBuffer&) = delete;
+    HostBuffer& operator=(const HostBuffer&) = delete;
+    HostBuffer(HostBuffer&& other) noexcept {
+        *this = std::move(other);
+    }
+    HostBuffer& operator=(HostBuffer&& other) noexcept;
+    ~HostBuffer();
+
+    VkBuffer handle() const {
+        return buffer_;
+    }
+    // Its memory, which the device sees without further calls.
+    std::uint8_t* data() const {
+        return data_;
+    }
+    std::size_t bytes() const {
+        return bytes_;
+    }
+
+private:
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkBuffer buffer_ = VK_NULL_HANDLE;
+    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    std::uint8_t* data_ = nullptr;
+    std::size_t bytes_ = 0;
 };
 
 // Records that all commands so far are done, and visible, before all later ones.

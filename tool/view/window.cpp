@@ -25,6 +25,7 @@ constexpr double kRestMs = 120.0;         // a size that stays this long is rend
 constexpr double kPollMs = 100.0;         // between two looks at the files
 constexpr std::size_t kMessages = 200;    // that are kept
 constexpr std::uint32_t kLeastSize = 16;  // pixels each way of a picture
+constexpr double kLookMs = 100.0;         // between two views of a picture that is not complete
 
 Window& windowOf(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
@@ -70,11 +71,17 @@ Status Window::openDevice() {
     // What packages may need is there from the start, where the device has it.
     const HeadlessOptions asked = options;
     std::optional<Result<std::unique_ptr<Context>>> made;
-    for (const auto& [fetch, half] :
-         {std::pair(true, true), std::pair(false, true), std::pair(true, false)}) {
+    constexpr unsigned kClock = 1;
+    constexpr unsigned kHalf = 2;
+    constexpr unsigned kFetch = 4;
+    constexpr unsigned kEverything = 7;
+    for (unsigned tried :
+         {kEverything, kHalf | kClock, kFetch | kClock, kFetch | kHalf, kClock, kHalf, kFetch}) {
         // The validation layers of Debian 12 don't know position fetch.
-        options.positionFetch = asked.positionFetch || (fetch && asked.validation == Validation::Off);
-        options.shaderFloat16 = asked.shaderFloat16 || half;
+        tried &= asked.validation == Validation::Off ? kEverything : ~kFetch;
+        options.positionFetch = asked.positionFetch || (tried & kFetch) != 0;
+        options.shaderFloat16 = asked.shaderFloat16 || (tried & kHalf) != 0;
+        options.shaderClock = asked.shaderClock || (tried & kClock) != 0;
         made = Context::createHeadless(options);
         if (*made || made->error().id != "device-features") {
             break;
@@ -203,7 +210,7 @@ void Window::report(const Diagnostic& message) {
 void Window::fail(const Diagnostic& error) {
     error_ = error;
     report(error);
-    status_ = "failed, the picture stays as it was: " + error.message;
+    status_ = "failed, the picture stays as it was";
 }
 
 void Window::say(const std::string& text) {
@@ -231,7 +238,8 @@ bool Window::isComplete() const {
         }
     }
     const bool isSettled = base::millisecondsSince(resized_) > 2.0 * kRestMs;
-    return (sides_[0]->picture.isReady() || error_) && isSettled && !wantsShot_ && !exposureIsNew_;
+    return (sides_[0]->picture.isReady() || error_) && isSettled && !wantsShot_ && !exposureIsNew_ &&
+           isLookCurrent();
 }
 
 // A size that the panel asks for is there once the window has it.
@@ -327,6 +335,7 @@ Status Window::takeBuilds() {
         Status installed = *done ? install(i, std::move(**done)) : Status((*done).error());
         sides_[i]->buildFailed = !installed;
         if (installed) {
+            opening_.reset();
             error_.reset();
             continue;
         }
@@ -334,6 +343,7 @@ Status Window::takeBuilds() {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }
+        keepScene();
         fail(installed.error());
     }
     return okStatus();
@@ -643,7 +653,48 @@ Status Window::frame() {
     return drawFrame(frame);
 }
 
+bool Window::isLookCurrent() const {
+    const Picture& picture = sides_[edited_]->picture;
+    return look_.isPicture() || !picture.isReady() || picture.samples() == 0 ||
+           (viewedFrame_ == picture.recordedIn() && viewedSide_ == edited_ && viewedLook_ == look_ &&
+            viewedExposure_ == exposure_);
+}
+
+// Makes the view or layer that is shown follow the picture's last sample.
+Status Window::followLook() {
+    if (isLookCurrent()) {
+        return okStatus();
+    }
+    Picture& picture = side().picture;
+    const bool isFirst = !view_ || viewedLook_ != look_ || viewedSide_ != edited_;
+    if (!isFirst && !picture.isComplete() && base::millisecondsSince(viewed_) < kLookMs) {
+        return okStatus();
+    }
+    if (Status waited = presenter_->waitForFrames(); !waited) {
+        return waited;
+    }
+    finishSamples();
+    Result<measure::View> made = makeLook(look_, picture, static_cast<double>(exposure_));
+    viewedLook_ = look_;
+    viewedSide_ = edited_;
+    viewedFrame_ = picture.recordedIn();
+    viewedExposure_ = exposure_;
+    viewed_ = base::Clock::now();
+    wakes_ = std::max(wakes_, 2);
+    if (!made) {
+        view_.reset();
+        lookNote_ = toString(made.error());
+        return okStatus();
+    }
+    lookNote_.clear();
+    view_ = std::move(*made);
+    return display_->keep(view_->picture);
+}
+
 Status Window::drawFrame(const Presenter::Frame& frame) {
+    if (Status followed = followLook(); !followed) {
+        return followed;
+    }
     bool sampled = false;
     if (measuresPasses_ && !isComplete()) {
         if (Status waited = presenter_->waitForFrames(); !waited) {
@@ -667,8 +718,10 @@ Status Window::drawFrame(const Presenter::Frame& frame) {
         ++samples_;
     }
     Presenter::Area area;
-    if (sides_[0]->picture.isReady() && display_->image().width > 0 &&
-        sides_[0]->picture.samples() + samples_ > 0) {
+    if (!look_.isPicture() && view_ && display_->recordCopy(frame.commands)) {
+        area = area_;
+    } else if (sides_[0]->picture.isReady() && display_->image().width > 0 &&
+               sides_[0]->picture.samples() + samples_ > 0) {
         const bool hasSecond =
             sides_[1] && sides_[1]->picture.isReady() && sides_[1]->picture.recordedIn() > 0;
         DisplayOptions options;
@@ -699,7 +752,7 @@ Status Window::drawFrame(const Presenter::Frame& frame) {
     if (autoExposure_ && sides_[0]->picture.isReady() && (isNew || exposureIsNew_)) {
         measureExposure();
     }
-    if (wantsShot_ && complete) {
+    if (wantsShot_ && complete && isLookCurrent()) {
         saveScreenshot();
     }
     return okStatus();

@@ -8,6 +8,7 @@
 #include "view/controls.h"
 #include "view/display.h"
 #include "view/interface.h"
+#include "view/look.h"
 #include "view/passes_panel.h"
 #include "view/pick.h"
 #include "view/picture.h"
@@ -73,6 +74,8 @@ private:
     Status openDevice();
     Status frame();
     Status drawFrame(const Presenter::Frame& frame);
+    Status followLook();
+    bool isLookCurrent() const;
     void finishSamples();
     Status takeBuilds();
     Status install(std::size_t side, Build build);
@@ -101,13 +104,17 @@ private:
     void handleMouse();
     void fly(double seconds);
     void openFile(const std::string& file);
+    void keepScene();
+    void showTitle();
     void pickAt(double x, double y);
     void measureExposure();
     void saveScreenshot();
+    Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
     void compare(bool on);
     void measureDifference();
     void togglePlaying();
     void nextCamera();
+    void chooseLook(const Look& look);
     Status writeReport(const std::string& file);
 
     // --- window_panels.cpp ---
@@ -117,6 +124,7 @@ private:
     void drawCompare();
     void drawAnimation();
     void drawPixel();
+    void drawLooksTab();
     void drawScene();
     void drawMessages();
     void drawStatus(float width, float y, float height);
@@ -135,6 +143,12 @@ private:
     std::unique_ptr<Script> script_;
 
     std::string scene_;
+    // What was shown while another scene is being opened.
+    struct Opening {
+        std::string scene;
+        std::vector<compiler::Settings> wanted;  // of the sides that are there
+    };
+    std::optional<Opening> opening_;
     std::size_t edited_ = 0;  // side
     Shown shown_ = Shown::First;
     float border_ = 0.5F;
@@ -159,6 +173,16 @@ private:
     bool poses_ = false;  // shows a moment rather than the rest pose
     double time_ = 0.0;
     float playSpeed_ = 1.0F;
+
+    Look look_;                          // of the side whose settings are changed
+    std::optional<measure::View> view_;  // as it is shown; no value: the picture itself is shown
+    std::string lookNote_;               // why it is not shown
+    // What `view_` was made from.
+    Look viewedLook_;
+    std::size_t viewedSide_ = 0;
+    std::uint64_t viewedFrame_ = 0;  // 0: none
+    float viewedExposure_ = 0.0F;
+    base::Clock::time_point viewed_{};
 
     std::optional<Pick> pick_;
     bool wantsShot_ = false;

@@ -53,7 +53,9 @@ std::uint64_t residentBytes() {
 
 void Window::onKey(int key, int action, int modifiers) {
     wakes_ = 4;
-    if (action == GLFW_PRESS || (action == GLFW_REPEAT && key != GLFW_KEY_SPACE)) {
+    // A key that is held while the window is busy must not do its work several times. Steps may repeat.
+    const bool steps = key == GLFW_KEY_LEFT_BRACKET || key == GLFW_KEY_RIGHT_BRACKET;
+    if (action == GLFW_PRESS || (action == GLFW_REPEAT && steps)) {
         keys_.push_back({key, modifiers});
     }
 }
@@ -71,9 +73,11 @@ void Window::onDrop(const std::string& file) {
 void Window::openFile(const std::string& file) {
     const std::string extension = lowerExtension(file);
     if (extension == ".gltf" || extension == ".glb") {
+        opening_ = Opening{scene_, {}};
         scene_ = file;
         for (std::unique_ptr<Side>& one : sides_) {
             if (one) {
+                opening_->wanted.push_back(one->wanted);
                 one->wanted.camera.clear();
                 one->wanted.package.clear();
                 one->wanted.variant.clear();
@@ -81,7 +85,7 @@ void Window::openFile(const std::string& file) {
         }
         poses_ = plays_ = false;
         time_ = 0.0;
-        glfwSetWindowTitle(window_, ("glint view: " + scene_).c_str());
+        showTitle();
         say("opening " + file);
     } else if (extension == ".hdr" || extension == ".exr") {
         for (std::unique_ptr<Side>& one : sides_) {
@@ -102,6 +106,29 @@ void Window::openFile(const std::string& file) {
             order(i, false);
         }
     }
+}
+
+// Goes back to the scene that is shown, because another one could not be opened.
+void Window::keepScene() {
+    if (!opening_) {
+        return;
+    }
+    scene_ = opening_->scene;
+    auto wanted = opening_->wanted.begin();
+    for (std::size_t i = 0; i < kPictures; ++i) {
+        if (sides_[i] && wanted != opening_->wanted.end()) {
+            builder_->cancel(i);
+            sides_[i]->buildFailed = false;
+            sides_[i]->wanted = *wanted;
+            sides_[i]->ordered = *wanted++;
+        }
+    }
+    opening_.reset();
+    showTitle();
+}
+
+void Window::showTitle() {
+    glfwSetWindowTitle(window_, ("glint view: " + scene_).c_str());
 }
 
 void Window::fly(double seconds) {
@@ -130,10 +157,14 @@ void Window::handleInput(double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     // Keys belong to a list that is open: Escape closes it and nothing else.
     const bool hasList = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-    if (!io.WantTextInput && !hasList) {
-        for (const KeyPress& press : keys_) {
+    const bool isTyping = io.WantTextInput || hasList;
+    for (const KeyPress& press : keys_) {
+        const bool isFunction = press.key >= GLFW_KEY_F1 && press.key <= GLFW_KEY_F25;
+        if (!isTyping || isFunction) {
             handleKey(press);
         }
+    }
+    if (!isTyping) {
         fly(seconds);
     }
     keys_.clear();
@@ -259,6 +290,13 @@ void Window::handleKey(const KeyPress& press) {
             autoExposure_ = false;
             exposure_ += press.key == GLFW_KEY_LEFT_BRACKET ? -kExposureStep : kExposureStep;
             break;
+        case GLFW_KEY_L:
+            if (look_.isPicture()) {
+                wantedTab_ = "Views";
+            } else {
+                chooseLook({});
+            }
+            break;
         case GLFW_KEY_M:
             divisor_ = divisor_ % 4 + 1;
             break;
@@ -267,8 +305,7 @@ void Window::handleKey(const KeyPress& press) {
             break;
         case GLFW_KEY_V:
             if (sides_[1]) {
-                shown_ = static_cast<Shown>((static_cast<std::uint32_t>(shown_) + 1) %
-                                            static_cast<std::uint32_t>(Shown::Raw));
+                shown_ = static_cast<Shown>((static_cast<std::uint32_t>(shown_) + 1) % kShownCount);
             }
             break;
         default:
@@ -294,6 +331,20 @@ void Window::nextCamera() {
     orbitDistance_ = 0.0;
     cameraIsNew_ = true;
     say("camera " + name);
+}
+
+// Shows a view, a layer, or the picture. What the package lacks for it is compiled, as for any setting.
+void Window::chooseLook(const Look& look) {
+    look_ = look;
+    viewedFrame_ = 0;
+    lookNote_.clear();
+    view_.reset();
+    wakes_ = 4;
+    Side& one = side();
+    if (one.picture.isReady() && one.wanted.package.empty() &&
+        askFor(look, one.picture.build(), one.wanted)) {
+        followPanel();
+    }
 }
 
 void Window::togglePlaying() {
@@ -328,8 +379,9 @@ void Window::pickAt(double x, double y) {
     // In a wipe, the pixel belongs to the picture that is shown there.
     const bool isSecond =
         sides_[1] && sides_[1]->picture.isReady() &&
-        (shown_ == Shown::Second ||
-         (shown_ == Shown::Wipe && x * pixelScale_ > static_cast<double>(border_) * area_.width));
+        (view_ ? edited_ == 1
+               : shown_ == Shown::Second ||
+                     (shown_ == Shown::Wipe && x * pixelScale_ > static_cast<double>(border_) * area_.width));
     Picture& picture = sides_[isSecond ? 1 : 0]->picture;
     if (!picture.isReady() || picture.recordedIn() == 0) {
         return;
@@ -366,6 +418,22 @@ void Window::measureExposure() {
     wakes_ = 4;
 }
 
+Status Window::writeShot(const std::string& file, const Look& shown, const LinearImage& image) {
+    const auto exposure = static_cast<double>(exposure_);
+    if (!shown.view.empty()) {
+        return image::writeImage(file, measure::withLegend(*view_));
+    }
+    std::vector<image::ExrLayer> layers;
+    if (!shown.layer.empty()) {
+        Result<image::ExrLayer> layer = layerForFile(shown, side().picture);
+        if (!layer) {
+            return layer.error();
+        }
+        layers.push_back(std::move(*layer));
+    }
+    return image::writeImage(file, image, exposure, layers);
+}
+
 void Window::saveScreenshot() {
     wantsShot_ = false;
     Picture& picture = side().picture;
@@ -376,11 +444,14 @@ void Window::saveScreenshot() {
     }
     fs::path file;
     const std::string stem = fs::path(scene_).stem().string();
+    // A layer needs a file that holds its numbers.
+    const Look shown = view_ ? look_ : Look();
+    const char* const extension = shown.layer.empty() ? "png" : "exr";
     std::error_code error;
     do {
-        file = fs::path(request_.folder) / fmt::format("{}-{:03}.png", stem, ++shots_);
+        file = fs::path(request_.folder) / fmt::format("{}-{:03}.{}", stem, ++shots_, extension);
     } while (fs::exists(file, error));
-    if (Status written = image::writeImage(file, *image, static_cast<double>(exposure_)); !written) {
+    if (Status written = writeShot(file, shown, *image); !written) {
         report(written.error());
         return;
     }
@@ -388,9 +459,13 @@ void Window::saveScreenshot() {
                                       ? std::string("all")
                                       : std::to_string(animationChoice_);
     compiler::Settings settings = picture.settings();
+    // A camera that frames everything was placed for another moment.
+    const bool isPlaced = poses_ && scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera);
+    const std::string camera = isPlaced ? scene_view::toText(camera_.placed()) : camera_.name();
     const std::vector<std::string> words =
-        shotWords(settings, {scene_, file.string(), camera_.name(), static_cast<double>(exposure_),
-                             poses_ ? fmt::format("{}", time_) : std::string(), animation});
+        shotWords(settings, {scene_, file.string(), camera, static_cast<double>(exposure_),
+                             poses_ ? fmt::format("{}", time_) : std::string(), animation, shown.view,
+                             shown.layer.empty() ? std::string() : layerWord(shown.layer)});
     fs::path command = file;
     command.replace_extension(".sh");
     const std::string line = base::shellWords(words);
@@ -450,6 +525,10 @@ Status Window::writeReport(const std::string& file) {
     for (std::size_t i = 0; i < one.history.names().size(); ++i) {
         passes[one.history.names()[i]] = one.history.median(i);
     }
+    base::Json looks = base::Json::array();
+    for (const Look& look : one.picture.isReady() ? looksOf(one.picture.build()) : std::vector<Look>()) {
+        looks.push_back((look.view.empty() ? "layer " : "view ") + look.name());
+    }
     const double samples = static_cast<double>(sampleTimes_.size());
     const double seconds = std::accumulate(sampleTimes_.begin(), sampleTimes_.end(), 0.0);
     const bool isReady = one.picture.isReady();
@@ -479,6 +558,10 @@ Status Window::writeReport(const std::string& file) {
         {"rendererBytes", isReady ? one.picture.renderer().footprint().allocatedBytes : 0},
         {"sceneBytes", isReady ? one.picture.gpuScene().allocatedBytes() : 0},
         {"passes", passes},
+        {"look", look_.name()},
+        {"looks", looks},
+        {"view", view_ ? measure::toJson(*view_) : base::Json(nullptr)},
+        {"lookNote", lookNote_},
         {"pick", picked},
         {"error", error_ ? base::Json(toString(*error_)) : base::Json(nullptr)},
         {"messages", messages}};

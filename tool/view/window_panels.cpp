@@ -1,5 +1,6 @@
 // What the window draws over and beside the picture.
 #include "settings/table.h"
+#include "view/look_panel.h"
 #include "view/window.h"
 
 #define GLFW_INCLUDE_NONE
@@ -38,6 +39,7 @@ constexpr Shortcut kShortcuts[] = {
     {"1 2 3 4", "switch the strategy"},
     {"B", "compare two settings: A and B"},
     {"V", "show A, B, both with a border, their difference"},
+    {"L", "list the views and layers; back to the picture"},
     {"Space", "play or pause the animation"},
     {"[ ]", "darker, brighter by a third of a stop"},
     {"X", "measure the exposure"},
@@ -66,7 +68,7 @@ bool beginFields(const char* name) {
     if (!ImGui::BeginTable(name, 2, ImGuiTableFlags_SizingFixedFit)) {
         return false;
     }
-    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 9.0F);
+    ImGui::TableSetupColumn("label", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFontSize() * 11.0F);
     ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch);
     return true;
 }
@@ -131,7 +133,9 @@ void Window::drawMarks() {
                             IM_COL32(0, 0, 0, 170), 3.0F);
         list->AddText({left, 9.0F}, IM_COL32(255, 255, 255, 255), text.c_str());
     };
-    if (sides_[1] && sides_[1]->picture.isReady()) {
+    if (view_) {
+        label(0.0F, look_.name() + (sides_[1] ? edited_ == 0 ? " of A" : " of B" : ""), false);
+    } else if (sides_[1] && sides_[1]->picture.isReady()) {
         switch (shown_) {
             case Shown::First:
                 label(0.0F, "A", false);
@@ -184,7 +188,9 @@ void Window::drawStatus(float width, float y, float height) {
         ImGui::SameLine(0.0F, 20.0F);
         const ImVec4 color =
             progress.empty() && error_ ? ImVec4(1.0F, 0.55F, 0.35F, 1.0F) : ImVec4(0.65F, 0.75F, 0.85F, 1.0F);
-        ImGui::TextColored(color, "%s", note.c_str());
+        ImGui::PushStyleColor(ImGuiCol_Text, color);
+        fittedText(note);
+        ImGui::PopStyleColor();
     }
     ImGui::End();
     ImGui::PopStyleVar(2);
@@ -352,6 +358,18 @@ void Window::drawPixel() {
     ImGui::EndChild();
 }
 
+void Window::drawLooksTab() {
+    if (!side().picture.isReady()) {
+        return;
+    }
+    const bool isMade = builder_->isBusy(edited_);
+    const std::string note = lookNote_.empty() ? "" : isMade ? "is being compiled" : lookNote_;
+    if (const std::optional<Look> clicked =
+            drawLooks(controls_, side().picture.build(), look_, view_ ? &*view_ : nullptr, note)) {
+        chooseLook(*clicked);
+    }
+}
+
 void Window::drawScene() {
     Side& one = side();
     if (!one.picture.isReady()) {
@@ -442,6 +460,11 @@ void Window::drawSidePanel(float x, float width, float height) {
     drawHead();
     drawCompare();
     ImGui::Separator();
+    if (error_) {
+        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.55F, 0.35F, 1.0F});
+        ImGui::TextWrapped("%s", toString(*error_).c_str());
+        ImGui::PopStyleColor();
+    }
     if (ImGui::BeginTabBar("tabs")) {
         const auto tab = [this](const char* name, const std::string& title, const auto& draw) {
             const ImGuiTabItemFlags flags =
@@ -465,6 +488,7 @@ void Window::drawSidePanel(float x, float width, float height) {
             measuresPasses_ = true;
             drawPasses(controls_, side().history, side().counters);
         });
+        tab("Views", "Views", [this] { drawLooksTab(); });
         tab("Pixel", "Pixel", [this] { drawPixel(); });
         tab("Scene", "Scene", [this] { drawScene(); });
         tab("Messages", unread_ > 0 ? fmt::format("Messages ({})", unread_) : "Messages",
@@ -499,10 +523,10 @@ void Window::followPanel() {
 }
 
 void Window::drawHelp() {
-    const ImVec2 middle{0.5F * static_cast<float>(area_.width) / pixelScale_,
-                        0.5F * static_cast<float>(area_.height) / pixelScale_};
-    ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5F, 0.5F});
-    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, {2.0F * middle.x, 2.0F * middle.y});
+    // Over the panel, too, where the picture is narrow.
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
+    ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, size);
     ImGui::Begin("Keys and mouse", &showsHelp_,
                  ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove);

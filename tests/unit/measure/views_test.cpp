@@ -6,6 +6,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -36,6 +40,22 @@ TEST(ViewTable, RowsNameLayersThatExist) {
             EXPECT_NE(package::findLayer(layer), nullptr) << layer;
         }
     }
+}
+
+TEST(ViewTable, TheDocumentShowsEachView) {
+    const std::filesystem::path folder = std::filesystem::path(GLINT_SOURCE_DIR) / "docs";
+    std::ifstream file(folder / "views.md");
+    const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    std::uintmax_t bytes = 0;
+    for (const ViewInfo& view : viewTable()) {
+        std::string picture = "images/views_" + std::string(view.name) + ".png";
+        std::ranges::replace(picture, '-', '_');
+        EXPECT_NE(text.find("![](" + picture + ")"), std::string::npos) << picture;
+        EXPECT_NE(text.find("`" + std::string(view.name) + "`"), std::string::npos) << view.name;
+        ASSERT_TRUE(std::filesystem::exists(folder / picture)) << "scripts/views.py makes " << picture;
+        bytes += std::filesystem::file_size(folder / picture);
+    }
+    EXPECT_LT(bytes, 600'000U) << "keep the pictures small";
 }
 
 TEST(ViewTable, NamesAreReadWithTheirEffect) {
@@ -92,7 +112,7 @@ TEST(ViewDifference, IsTheLargestRelativeErrorOfAPixel) {
     const View view = colorView(*parseView("difference"), input);
     EXPECT_EQ(view.statistics.numbers, 1U);
     EXPECT_EQ(view.statistics.greatest, 1.0);
-    EXPECT_EQ(view.statistics.categories[0].category.name, "equal");
+    EXPECT_EQ(view.statistics.categories[0].category.name, "up to 0.0001");
 }
 
 // 1000 pixels of 1 m, one of which is 1 km.
@@ -143,6 +163,18 @@ TEST(ViewLegend, IsBelowThePictureAndLegibleAtEverySize) {
     EXPECT_GT(both.height, view.picture.height);
     EXPECT_TRUE(std::equal(view.picture.pixels.begin(), view.picture.pixels.end(), both.pixels.begin()));
     EXPECT_GT(makeLegend(view, 1280).height, makeLegend(view, 320).height) << "text grows with the picture";
+}
+
+TEST(ViewLegend, OnesOfManyAreCounted) {
+    View view = raysView();
+    view.choice = *parseView("bucket");
+    view.statistics = {};
+    view.statistics.categories.push_back({{"no ray", {}}, 1});
+    const std::uint32_t height = makeLegend(view, 320).height;
+    for (int i = 0; i < 100; ++i) {
+        view.statistics.categories.push_back({{"group " + std::to_string(i), {}, true}, 1});
+    }
+    EXPECT_EQ(makeLegend(view, 320).height, height) << "both in one row";
 }
 
 TEST(ViewLegend, ManyCategoriesAreSummedUp) {

@@ -150,9 +150,8 @@ public:
         return layers;
     }
 
-    // Draws the view of the last picture. `reference` is what it compares with, or null.
-    Result<measure::View> drawView(const Package& package, const LinearImage& picture,
-                                   const LinearImage* reference) {
+    // Draws the view of the last picture.
+    Result<measure::View> drawView(const Package& package, const LinearImage& picture) {
         measure::ViewInput input;
         input.samples = report_.samples;
         input.dispatchesCases = package::infoOf(setup_.renderer.strategy).dispatchesCases;
@@ -163,7 +162,7 @@ public:
             input.model = &material.model();
         }
         input.picture = &picture;
-        input.reference = reference;
+        input.reference = setup_.reference;
         return measure::makeView(*measure::parseView(setup_.arguments.view), *renderer_, std::move(input));
     }
 
@@ -245,11 +244,10 @@ private:
 };
 
 // Writes the picture of a frame, or its view.
-Status write(FrameLoop& loop, const Package& package, const RenderArguments& arguments,
-             const FrameReport& frame, const LinearImage& picture,
-             const std::optional<LinearImage>& reference, RenderReport& report) {
-    if (!arguments.view.empty()) {
-        Result<measure::View> view = loop.drawView(package, picture, reference ? &*reference : nullptr);
+Status write(FrameLoop& loop, const Package& package, const FrameSetup& setup, const FrameReport& frame,
+             const LinearImage& picture, RenderReport& report) {
+    if (!setup.arguments.view.empty()) {
+        Result<measure::View> view = loop.drawView(package, picture);
         if (!view) {
             return view.error();
         }
@@ -269,14 +267,6 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
     FrameLoop loop(setup, scene, data, report);
     if (Status started = loop.start(context, package); !started) {
         return started;
-    }
-    std::optional<LinearImage> reference;
-    if (!setup.arguments.viewReference.empty()) {
-        Result<LinearImage> read = image::readImage(setup.arguments.viewReference);
-        if (!read) {
-            return read.error();
-        }
-        reference = std::move(*read);
     }
     const bool isSequence = setup.movement && setup.movement->isSequence;
     const std::vector<Moment> moments = setup.movement ? setup.movement->moments : std::vector<Moment>(1);
@@ -311,8 +301,7 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
                 compiler::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
-        if (Status written = write(loop, package, setup.arguments, frame, *image, reference, report);
-            !written) {
+        if (Status written = write(loop, package, setup, frame, *image, report); !written) {
             return written;
         }
         if (isSequence) {

@@ -23,6 +23,7 @@ struct FrameSetup {
     const std::optional<Movement>& movement;   // nothing: the rest pose
     CameraView camera;                         // of the first picture
     double aspect = 1.0;                       // width / height
+    const LinearImage* reference = nullptr;    // that of --view-reference; null: none
 };
 
 // Renders and writes every picture, and fills in the measurements. `scene` and `data`, which was made from

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,7 +30,18 @@ std::uint32_t textScale(std::uint32_t width) {
     return std::max(1U, (width + 320) / 640);
 }
 
+// "2345", "12.3 k", "4.56 M"
 std::string shortNumber(double value) {
+    struct Unit {
+        double least;
+        double size;
+        std::string_view name;
+    };
+    for (const Unit& unit : {Unit{1e9, 1e9, " G"}, Unit{1e6, 1e6, " M"}, Unit{1e4, 1e3, " k"}}) {
+        if (value >= unit.least) {
+            return fmt::format("{:.4g}{}", value / unit.size, unit.name);
+        }
+    }
     return fmt::format("{:.4g}", value);
 }
 
@@ -53,11 +65,42 @@ std::vector<std::string> wrapped(std::string_view text, std::uint32_t width) {
     return lines;
 }
 
+// A line of the legend: a category, or several.
+struct LegendEntry {
+    std::string name;
+    std::optional<image::Color8> color;
+    std::uint64_t pixels = 0;
+};
+
+// Those that are many alike are one entry.
+std::vector<LegendEntry> entriesOf(const View& view) {
+    std::vector<LegendEntry> entries;
+    LegendEntry many;
+    std::uint64_t count = 0;
+    for (const ViewStatistics::Category& one : view.statistics.categories) {
+        if (one.category.isOneOfMany) {
+            many.pixels += one.pixels;
+            ++count;
+        } else {
+            entries.push_back({one.category.name, one.category.color, one.pixels});
+        }
+    }
+    if (count > 0) {
+        many.name = fmt::format("{} {}{}", count, view.choice.info->unit, count > 1 ? "s" : "");
+        entries.insert(entries.begin(), many);
+    }
+    return entries;
+}
+
 // Draws in units of the text's scale.
 class LegendPainter {
 public:
     LegendPainter(const View& view, std::uint32_t width)
-        : view_(view), scale_(textScale(width)), units_(std::max(width / scale_, 1U)), pixels_(width) {}
+        : view_(view),
+          entries_(entriesOf(view)),
+          scale_(textScale(width)),
+          units_(std::max(width / scale_, 1U)),
+          pixels_(width) {}
 
     image::DisplayImage paint() {
         const bool hasNumbers = view_.choice.info->scale != ViewScale::Categories;
@@ -66,7 +109,7 @@ public:
         const std::vector<std::string> summary =
             hasNumbers ? wrapped(summaryText(), lineWidth()) : std::vector<std::string>();
         const std::size_t columns = columnsOfCategories();
-        const std::size_t all = view_.statistics.categories.size();
+        const std::size_t all = entries_.size();
         const std::size_t room = columns * kMostRows;
         const std::size_t shown = all <= room ? all : room - 1;
         const std::size_t entries = shown + (shown < all ? 1 : 0);
@@ -132,11 +175,9 @@ private:
 
     // As many as have room for the longest of the names that are shown, but at least one.
     std::size_t columnsOfCategories() const {
-        const std::vector<ViewStatistics::Category>& categories = view_.statistics.categories;
         std::uint32_t widest = kEntryWidth;
-        for (std::size_t i = 0; i < std::min(categories.size(), kMostRows); ++i) {
-            const std::string text =
-                categories[i].category.name + " " + percentage(categories[i].pixels, count());
+        for (std::size_t i = 0; i < std::min(entries_.size(), kMostRows); ++i) {
+            const std::string text = entries_[i].name + " " + percentage(entries_[i].pixels, count());
             widest = std::max(widest, kSwatch + 3 * kMargin + image::textWidth(text));
         }
         return std::max<std::size_t>(1, (units_ - std::min(units_, kMargin)) / widest);
@@ -144,7 +185,6 @@ private:
 
     // The first categories, and a line for the rest.
     void paintCategories(std::uint32_t first, std::size_t columns, std::size_t shown) {
-        const std::vector<ViewStatistics::Category>& categories = view_.statistics.categories;
         const std::uint32_t columnWidth =
             (units_ - std::min(units_, kMargin)) / static_cast<std::uint32_t>(columns);
         const auto placeOf = [&](std::size_t i) {
@@ -152,22 +192,23 @@ private:
                              first + static_cast<std::uint32_t>(i / columns));
         };
         std::uint64_t rest = 0;
-        for (std::size_t i = 0; i < categories.size(); ++i) {
+        for (std::size_t i = 0; i < entries_.size(); ++i) {
+            const LegendEntry& one = entries_[i];
             if (i >= shown) {
-                rest += categories[i].pixels;
+                rest += one.pixels;
                 continue;
             }
             const auto [x, y] = placeOf(i);
-            area(x, y * image::kLineHeight + kMargin, kSwatch, kSwatch, kOutline);
-            area(x + 1, y * image::kLineHeight + kMargin + 1, kSwatch - 2, kSwatch - 2,
-                 categories[i].category.color);
-            entry(x, y, categories[i].category.name, categories[i].pixels, columnWidth);
+            if (one.color) {
+                area(x, y * image::kLineHeight + kMargin, kSwatch, kSwatch, kOutline);
+                area(x + 1, y * image::kLineHeight + kMargin + 1, kSwatch - 2, kSwatch - 2, *one.color);
+            }
+            entry(x, y, one.name, one.pixels, columnWidth);
         }
-        if (shown < categories.size()) {
+        if (shown < entries_.size()) {
             const auto [x, y] = placeOf(shown);
-            const bool repeats = categories.size() > image::kCategoryColors;
-            entry(x, y,
-                  fmt::format("{} more{}", categories.size() - shown, repeats ? ", colours repeat" : ""),
+            const bool repeats = entries_.size() > image::kCategoryColors;
+            entry(x, y, fmt::format("{} more{}", entries_.size() - shown, repeats ? ", colours repeat" : ""),
                   rest, columnWidth);
         }
     }
@@ -190,11 +231,15 @@ private:
         const std::string greatest = fmt::format("{}{} {}", statistics.greatest > last ? "from " : "",
                                                  shortNumber(last), view_.choice.info->unit);
         line(kMargin, row + 1, least, width);
-        line(kMargin + (width - std::min(width, image::textWidth(middle))) / 2, row + 1, middle, width);
+        const std::uint32_t ofEnds = std::max(image::textWidth(least), image::textWidth(greatest));
+        if (2 * (ofEnds + kMargin) + image::textWidth(middle) < width) {
+            line(kMargin + (width - image::textWidth(middle)) / 2, row + 1, middle, width);
+        }
         line(kMargin + width - std::min(width, image::textWidth(greatest)), row + 1, greatest, width);
     }
 
     const View& view_;
+    std::vector<LegendEntry> entries_;
     std::uint32_t scale_;
     std::uint32_t units_;   // the width in units
     std::uint32_t pixels_;  // the width in pixels

@@ -42,7 +42,7 @@ const ViewCategory& plain(Mark mark) {
         {kMarkScreen, {"found on screen", {210, 210, 210}}},
         {kMarkUntextured, {"no texture", {100, 100, 100}}},
         {kMarkUngrouped, {"no workgroup known", {110, 110, 110}}},
-        {kMarkEqual, {"equal", {64, 64, 64}}},
+        {kMarkEqual, {"up to 0.0001", {64, 64, 64}}},
         {kMarkNotFinite, {"not finite", {255, 0, 255}}},
     };
     return kPlain.at(mark);
@@ -73,6 +73,10 @@ public:
     void category(std::size_t pixel, std::uint32_t number, std::string_view name, image::Color8 color) {
         values_.marks[pixel] = number;
         values_.categories.try_emplace(number, ViewCategory{std::string(name), color});
+    }
+    void oneOfMany(std::size_t pixel, std::uint32_t number, const std::function<std::string()>& name) {
+        category(pixel, number, name);
+        values_.categories.at(number).isOneOfMany = true;
     }
     std::size_t size() const {
         return values_.marks.size();
@@ -292,7 +296,7 @@ void showGroups(const ViewInput& input, ViewValues& values) {
             continue;
         }
         const std::pair group(input.dispatchesCases ? shaders[i] : 0U, groups[i]);
-        filler.category(i, numbers.at(group), [&] {
+        filler.oneOfMany(i, numbers.at(group), [&] {
             return input.dispatchesCases ? fmt::format("group {} of shader {}", group.second, group.first)
                                          : fmt::format("group {}", group.second);
         });
@@ -383,6 +387,7 @@ void showFootprint(const ViewInput& input, ViewValues& values) {
 
 // The error of a pixel is that of `glint compare`: the largest of the channels, |a - b| / max(1, |b|).
 void showDifference(const ViewInput& input, ViewValues& values) {
+    constexpr double kEqual = 1e-4;  // strategies differ by no more
     Filler filler(input, values);
     for (std::size_t i = 0; i < filler.size(); ++i) {
         double largest = 0.0;
@@ -398,7 +403,7 @@ void showDifference(const ViewInput& input, ViewValues& values) {
         }
         if (!std::isfinite(largest)) {
             filler.mark(i, kMarkNotFinite);
-        } else if (largest == 0.0) {
+        } else if (largest <= kEqual) {
             filler.mark(i, kMarkEqual);
         } else {
             filler.number(i, largest);
@@ -493,7 +498,7 @@ const std::vector<ViewInfo>& rows() {
          showCost},
         {"clocks",
          "ticks of the device's clock for lighting, tracing and shading",
-         FromZero,
+         Logarithmic,
          "ticks a sample",
          {"clocks"},
          false,

@@ -9,19 +9,15 @@ layout(binding = 2, rgba8) writeonly uniform image2D shown;
 
 layout(push_constant) uniform Constants {
     float scale;     // 2^exposure
-    uint view;       // kFirst to kRaw
+    uint view;       // kFirst to kDifference
     float border;    // with kWipe: the share of the width that shows the first picture
     float gain;      // with kDifference: factor of the difference of encoded values
-    float low;       // with kRaw: the values that are shown as black and as white
-    float high;
-    uint channels;   // with kRaw: 1 to 4; 1 is shown as grey
 };
 
 const uint kFirst = 0u;
 const uint kSecond = 1u;
 const uint kWipe = 2u;
 const uint kDifference = 3u;
-const uint kRaw = 4u;
 
 vec3 toneMapNeutral(vec3 color) {
     const float fresnel = 0.04;
@@ -62,11 +58,6 @@ void main() {
         return;
     }
     vec4 a = imageLoad(first, placeIn(pixel, size, imageSize(first)));
-    if (view == kRaw) {
-        vec4 value = clamp((a - low) / (high - low), 0.0, 1.0);
-        imageStore(shown, pixel, vec4(channels == 1u ? value.rrr : channels == 2u ? vec3(value.rg, 0.0) : value.rgb, 1.0));
-        return;
-    }
     vec3 color = displayed(a.rgb);
     if (view != kFirst) {
         vec3 other = displayed(imageLoad(second, placeIn(pixel, size, imageSize(second))).rgb);

@@ -94,6 +94,7 @@ struct ViewInput {
 struct ViewCategory {
     std::string name;
     image::Color8 color{};
+    bool isOneOfMany = false;  // The legend counts those, and names none of them.
 };
 
 // The values of the pixels of a view, row by row from the top.
