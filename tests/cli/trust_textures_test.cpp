@@ -122,6 +122,9 @@ TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
     ASSERT_EQ(run({"compile", "scene.gltf", "-o", "live", "--cache", "cache", "--fallback"}).exit, 0);
     EXPECT_TRUE(featuresOf("live").contains("clearcoat"));
     EXPECT_TRUE(featuresOf("live").contains("transmissionTexture"));
+    const Outcome drawn =
+        run({"render", "scene.gltf", "-o", "a.png", "--size", "32x18", "--package", "live"});
+    EXPECT_EQ(drawn.exit, 0) << "the scene is read as the package was made: " << drawn.err;
     const Outcome both = run({"compile", "scene.gltf", "-o", "none", "--fallback", "--trust-textures", "on"});
     EXPECT_EQ(both.exit, 2);
     EXPECT_TRUE(has(both.err, "--fallback")) << both.err;

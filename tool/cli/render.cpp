@@ -251,7 +251,8 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
 
 // Does all the work between reading the scene and writing the files.
 Status render(const Console& console, const RenderArguments& asked, gltf::Scene& scene,
-              const gltf::SceneList& scenes, const compiler::PlanOptions& plan, RenderReport& report) {
+              const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
+              std::optional<Result<Package>> given, RenderReport& report) {
     RenderArguments arguments = asked;
     const Result<std::optional<Movement>> movement =
         chooseMovement(arguments.motion, scene, !arguments.materials.empty());
@@ -270,10 +271,6 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         return camera.error();
     }
     report.camera = camera->name;
-    std::optional<Result<Package>> given;
-    if (!arguments.package.empty()) {
-        given = Package::load(arguments.package);
-    }
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const base::Clock::time_point begin = base::Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
@@ -390,10 +387,16 @@ int run(const Console& console, const RenderArguments& arguments) {
     }
     console.progress("reading " + arguments.scene);
     CompileCache known(CacheArguments{}, "");
-    const Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files, known.store());
+    Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files, known.store());
     if (!import) {
         console.report(import.error());
         return kExitFailed;
+    }
+    std::optional<Result<Package>> given;
+    if (!arguments.package.empty()) {
+        given = Package::load(arguments.package);
+        // Keys depend on it, and the scene has to have those of the package.
+        import->trustTextures = *given ? (*given)->trustTextures() : import->trustTextures;
     }
     Result<gltf::Scene> scene = importScene(arguments.scene, *import);
     if (!scene) {
@@ -416,7 +419,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     if (console.refused()) {
         return kExitFailed;
     }
-    status = render(console, arguments, *scene, scenes, plan->options, report);
+    status = render(console, arguments, *scene, scenes, plan->options, std::move(given), report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;
