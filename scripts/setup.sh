@@ -17,7 +17,8 @@ they can't be fetched, the script says so, and Glint is built without them.
   --portable  also the packages for scripts/portable.sh, which is for Debian 12
   --sanitize  also the packages for scripts/sanitize.sh and scripts/fuzz.sh
   --viewer    also the packages for scripts/viewer_compare.sh: those of --browser, and npm
-  --window    also Xvfb, an X server without a screen, in which the tests use the window of glint view
+  --window    also Xvfb, an X server without a screen, in which the tests use the window of glint view, and
+              Pillow, with which benchmarks/view/tour.py writes its pictures
 TEXT
 }
 
@@ -256,7 +257,7 @@ for argument in "$@"; do
         --portable) needs+=("${kPortableNeeds[@]}") ;;
         --sanitize) sanitize=true ;;
         --viewer) viewer=true ;;
-        --window) needs+=("command Xvfb|xvfb") ;;
+        --window) needs+=("command Xvfb|xvfb" "file /usr/lib/python3/dist-packages/PIL/__init__.py|python3-pil") ;;
         -h | --help)
             usage
             exit 0

@@ -32,7 +32,7 @@ void fittedText(const std::string& text) {
     const float width = ImGui::GetContentRegionAvail().x;
     std::string shown = text;
     for (std::size_t length = text.size(); length > 0 && ImGui::CalcTextSize(shown.c_str()).x > width;) {
-        shown = text.substr(0, --length) + "...";
+        shown = --length > 0 ? text.substr(0, length) + "..." : std::string();
     }
     ImGui::TextUnformatted(shown.c_str());
 }
