@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Puts benches side by side, as a Markdown table.
 
-    benchmarks/accuracy_table.py BENCH.json...            one scene on several machines: single settings
-    benchmarks/accuracy_table.py --parts BENCH.json...    several scenes: the parts of the default's error
+    benchmarks/charts/accuracy_table.py BENCH.json...            one scene on several machines: single settings
+    benchmarks/charts/accuracy_table.py --parts BENCH.json...    several scenes: the parts of the default's error
 
 BENCH.json: what `glint bench` wrote. Time and error are ratios of medians to the default of the same bench; "tie": the
 interval holds 1. Parts are shares of the default's error that go with an exact value alone: bias, and in brackets noise.
@@ -57,7 +57,7 @@ def main():
     arguments = [word for word in sys.argv[1:] if word != "--parts"]
     reports = [json.loads(pathlib.Path(file).read_text(encoding="utf-8")) for file in arguments]
     if not reports:
-        sys.exit("usage: benchmarks/accuracy_table.py [--parts] BENCH.json...")
+        sys.exit("usage: benchmarks/charts/accuracy_table.py [--parts] BENCH.json...")
     if "--parts" in sys.argv:
         print_parts(reports)
         return
