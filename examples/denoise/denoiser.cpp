@@ -494,7 +494,7 @@ glint::Result<std::unique_ptr<Denoiser>> Denoiser::create(const glint::Context& 
             return done.error();
         }
     }
-    for (glint::Status done : {state.makePool(), state.makeReading()}) {
+    for (const glint::Status& done : {state.makePool(), state.makeReading()}) {
         if (!done) {
             return done.error();
         }
