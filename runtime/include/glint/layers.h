@@ -71,16 +71,18 @@ enum LayerDemand : std::uint32_t {
 
 // A row of the table.
 struct LayerInfo {
-    std::uint32_t number = 0;  // in packages; stable
-    std::string_view name;     // in --layers and OpenEXR files
-    std::string_view what;     // a sentence without a full stop
+    std::uint32_t number = 0;   // in packages; stable
+    std::uint32_t demands = 0;  // LayerDemand bits
+    std::string_view name;      // in --layers and OpenEXR files
+    std::string_view what;      // a sentence without a full stop
     LayerSubject subject{};
     LayerFormat format{};
     std::string_view channels;  // of OpenEXR, one letter each: "XYZ". Further components of the format are 0
     LayerMean mean{};
-    std::uint32_t demands = 0;  // LayerDemand bits
     // Its value is computed from its own last value, too, where a picture is a mean.
     bool continues = false;
+    // It is for people who look for a problem. Words for several layers at once leave it out.
+    bool isDiagnostic = false;
     // Another layer of the same subject that it is computed from; empty if there is none.
     std::string_view from{};
     // What the GLSL calls: a function of shaders/layers/, and the value of a pixel without a surface.
@@ -89,8 +91,6 @@ struct LayerInfo {
     // With LayerPass::Several: the macro by which passes add to it (subject Work), or store the value of a
     // sample (subject Ray). `absent` is the value that it begins with.
     std::string_view tally{};
-    // It is for people who look for a problem. Words for several layers at once leave it out.
-    bool isDiagnostic = false;
 };
 
 // Values of the layer "hit-shader" that are no shader IDs.
