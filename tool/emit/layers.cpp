@@ -145,8 +145,7 @@ void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
         return std::tuple(row - package::layerTable().begin(), entry.effect, entry.bounce);
     };
     std::ranges::sort(entries, {}, place);
-    const auto again = std::ranges::unique(entries);
-    entries.erase(again.begin(), again.end());
+    entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
 }
 
 // "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.

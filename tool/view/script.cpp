@@ -354,7 +354,7 @@ Status Script::parseLine(const std::vector<std::string>& words, const std::strin
         frames(kSettle);
         return okStatus();
     } else if (what == "copy" && withArguments(2)) {
-        act([this, words]() -> Result<bool> {
+        act([words]() -> Result<bool> {
             std::error_code error;
             std::filesystem::copy_file(words[1], words[2], std::filesystem::copy_options::overwrite_existing,
                                        error);
