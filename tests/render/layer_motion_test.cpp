@@ -70,8 +70,9 @@ Warp warp(const Frame& before, const Frame& now, const Counts& counts) {
         if (!counts(now, i)) {
             continue;
         }
+        const auto row = i / kWidth;
         const double x = static_cast<double>(i % kWidth) + now.layers.at("motion", i, 0);
-        const double y = static_cast<double>(i / kWidth) + now.layers.at("motion", i, 1);
+        const double y = static_cast<double>(row) + now.layers.at("motion", i, 1);
         const double depth = now.layers.at("depth", i, 0) + now.layers.at("motion", i, 2);
         const double left = std::floor(x);
         const double top = std::floor(y);
@@ -79,7 +80,8 @@ Warp warp(const Frame& before, const Frame& now, const Counts& counts) {
         std::array<double, 3> found{};
         for (int corner = 0; seen && corner < 4; ++corner) {
             const double cx = left + corner % 2;
-            const double cy = top + corner / 2;
+            const int down = corner / 2;
+            const double cy = top + down;
             const auto place = static_cast<std::size_t>(cy * kWidth + cx);
             const double weight = (1.0 - std::abs(x - cx)) * (1.0 - std::abs(y - cy));
             seen =
@@ -190,7 +192,8 @@ Truth compareWithTruth(const Frame& now, const std::string& effect, std::uint32_
                             now.layers.at("position", i, 2)};
         const std::array<double, 2> last = pixelOf(imageBefore(surface, distance), eyeBefore);
         const double x = last[0] - (static_cast<double>(i % kWidth) + 0.5);
-        const double y = last[1] - (static_cast<double>(i / kWidth) + 0.5);
+        const auto row = i / kWidth;
+        const double y = last[1] - (static_cast<double>(row) + 0.5);
         const auto differs = [&](const std::string& layer) {
             return std::hypot(now.layers.at(layer, i, 0) - x, now.layers.at(layer, i, 1) - y);
         };

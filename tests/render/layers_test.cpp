@@ -5,6 +5,8 @@
 #include "render/scene_builder.h"
 #include "render/ways.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -102,9 +104,8 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
                     double sum = 0.0;
                     double again = 0.0;
                     for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
-                        const std::string number = "." + std::to_string(bounce);
-                        sum += layers.at(source + ".bounce-radiance" + number, i, c);
-                        again += layers.at(source + ".bounce-demodulated" + number, i, c) *
+                        sum += layers.at(fmt::format("{}.bounce-radiance.{}", source, bounce), i, c);
+                        again += layers.at(fmt::format("{}.bounce-demodulated.{}", source, bounce), i, c) *
                                  layers.at(albedo, i, c);
                     }
                     const double whole = layers.at(source + ".radiance", i, c);
@@ -189,7 +190,8 @@ TEST(Layers, ShowThePrimarySurface) {
     const LayerSet layers(shown.renderer());
     for (std::size_t i = 0; i < 32 * 32; ++i) {
         const double x = (static_cast<double>(i % 32) + 0.5) / 16.0 - 1.0;
-        const double y = 1.0 - (static_cast<double>(i / 32) + 0.5) / 16.0;
+        const std::size_t row = i / 32;
+        const double y = 1.0 - (static_cast<double>(row) + 0.5) / 16.0;
         // The ray (x, y, -1) t meets the planes z = x - 3 and z = -3.
         const double t = x < 0.0 ? 3.0 / (1.0 + x) : 3.0;
         const bool isWall = x < 0.0 && t * x > -2.0;

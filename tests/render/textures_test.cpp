@@ -37,7 +37,8 @@ gltf::Scene squares(std::size_t count) {
             scene, kCellTexels, kCellTexels, std::vector<std::uint8_t>(4 * kCellTexels * kCellTexels, 255));
         const float size = 2.0F / kCells;
         const float left = -1.0F + size * static_cast<float>(i % kCells);
-        const float bottom = -1.0F + size * static_cast<float>(i / kCells);
+        const std::size_t row = i / kCells;
+        const float bottom = -1.0F + size * static_cast<float>(row);
         addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {left, bottom, -1.0F},
                                                    {size, 0, 0}, {0, size, 0})));
     }
@@ -144,13 +145,14 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
     std::vector<std::uint8_t> normals;
     std::vector<std::uint8_t> data;
     for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
+        const std::uint32_t row = i / kSize;
         const double x = 0.4 * std::sin(0.7 * (i % kSize));
-        const double y = 0.4 * std::cos(0.5 * (i / kSize));
+        const double y = 0.4 * std::cos(0.5 * row);
         const auto byte = [](double value) { return static_cast<std::uint8_t>(std::lround(255.0 * value)); };
         normals.insert(normals.end(), {byte(0.5 + 0.5 * x), byte(0.5 + 0.5 * y),
                                        byte(0.5 + 0.5 * std::sqrt(1.0 - x * x - y * y)), 255});
-        data.insert(data.end(), {byte(0.2 + 0.05 * (i % kSize)), byte(0.3 + 0.04 * (i / kSize)),
-                                 byte(0.05 * (i % kSize)), 255});
+        data.insert(data.end(),
+                    {byte(0.2 + 0.05 * (i % kSize)), byte(0.3 + 0.04 * row), byte(0.05 * (i % kSize)), 255});
     }
     materials::Material material;
     material.texture("normalTexture").texture = addTexture(scene, kSize, kSize, normals);

@@ -155,8 +155,8 @@ TEST(ViewLegend, IsBelowThePictureAndLegibleAtEverySize) {
         EXPECT_EQ(legend.width, width);
         EXPECT_EQ(legend.pixels.size(), std::size_t{width} * legend.height);
         std::set<image::Color8> colors(legend.pixels.begin(), legend.pixels.end());
-        EXPECT_TRUE(
-            colors.contains(image::quantityColor(0.5 / (width / std::max(1U, (width + 320) / 640) - 8.0))));
+        const std::uint32_t columns = width / std::max(1U, (width + 320) / 640);
+        EXPECT_TRUE(colors.contains(image::quantityColor(0.5 / (columns - 8.0))));
         EXPECT_TRUE(colors.contains(image::Color8{235, 235, 235})) << "text";
     }
     const image::DisplayImage both = withLegend(view);

@@ -76,6 +76,7 @@ Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
     ReportArguments report;
     addReportOptions(command, report);
     std::vector<const char*> pointers;
+    pointers.reserve(line.size());
     for (const std::string& word : line) {
         pointers.push_back(word.c_str());
     }
