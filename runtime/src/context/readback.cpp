@@ -203,7 +203,8 @@ Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::ui
         return runner.error();
     }
     using Identity = std::array<std::uint32_t, 2>;
-    const auto identities = readImage<Identity>(*state_, *runner, imageOf(state_->frame, gpu::kBindingSurface),
+    const auto identities =
+        readImage<Identity>(*state_, *runner, imageOf(state_->frame, gpu::kBindingSurface),
                             std::size_t{state_->size.width} * state_->size.height);
     if (!identities) {
         return identities.error();

@@ -112,11 +112,10 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     }
     const std::uint32_t demands = package::demandsOf(package.layers());
     if ((demands & package::kLayerQueries) != 0 && *tracer != package::kTracerRayQuery) {
-        return makeError(
-            "package-tracer", "",
-            "the package's layer candidates counts what ray queries test, and the tracer is " +
-                std::string(nameOf(*tracer)),
-            "use the tracer ray-query, with a strategy that has it, or leave out the layer");
+        return makeError("package-tracer", "",
+                         "the package's layer candidates counts what ray queries test, and the tracer is " +
+                             std::string(nameOf(*tracer)),
+                         "use the tracer ray-query, with a strategy that has it, or leave out the layer");
     }
     if ((demands & package::kLayerClock) != 0 && !context.handles.shaderClock) {
         return makeError(

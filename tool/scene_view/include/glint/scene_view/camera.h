@@ -41,8 +41,8 @@ CameraView framingCamera(const Bounds& bounds, double aspect);
 // its width follows `aspect`. Error "camera-matrix" if its node's transform is singular.
 Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, double aspect);
 
-// A camera that a user places: "1.5,2,3/0,0.5,0/30" is at (1.5, 2, 3), looks at (0, 0.5, 0) and has a vertical
-// field of view of 30°. Up in the image is +Y. The two points must differ, not only in y.
+// A camera that a user places: "1.5,2,3/0,0.5,0/30" is at (1.5, 2, 3), looks at (0, 0.5, 0) and has a
+// vertical field of view of 30°. Up in the image is +Y. The two points must differ, not only in y.
 struct PlacedCamera {
     std::array<double, 3> position{0.0, 0.0, 1.0};  // metres
     std::array<double, 3> target{};                 // metres
@@ -64,8 +64,8 @@ struct CameraChoice {
 // Returns whether chooseCamera() frames everything instead of taking a camera of the scene.
 bool framesEverything(const gltf::Scene& scene, const std::string& wanted);
 
-// `wanted` is "auto", a PlacedCamera, or the number or name of a camera of the scene. If it is empty, the first camera is
-// used, or "auto" if there is none. Error "camera-unknown".
+// `wanted` is "auto", a PlacedCamera, or the number or name of a camera of the scene. If it is empty, the
+// first camera is used, or "auto" if there is none. Error "camera-unknown".
 Result<CameraChoice> chooseCamera(const gltf::Scene& scene, const SceneViewData& view,
                                   const std::string& wanted, double aspect);
 // The same, with the bounds that an automatic camera frames.
