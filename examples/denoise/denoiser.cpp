@@ -97,7 +97,7 @@ struct Denoiser::State {
     std::vector<Signal> signals;
     VkDescriptorPool pool = VK_NULL_HANDLE;
     Program guide, temporal, variance, wavelet, modulate, antialias;
-    // Of this frame and the one before, in turn.
+    // Frames write the two images of each by turns, and read what the frame before has written.
     std::array<Image, 2> guides, moments, resolved;
     Image surfaces, mean, history, picture;
     std::array<Image, 2> filtered;  // what passes of the wavelet read and write, in turn

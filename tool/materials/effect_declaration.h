@@ -45,9 +45,9 @@ struct EffectDeclaration {
     // Of the kind Rays: the sampled direction has a density, so that samples of emissive lights share the
     // light of its lobes. `sample` then also has density…() and share…().
     bool sharesLights = false;
-    // Of the kind Rays, for layers: which lobes bring its light, "diffuse", "specular" or "transmission", or
-    // empty for all of them; and what surfaces show by it: "mirrored" or "refracted" points, or empty for
-    // light alone.
+    // Effects of the kind Rays have these two, for layers. `albedo` says which lobes bring the light:
+    // "diffuse", "specular" or "transmission"; all of them if it is empty. `shows` says which points surfaces
+    // show by it: "mirrored" or "refracted" ones; it is empty if they show only light.
     std::string albedo{};
     std::string shows{};
     // Names of files as an #include gives them, empty where there are none. Each has a function whose name

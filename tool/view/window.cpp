@@ -610,7 +610,7 @@ void Window::finishSamples() {
             one->counters = *counters;
         }
         if (const Result<std::vector<PassTiming>> passes = one->picture.renderer().timings(); passes) {
-            // Of whole frames, only the frame's own time is one that adds up.
+            // Rounds of rays are parts of the frame's own time, and would count twice.
             std::vector<PassTiming> kept;
             std::ranges::copy_if(*passes, std::back_inserter(kept),
                                  [](const PassTiming& pass) { return pass.pass != Pass::Hits; });

@@ -98,6 +98,18 @@ LayerValues toValues(std::span<const std::uint8_t> bytes, const package::LayerFo
     return values;
 }
 
+// The geometry of a pixel's surface, gpu::kNoSurface where there is none, and its triangle.
+using SurfaceIdentity = std::array<std::uint32_t, 2>;
+
+Result<std::vector<SurfaceIdentity>> readIdentities(const Renderer::State& state) {
+    Result<CommandRunner> runner = CommandRunner::create(state.context);
+    if (!runner) {
+        return runner.error();
+    }
+    return readImage<SurfaceIdentity>(state, *runner, imageOf(state.frame, gpu::kBindingSurface),
+                                      std::size_t{state.size.width} * state.size.height);
+}
+
 }  // namespace
 
 Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
@@ -168,19 +180,12 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
-    using Identity = std::array<std::uint32_t, 2>;
-    const auto identities =
-        readImage<Identity>(*state_, *runner, imageOf(state_->frame, gpu::kBindingSurface),
-                            std::size_t{state_->size.width} * state_->size.height);
+    const Result<std::vector<SurfaceIdentity>> identities = readIdentities(*state_);
     if (!identities) {
         return identities.error();
     }
     std::vector<std::uint8_t> surfaces(identities->size());
-    std::ranges::transform(*identities, surfaces.begin(), [](const Identity& pixel) {
+    std::ranges::transform(*identities, surfaces.begin(), [](const SurfaceIdentity& pixel) {
         return static_cast<std::uint8_t>(pixel[0] != gpu::kNoSurface ? 1 : 0);
     });
     return surfaces;
@@ -198,14 +203,7 @@ Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::ui
         return makeError("scene-edited", "", "the scene is edited, so the numbers of its upload may be stale",
                          "ask its SceneEditor, or upload the scene without SceneView::editable");
     }
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
-    using Identity = std::array<std::uint32_t, 2>;
-    const auto identities =
-        readImage<Identity>(*state_, *runner, imageOf(state_->frame, gpu::kBindingSurface),
-                            std::size_t{state_->size.width} * state_->size.height);
+    const Result<std::vector<SurfaceIdentity>> identities = readIdentities(*state_);
     if (!identities) {
         return identities.error();
     }
