@@ -25,7 +25,7 @@ struct SceneLight {
 // The lights apart from the sky.
 uint sceneLightCount() {
 #if GLINT_LIGHT_SAMPLES > 0
-    return GLINT_FRAME.unboundedLights + (GLINT_FRAME.lightTreeNodes > 0u ? GLINT_LIGHT_SAMPLES : 0u);
+    return GLINT_FRAME.lightsApart + (GLINT_FRAME.lightTreeNodes > 0u ? GLINT_LIGHT_SAMPLES : 0u);
 #elif GLINT_EMISSIVE_LIGHTS
     return GLINT_FRAME.lightCount + GLINT_FRAME.emitterCount;
 #else
@@ -102,12 +102,12 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
         return lightOfSky();
     }
 #endif
-    if (index < GLINT_FRAME.unboundedLights) {
+    if (index < GLINT_FRAME.lightsApart) {
         uint leaf = GLINT_FRAME.lightTreeNodes + index;
         return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
     }
     // The samples of a surface divide the first random number among them, which spreads them over the tree.
-    precise float stratum = (float(index - GLINT_FRAME.unboundedLights) + random.x) / float(GLINT_LIGHT_SAMPLES);
+    precise float stratum = (float(index - GLINT_FRAME.lightsApart) + random.x) / float(GLINT_LIGHT_SAMPLES);
     float probability;
     uint chosen = lightOfTree(receiver, vec3(min(stratum, kBelowOne), random.yz), probability);
     float chance = float(GLINT_LIGHT_SAMPLES) * probability;

@@ -305,7 +305,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Instance) instances;
     GLINT_ADDRESS(Material) materials;
     GLINT_ADDRESS(Light) lights;
-    GLINT_ADDRESS(LightNode) lightNodes;  // in packages with --lights K: the tree, then the lights without bounds
+    GLINT_ADDRESS(LightNode) lightNodes;  // in packages with --lights K: the tree, then the lights apart from it
     GLINT_ADDRESS(SampleStart) sampleStarts;  // samples of every pixel of a band, effect by effect
     GLINT_ADDRESS(SampleAim) sampleAims;
     GLINT_ADDRESS(SampleWeight) sampleWeights;
@@ -337,7 +337,7 @@ struct FrameConstants {
     uint rayMask;  // instances that share no bit with it are not hit
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
     uint lightTreeNodes;   // nodes of the tree
-    uint unboundedLights;  // leaves after them
+    uint lightsApart;  // leaves after them
     // In packages with paths of several bounces:
     GLINT_ADDRESS(Target) nextListed;  // the list of the next bounce
     GLINT_ADDRESS(Path) paths;         // of every sample, in the order of the samples

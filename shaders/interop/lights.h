@@ -11,6 +11,10 @@ GLINT_CONSTANT(kLightDirectional, 0u);
 GLINT_CONSTANT(kLightPoint, 1u);
 GLINT_CONSTANT(kLightSpot, 2u);
 
+// Beside emissive triangles, up to as many point and spot lights are apart from the hierarchy: every surface takes them
+// all, because samples that a few lights share with many triangles would only add noise.
+GLINT_CONSTANT(kMostLightsApart, 16u);
+
 // A punctual light in world space (KHR_lights_punctual).
 struct LightRecord {
     vec3 position;   // point and spot

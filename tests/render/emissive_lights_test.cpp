@@ -1,5 +1,6 @@
 // Triangles that emit light as lights: their samples share the light with the rays that find them by chance,
 // so that the mean is the same, and the noise is less.
+#include "emit/lights.h"
 #include "render/harness.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
@@ -370,6 +371,29 @@ TEST(EmissiveLights, TheNoiseIsLess) {
     const double slope = 0.5 * std::log2(errors[1] / errors[2]) / 4.0;
     EXPECT_LT(slope, -0.4);
     EXPECT_GT(slope, -0.75);
+}
+
+// `--lights auto` takes more samples of more triangles, and does not count a few lights that are apart from them.
+TEST(EmissiveLights, AutoTakesAFewSamples) {
+    const auto samplesOf = [](int quads, int points) {
+        gltf::Scene scene = emptyScene();
+        const std::int32_t material = addMaterial(scene, lamp({1.0F, 1.0F, 1.0F}, 1.0F));
+        for (int i = 0; i < quads; ++i) {
+            const auto x = static_cast<float>(i);
+            addInstance(scene, addMesh(scene, makeQuad(material, {x, 0, 0}, {1, 0, 0}, {0, 1, 0})));
+        }
+        scene.lights.resize(static_cast<std::size_t>(points));
+        compiler::CompileSettings settings = settingsOf({EmissiveLights::On, 1, 1});
+        settings.lightSamples.reset();
+        return *compiler::lightSamplesOf({&scene, 1}, settings);
+    };
+    EXPECT_EQ(samplesOf(8, 0), 2U);
+    EXPECT_EQ(samplesOf(8, 16), 2U);
+    EXPECT_EQ(samplesOf(8, 17), 4U);
+    EXPECT_EQ(samplesOf(9, 0), 4U);
+    EXPECT_EQ(samplesOf(64, 0), 4U);
+    EXPECT_EQ(samplesOf(65, 0), 8U);
+    EXPECT_EQ(samplesOf(0, 16), 0U) << "without triangles";
 }
 
 // A package without emissive lights has none of their code, and `auto` decides by the bounces.

@@ -87,10 +87,10 @@ std::string withHost(std::string text, const std::string& host) {
            host + code;
 }
 
-void setModule(mustache::data& context, std::string alwaysLobes, std::string alwaysInputs,
+void setModule(mustache::data& context, const std::string& alwaysLobes, const std::string& alwaysInputs,
                const std::string& anyLobes, const std::string& anyInputs) {
-    context.set("moduleAlwaysLobes", std::move(alwaysLobes));
-    context.set("moduleAlwaysInputs", std::move(alwaysInputs));
+    context.set("moduleAlwaysLobes", alwaysLobes);
+    context.set("moduleAlwaysInputs", alwaysInputs);
     context.set("moduleAnyLobes", anyLobes);
     context.set("moduleAnyInputs", anyInputs);
 }

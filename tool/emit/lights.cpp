@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <interop/lights.h>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,6 +58,22 @@ Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const Compile
     return std::string(effectsOfLit(gltf::SceneList(scenes), settings).lights != 0
                            ? ""
                            : "the package has no effect shadow");
+}
+
+// Returns the samples that `--lights auto` takes of a scene's lights, or 0 for all of them.
+std::uint32_t samplesFor(const gltf::Scene& scene, const CompileSettings& settings) {
+    const std::size_t punctual = scene.lights.size() + (settings.addsLight ? 1 : 0);
+    const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
+    if (emitters == 0) {
+        return punctual > kFewLights ? kSamplesOfManyLights : 0;
+    }
+    const std::size_t together = emitters + (punctual > gpu::kMostLightsApart ? punctual : 0);
+    for (const SamplesOfEmitters& few : kSamplesOfEmitters) {
+        if (together <= few.most) {
+            return few.samples;
+        }
+    }
+    return kSamplesOfManyLights;
 }
 
 }  // namespace
@@ -177,11 +194,13 @@ Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const 
         }
         return *settings.lightSamples;
     }
-    const auto tooMany = [&](const gltf::Scene& scene) {
-        const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
-        return scene.lights.size() + emitters + (settings.addsLight ? 1 : 0) > kFewLights;
-    };
-    return !ofHost && std::ranges::any_of(scenes, tooMany) ? kSamplesOfManyLights : 0U;
+    std::uint32_t samples = 0;
+    if (!ofHost) {
+        for (const gltf::Scene& scene : scenes) {
+            samples = std::max(samples, samplesFor(scene, settings));
+        }
+    }
+    return samples;
 }
 
 package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,

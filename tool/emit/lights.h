@@ -18,6 +18,13 @@ namespace glint::compiler {
 inline constexpr std::size_t kFewLights = 256;
 inline constexpr std::uint32_t kSamplesOfManyLights = 8;
 
+// Beside emissive triangles it takes no more samples than these where the hierarchy has up to `most` lights.
+struct SamplesOfEmitters {
+    std::size_t most;
+    std::uint32_t samples;
+};
+inline constexpr SamplesOfEmitters kSamplesOfEmitters[] = {{16, 2}, {128, 4}};
+
 // `--emissive-lights auto` takes no more triangles of a scene as lights.
 inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
 

@@ -513,7 +513,7 @@ inline constexpr SettingValues kLights{
     .words =
         [] {
             return std::vector<SettingWord>{
-                {"auto", "all lights in scenes with up to 256, and 8 in scenes with more"},
+                {"auto", "all of up to 256 lights, and 8 of more; 2 to 8 of the triangles in scenes with emissive lights"},
                 {"all", "every light"}};
         },
     .min = 1,

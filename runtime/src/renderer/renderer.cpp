@@ -119,7 +119,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.lights = state.scene.lights.address;
     constants.lightNodes = state.scene.lightNodes.address;
     constants.lightTreeNodes = state.scene.lightTree.treeNodes;
-    constants.unboundedLights = state.scene.lightTree.unbounded;
+    constants.lightsApart = state.scene.lightTree.apart;
     constants.emitters = state.scene.emitterRecords.address;
     constants.firstEmitters = state.scene.firstEmitters.address;
     constants.emitterCount = static_cast<std::uint32_t>(state.scene.emitters.records.size());

@@ -271,12 +271,18 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<con
                          bool keepsDark) {
     LightTree tree;
     std::vector<LightMember> members;
-    std::vector<gpu::LightNode> unbounded;
+    std::vector<gpu::LightNode> apart;
+    const auto isDirectional = [](const gpu::LightRecord& light) {
+        return light.type == gpu::kLightDirectional;
+    };
+    const auto positions =
+        lights.size() - static_cast<std::size_t>(std::ranges::count_if(lights, isDirectional));
+    const bool allApart = !emitters.empty() && positions <= gpu::kMostLightsApart;
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
-        if (lights[i].type == gpu::kLightDirectional) {
+        if (allApart || isDirectional(lights[i])) {
             gpu::LightNode leaf{};
             leaf.next = gpu::kLightLeaf | i;
-            unbounded.push_back(leaf);
+            apart.push_back(leaf);
         } else {
             members.push_back({i, boundsOfLight(lights[i])});
         }
@@ -286,7 +292,7 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<con
             members.push_back({gpu::kLightEmitter | i, boundsOfEmitter(emitters[i])});
         }
     }
-    tree.unbounded = static_cast<std::uint32_t>(unbounded.size());
+    tree.apart = static_cast<std::uint32_t>(apart.size());
     if (!members.empty()) {
         const std::size_t count = members.size();
         tree.treeNodes = static_cast<std::uint32_t>(2 * count - 1);
@@ -294,7 +300,7 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<con
         LightTreeBuilder(std::move(members), tree.nodes)
             .build(0, count, 0, static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)));
     }
-    tree.nodes.insert(tree.nodes.end(), unbounded.begin(), unbounded.end());
+    tree.nodes.insert(tree.nodes.end(), apart.begin(), apart.end());
     return tree;
 }
 

@@ -11,11 +11,12 @@
 namespace glint {
 
 // The nodes of the tree in depth-first order, so that a node's first child follows it. After them comes a
-// leaf for each light without bounds, which is a directional one.
+// leaf for each light apart from it: directional ones, which have no bounds, and a few others beside
+// emitters.
 struct LightTree {
     std::vector<gpu::LightNode> nodes;
     std::uint32_t treeNodes = 0;  // 0, or 2 n - 1 for n lights with bounds
-    std::uint32_t unbounded = 0;
+    std::uint32_t apart = 0;
 };
 
 // What bounds the light of a triangle.
@@ -27,11 +28,11 @@ struct EmitterBounds {
     double intensity = 0.0;  // an estimate of that along the normal, candela; 0: the triangle is dark
 };
 
-// Builds the tree over lights that have bounds. Each split is the best of 12 bins in each axis, by the
-// surface area orientation heuristic: Conty Estevez and Kulla, "Importance Sampling of Many Lights with
-// Adaptive Tree Splitting" (2018), equation 1. Large trees are built by several threads. The result depends
-// on the lights alone. Takes O(n log n) time, unless the lights are spaced very unevenly.
-// The leaf of an emitter has gpu::kLightEmitter in its number. With `keepsDark`, emitters that are dark have
+// Builds the tree over lights that have bounds and are not apart. Each split is the best of 12 bins in each
+// axis, by the surface area orientation heuristic: Conty Estevez and Kulla, "Importance Sampling of Many
+// Lights with Adaptive Tree Splitting" (2018), equation 1. Large trees are built by several threads. The
+// result depends on the lights alone. Takes O(n log n) time, unless the lights are spaced very unevenly. The
+// leaf of an emitter has gpu::kLightEmitter in its number. With `keepsDark`, emitters that are dark have
 // leaves, too, because they may shine after refitLightTree().
 LightTree buildLightTree(std::span<const gpu::LightRecord> lights,
                          std::span<const EmitterBounds> emitters = {}, bool keepsDark = false);

@@ -110,7 +110,7 @@ Result<std::vector<std::uint32_t>> runSceneKernel(SceneKernel::State& kernel, gp
     constants.lights = scene.lights.address;
     constants.lightNodes = scene.lightNodes.address;
     constants.lightTreeNodes = scene.lightTree.treeNodes;
-    constants.unboundedLights = scene.lightTree.unbounded;
+    constants.lightsApart = scene.lightTree.apart;
     constants.lightCount = scene.lightCount;
     constants.emitters = scene.emitterRecords.address;
     constants.firstEmitters = scene.firstEmitters.address;

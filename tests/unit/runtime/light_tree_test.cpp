@@ -113,7 +113,7 @@ TEST(LightTree, ReachesEveryLightOnce) {
             EXPECT_NE(lights[leaf.light].type, gpu::kLightDirectional);
             ++reached[leaf.light];
         }
-        ASSERT_EQ(tree.nodes.size(), tree.treeNodes + tree.unbounded);
+        ASSERT_EQ(tree.nodes.size(), tree.treeNodes + tree.apart);
         for (std::uint32_t i = tree.treeNodes; i < tree.nodes.size(); ++i) {
             const std::uint32_t light = tree.nodes[i].next & ~gpu::kLightLeaf;
             EXPECT_EQ(lights[light].type, gpu::kLightDirectional);
@@ -223,17 +223,31 @@ void expectEmitterBounds(const LightTree& tree, const std::vector<EmitterBounds>
 }
 
 TEST(LightTree, EmittersAreLeavesUnlessTheyAreDark) {
-    const std::vector<gpu::LightRecord> lights(3, point(1.0F, 2.0F, 3.0F));
+    const std::vector<gpu::LightRecord> lights(20, point(1.0F, 2.0F, 3.0F));
     std::vector<EmitterBounds> emitters = someEmitters(500, 7);
-    EXPECT_EQ(buildLightTree(lights, emitters).treeNodes, 2U * (400 + 3) - 1);
+    EXPECT_EQ(buildLightTree(lights, emitters).treeNodes, 2U * (400 + 20) - 1);
     LightTree tree = buildLightTree(lights, emitters, true);
-    EXPECT_EQ(tree.treeNodes, 2U * (500 + 3) - 1);
+    EXPECT_EQ(tree.treeNodes, 2U * (500 + 20) - 1);
     // Points have a range of infinity and axes everywhere, so only subtrees of emitters are bounded.
     tree = buildLightTree({}, emitters, true);
     expectEmitterBounds(tree, emitters);
     const std::vector<EmitterBounds> moved = someEmitters(500, 8);
     refitLightTree(tree, {}, moved);
     expectEmitterBounds(tree, moved);
+}
+
+TEST(LightTree, AFewLightsAreApartFromEmitters) {
+    const std::vector<EmitterBounds> emitters = someEmitters(4, 9);
+    std::vector<gpu::LightRecord> lights(gpu::kMostLightsApart, point(1.0F, 2.0F, 3.0F));
+    const LightTree few = buildLightTree(lights, emitters, true);
+    EXPECT_EQ(few.apart, lights.size());
+    EXPECT_EQ(few.treeNodes, 2U * 4 - 1);
+    EXPECT_EQ(few.nodes.back().next, gpu::kLightLeaf | (gpu::kMostLightsApart - 1));
+    EXPECT_EQ(buildLightTree(lights).apart, 0U) << "without emitters";
+    lights.push_back(point(4.0F, 5.0F, 6.0F));
+    const LightTree many = buildLightTree(lights, emitters, true);
+    EXPECT_EQ(many.apart, 0U);
+    EXPECT_EQ(many.treeNodes, 2U * (4 + lights.size()) - 1);
 }
 
 // Threads build large trees; the result is the same.
