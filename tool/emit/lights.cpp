@@ -83,6 +83,11 @@ std::size_t countEmitters(const gltf::Scene& scene) {
     return count;
 }
 
+std::size_t countLights(const gltf::Scene& scene, const CompileSettings& settings) {
+    const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
+    return scene.lights.size() + emitters + (settings.addsLight ? 1 : 0);
+}
+
 Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
                                         const CompileSettings& settings) {
     const bool isOn = settings.emissiveLights == EmissiveLights::On;
@@ -177,10 +182,7 @@ Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const 
         }
         return *settings.lightSamples;
     }
-    const auto tooMany = [&](const gltf::Scene& scene) {
-        const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
-        return scene.lights.size() + emitters + (settings.addsLight ? 1 : 0) > kFewLights;
-    };
+    const auto tooMany = [&](const gltf::Scene& scene) { return countLights(scene, settings) > kFewLights; };
     return !ofHost && std::ranges::any_of(scenes, tooMany) ? kSamplesOfManyLights : 0U;
 }
 

@@ -80,9 +80,13 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     emissive.skyLight = compiler::SkyLight::On;
     facts.skyMayLight = compiler::skyLightOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
-    facts.lights = static_cast<std::size_t>(std::ranges::count_if(
-        data.lights, [](const LightView& light) { return light.type != LightView::Type::Directional; }));
-    facts.manyLights = scene.lights.size() > compiler::kFewLights;
+    compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
+    const Result<compiler::EmissiveLights> emissiveLights = compiler::emissiveLightsOf({&scene, 1}, own);
+    own.emissiveLights = emissiveLights ? *emissiveLights : compiler::EmissiveLights::Off;
+    const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
+    const std::size_t lights = compiler::countLights(scene, own);
+    facts.lights = lights - static_cast<std::size_t>(directional);
+    facts.manyLights = lights > compiler::kFewLights;
     facts.sizedLights =
         std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });
     return facts;
