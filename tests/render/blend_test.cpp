@@ -5,7 +5,11 @@
 
 #include <glint/strategies.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <optional>
 
 namespace {
@@ -172,6 +176,103 @@ TEST(Blend, ShadowsAreAsDarkAsTheAlpha) {
     const auto count = static_cast<double>(lit.pixels.size());
     const double error = std::sqrt(0.25 * 0.75 / (4.0 * count));
     EXPECT_NEAR(share / count, 0.75, 4.0 * error);
+}
+
+// The stations of the scene below stand side by side, so far apart that no picture shows two.
+constexpr float kStationDistance = 100.0F;
+constexpr float kLitAlpha = 0.4F;
+enum class LitLayer : std::uint8_t { Blended, Opaque, None };
+constexpr std::array kLitLayers{LitLayer::Blended, LitLayer::Opaque, LitLayer::None};
+
+// Returns stations of a lit background behind a lit layer with a coat that emits light: the layer is blended,
+// opaque, or not there. The camera looks at the first three stations. At three others a mirror shows what is
+// behind the camera.
+gltf::Scene litStations() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material layer;
+    layer["baseColorFactor"] = {0.7F, 0.3F, 0.2F, kLitAlpha};
+    layer["metallicFactor"] = 0.0F;
+    layer["roughnessFactor"] = 0.5F;
+    layer["specularColorFactor"] = {1.0F, 0.8F, 0.6F};
+    layer["emissiveFactor"] = {0.05F, 0.2F, 0.1F};
+    layer["clearcoatFactor"] = 1.0F;
+    layer["clearcoatRoughnessFactor"] = 0.4F;
+    layer.doubleSided = true;
+    layer.alphaMode = materials::AlphaMode::Blend;
+    materials::Material whole = layer;
+    whole.alphaMode = materials::AlphaMode::Opaque;
+    materials::Material matte;
+    matte["baseColorFactor"] = {0.1F, 0.4F, 0.9F, 1.0F};
+    matte["metallicFactor"] = 0.0F;
+    matte["roughnessFactor"] = 1.0F;
+    matte.doubleSided = true;
+    const int blended = addMaterial(scene, layer);
+    const int opaque = addMaterial(scene, whole);
+    const int background = addMaterial(scene, matte);
+    const int mirror = addMaterial(scene, mirrorMaterial());
+    float x = 0.0F;
+    for (const bool inMirror : {false, true}) {
+        for (const LitLayer kind : kLitLayers) {
+            const auto add = [&](int material, float half, float z) {
+                addInstance(scene, addMesh(scene, makeQuad(material, {x - half, -half, z}, {2 * half, 0, 0},
+                                                           {0, 2 * half, 0})));
+            };
+            const float behind = inMirror ? 1.0F : -1.0F;
+            if (inMirror) {
+                add(mirror, 1.0F, -1.0F);
+            }
+            if (kind != LitLayer::None) {
+                add(kind == LitLayer::Blended ? blended : opaque, 9.0F, behind);
+            }
+            add(background, 9.0F, 2.0F * behind);
+            x += kStationDistance;
+        }
+    }
+    addDirectionalLight(scene, {0.3F, -0.5F, -0.8124038F}, 3.0F);
+    addDirectionalLight(scene, {-0.2F, -0.3F, 0.9327379F}, 2.0F);
+    return scene;
+}
+
+// A blended layer counts with all of its light: of lobes, coat and emission.
+TEST(Blend, LitLayersAreOverTheirBackground) {
+    const gltf::Scene scene = litStations();
+    compiler::CompileSettings settings = blendSettings();
+    settings.strategies = package::kStrategyUber;
+    // Shadows of the layers would fall onto the background.
+    settings.effects = {false, compiler::builtinEffects({"reflection"})};
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = squareSetup(scene);
+    setup.samples = 16;
+    for (const bool inMirror : {false, true}) {
+        std::array<LinearImage, kLitLayers.size()> images;
+        for (std::size_t i = 0; i < images.size(); ++i) {
+            const std::size_t station = i + (inMirror ? images.size() : 0);
+            setup.frame.camera.position[0] = kStationDistance * static_cast<float>(station);
+            images[i] = loaded.render(package::kStrategyUber, setup);
+            ASSERT_FALSE(images[i].pixels.empty());
+        }
+        const auto& [blended, layer, background] = images;
+        const auto count = static_cast<double>(blended.pixels.size());
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            double found = 0.0;
+            double expected = 0.0;
+            double variance = 0.0;
+            for (std::size_t i = 0; i < blended.pixels.size(); ++i) {
+                const double front = layer.pixels[i][channel];
+                const double back = background.pixels[i][channel];
+                found += blended.pixels[i][channel] / count;
+                expected += (kLitAlpha * front + (1.0 - kLitAlpha) * back) / count;
+                variance += kLitAlpha * (1.0 - kLitAlpha) * (front - back) * (front - back) / count;
+            }
+            const double error = std::sqrt(variance / (setup.samples * count));
+            std::printf("%s, channel %zu: %.5f, expected %.5f ± %.5f\n", inMirror ? "mirror" : "camera",
+                        channel, found, expected, error);
+            EXPECT_NEAR(found, expected, 4.0 * error) << "channel " << channel;
+            EXPECT_GT(variance, 1e-3) << "layer and background look alike";
+        }
+    }
 }
 
 // Without BLEND in a scene its package has no code of it.
