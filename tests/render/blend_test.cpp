@@ -1,7 +1,9 @@
 // Tests alphaMode BLEND: the mean of many random choices is what the operator "over" gives for surfaces in
 // the order of depth, for what the camera sees, for what rays hit, and for what shadow rays pass.
+#include "gltf/import.h"
 #include "interop/scene.h"
 #include "render/pixel_test.h"
+#include "support/models.h"
 
 #include <glint/strategies.h>
 
@@ -10,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 namespace {
@@ -272,6 +275,51 @@ TEST(Blend, LitLayersAreOverTheirBackground) {
             EXPECT_NEAR(found, expected, 4.0 * error) << "channel " << channel;
             EXPECT_GT(variance, 1e-3) << "layer and background look alike";
         }
+    }
+}
+
+// Khronos's AlphaBlendModeTest: the label of an opaque surface has a green check mark, drawn with an alpha
+// that must be ignored, over a red cross. The one of BLEND has a clear sheet over a check mark.
+TEST(Blend, AlphaBlendModeTestShowsItsCheckMarks) {
+    const auto path = test::modelsFolder() / "features" / "AlphaBlendModeTest" / "AlphaBlendModeTest.gltf";
+    if (!std::filesystem::exists(path)) {
+        GTEST_SKIP() << test::noModels(path);
+    }
+    gltf::ImportOptions import;
+    import.decodeImages = true;
+    Result<gltf::Scene> scene = gltf::importScene(path, import);
+    ASSERT_TRUE(scene.ok()) << toString(scene.error());
+    // The marks lie on slanted labels; the camera looks along their normal.
+    constexpr double kUp = 0.5547002;
+    constexpr double kBack = 0.8320503;
+    addCamera(*scene);
+    gltf::Camera& camera = scene->cameras.front();
+    camera.yfov = 2.0 * std::atan(0.13);
+    camera.world = {1, 0, 0, 0, 0, kUp, -kBack, 0, 0, kBack, kUp, 0, 0, kBack, 0.409 + kUp, 1};
+    compiler::CompileSettings settings = blendSettings();
+    settings.strategies = package::kStrategyUber;
+    settings.effects = {false, 0};
+    const LoadedScene loaded(*scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    RenderSetup setup = squareSetup(*scene);
+    for (const float x : {-2.6F, -1.1F}) {
+        setup.frame.camera.position[0] = x;
+        const LinearImage image = loaded.render(package::kStrategyUber, setup);
+        ASSERT_FALSE(image.pixels.empty());
+        // The mark fills the middle, and its columns differ from those beside it.
+        const auto share = [&](std::uint32_t first, std::uint32_t last, std::size_t high, std::size_t low) {
+            int count = 0;
+            for (std::uint32_t column = first; column < last; ++column) {
+                for (std::uint32_t row = 0; row < image.height; ++row) {
+                    const Pixel pixel = at(image, column, row);
+                    count += pixel[high] > 2.0F * pixel[low] ? 1 : 0;
+                }
+            }
+            return static_cast<double>(count) / ((last - first) * image.height);
+        };
+        EXPECT_GT(share(8, 24, 1, 0), 0.1) << "no green mark at " << x;
+        EXPECT_EQ(share(0, 3, 1, 0) + share(29, 32, 1, 0), 0.0) << "green beside the mark at " << x;
+        EXPECT_EQ(share(0, 32, 0, 1), 0.0) << "a red cross at " << x;
     }
 }
 
