@@ -3,14 +3,15 @@
 
     benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--kinds glass,blend,mask] [--size WxH]
                                   [--rounds N] [--tracer NAME] [--device NAME] [--bounces N]
-    benchmarks/measure_shadows.py --write FILE
+    benchmarks/measure_shadows.py --write FILE [--scene candle|vase]
 
 A floor with columns stands under lamps, with panes between them: of coloured glass, of BLEND with an alpha of 0.4, or
 of MASK with a texture of holes. The scene is rendered with each setting in turn, in an order that changes from round to
 round. Prints Markdown, a row as soon as it is measured: the device time of the passes that send shadow rays (lighting
 and the shading of hits), and the ratio to the default in the same round.
 
---write writes the other scene of docs/shadows.md instead: a candle in a holder of blue glass.
+--write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), or a vase
+made by BLEND (docs/materials.md).
 """
 import argparse
 import json
@@ -24,7 +25,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "examples"))
-from scene_parts import Buffer, png, write_scene  # noqa: E402
+from scene_parts import Buffer, png, sphere, write_scene  # noqa: E402
 
 SETTINGS = ("alpha", "opaque", "glass")
 DEFAULT = "alpha"
@@ -66,6 +67,30 @@ def turned(buffer, material, profile, segments=96):
             a = first + 2 * segment
             indices += [a, a + 2, a + 1, a + 1, a + 2, a + 3]
     return mesh(buffer, material, positions, normals, indices)
+
+
+def turned_smoothly(buffer, material, profile, segments=96):
+    """The same with normals that are smooth along the profile, too."""
+    positions, normals, indices = [], [], []
+    for row, (radius, height) in enumerate(profile):
+        before, after = profile[max(row - 1, 0)], profile[min(row + 1, len(profile) - 1)]
+        length = math.hypot(after[0] - before[0], after[1] - before[1])
+        out, up = (after[1] - before[1]) / length, (before[0] - after[0]) / length
+        for segment in range(segments + 1):
+            angle = 2 * math.pi * segment / segments
+            x, z = math.cos(angle), -math.sin(angle)
+            positions += [radius * x, height, radius * z]
+            normals += [out * x, up, out * z]
+            if row > 0 and segment > 0:
+                a = row * (segments + 1) + segment
+                b = a - segments - 1
+                indices += [b - 1, b, a, b - 1, a, a - 1]
+    return mesh(buffer, material, positions, normals, indices)
+
+
+def ball(buffer, material, radius):
+    positions, normals, _, _, indices = sphere(64, 32)
+    return mesh(buffer, material, [radius * p for p in positions], normals, indices)
 
 
 def glass(color, **volume):
@@ -153,6 +178,36 @@ def write_candle(path):
                 extensions=lights)
 
 
+def write_vase(path):
+    """Writes a vase of smooth glass that is made by BLEND, with sand and two stalks in it, beside a matte one."""
+    buffer = Buffer()
+    vase = {"pbrMetallicRoughness": {"baseColorFactor": [0.75, 0.9, 0.95, 0.25], "metallicFactor": 0,
+                                     "roughnessFactor": 0.03}, "alphaMode": "BLEND", "doubleSided": True}
+    materials = [matte(0.6, 0.6, 0.6), vase, matte(0.75, 0.5, 0.25), matte(0.1, 0.45, 0.12), matte(0.8, 0.08, 0.1),
+                 matte(0.75, 0.9, 0.95)]
+    profile = [(0.32 + 0.14 * math.sin(4.4 * h / 1.3 + 0.3), h) for h in [1.3 * i / 48 for i in range(49)]]
+    profile = [(0.0, 0.0)] + profile
+    sand = [(0.9 * r, h + 0.02) for r, h in profile[:14]] + [(0.0, profile[14][1])]
+    stalk = [(0.03, 0.1), (0.03, 1.65), (0.0, 1.66)]
+    meshes = [quad(buffer, 0, [-5, 0, 4], [10, 0, 0], [0, 0, -8]), turned_smoothly(buffer, 1, profile),
+              turned(buffer, 2, sand), turned(buffer, 3, stalk, 16), ball(buffer, 4, 0.16),
+              turned_smoothly(buffer, 5, profile)]
+    nodes = [{"mesh": 0}]
+    for x, number in ((-0.65, 1), (0.65, 5)):
+        nodes += [{"mesh": number, "translation": [x, 0, 0]}, {"mesh": 2, "translation": [x, 0, 0]}]
+        for side in (-1, 1):
+            lean = [0, 0, -side * math.sin(0.06), math.cos(0.06)]
+            nodes += [{"mesh": 3, "translation": [x, 0, 0.1 * side], "rotation": lean},
+                      {"mesh": 4, "translation": [x + side * 0.2, 1.68, 0.1 * side]}]
+    view, cameras = camera(0.6, [0, 1.6, 3.8], 0.22)
+    lamps, lights = point_lights([([2.0, 3.0, 2.5], 40), ([-3.0, 3.0, 1.0], 20)])
+    write_scene(path, ["KHR_lights_punctual"], nodes + [view] + lamps, buffer, meshes=meshes, materials=materials,
+                cameras=cameras, extensions=lights)
+
+
+WRITERS = {"candle": write_candle, "vase": write_vase}
+
+
 def device_time(arguments, scene, folder, setting):
     """Renders once; returns the milliseconds of the passes that send shadow rays."""
     stats = folder / "stats.json"
@@ -180,10 +235,11 @@ def main():
     parser.add_argument("--tracer", default="auto", help="auto, ray-query or ray-pipeline; default auto")
     parser.add_argument("--device", help="part of the device's name; default the first that will do")
     parser.add_argument("--bounces", type=int, default=1, help="default 1")
-    parser.add_argument("--write", type=pathlib.Path, help="write the scene of the candle to this file, and end")
+    parser.add_argument("--write", type=pathlib.Path, help="write a scene to this file, and end")
+    parser.add_argument("--scene", choices=WRITERS, default="candle", help="the scene of --write; default candle")
     arguments = parser.parse_args()
     if arguments.write:
-        write_candle(arguments.write)
+        WRITERS[arguments.scene](arguments.write)
         return
     chance = random.Random(1)
     with tempfile.TemporaryDirectory(prefix="glint-shadows-") as name:
