@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 """Measures what --shadow-through costs, by the number of panes between surfaces and their lights.
 
-    benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--size WxH] [--rounds N] [--tracer NAME]
-                                  [--device NAME] [--bounces N]
-    benchmarks/measure_shadows.py --write FILE
+    benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--kinds glass,blend,mask] [--size WxH]
+                                  [--rounds N] [--tracer NAME] [--device NAME] [--bounces N]
+    benchmarks/measure_shadows.py --write FILE [--scene candle|vase]
 
-A floor and a wall of boxes stand under lamps, with panes of coloured glass between them. The scene is rendered with
-each setting in turn, in an order that changes from round to round. Prints Markdown, a row as soon as it is measured:
-the device time of the passes that send shadow rays (lighting and the shading of hits), and the ratio to the default in
-the same round.
+A floor with columns stands under lamps, with panes between them: of coloured glass, of BLEND with an alpha of 0.4, or
+of MASK with a texture of holes. The scene is rendered with each setting in turn, in an order that changes from round to
+round. Prints Markdown, a row as soon as it is measured: the device time of the passes that send shadow rays (lighting
+and the shading of hits), and the ratio to the default in the same round.
 
---write writes the other scene of docs/shadows.md instead: a candle in a holder of blue glass.
+--write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), or a vase
+made by BLEND (docs/materials.md).
 """
 import argparse
 import json
@@ -24,28 +25,30 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "examples"))
-from scene_parts import Buffer, write_scene  # noqa: E402
+from scene_parts import Buffer, png, sphere, write_scene  # noqa: E402
 
 SETTINGS = ("alpha", "opaque", "glass")
 DEFAULT = "alpha"
 
 
-def mesh(buffer, material, positions, normals, indices):
+def mesh(buffer, material, positions, normals, indices, uvs=()):
     columns = [positions[axis::3] for axis in range(3)]
     attributes = {"POSITION": buffer.add(positions, 3, min=[min(c) for c in columns], max=[max(c) for c in columns]),
                   "NORMAL": buffer.add(normals, 3)}
+    if uvs:
+        attributes["TEXCOORD_0"] = buffer.add(uvs, 2)
     return {"primitives": [{"attributes": attributes, "indices": buffer.add_indices(indices), "material": material}]}
 
 
-def quad(buffer, material, corner, right, up):
-    """Returns a mesh: a parallelogram whose front looks along right x up."""
+def quad(buffer, material, corner, right, up, repeats=0):
+    """Returns a mesh: a parallelogram whose front looks along right x up. Its UVs, if any, repeat so many times."""
     corners = [corner, [c + r for c, r in zip(corner, right)],
                [c + r + u for c, r, u in zip(corner, right, up)], [c + u for c, u in zip(corner, up)]]
     normal = [right[1] * up[2] - right[2] * up[1], right[2] * up[0] - right[0] * up[2],
               right[0] * up[1] - right[1] * up[0]]
     length = math.sqrt(sum(n * n for n in normal))
     return mesh(buffer, material, [c for point in corners for c in point], [n / length for n in normal] * 4,
-                [0, 1, 2, 0, 2, 3])
+                [0, 1, 2, 0, 2, 3], [0, repeats, repeats, repeats, repeats, 0, 0, 0] if repeats else ())
 
 
 def turned(buffer, material, profile, segments=96):
@@ -64,6 +67,30 @@ def turned(buffer, material, profile, segments=96):
             a = first + 2 * segment
             indices += [a, a + 2, a + 1, a + 1, a + 2, a + 3]
     return mesh(buffer, material, positions, normals, indices)
+
+
+def turned_smoothly(buffer, material, profile, segments=96):
+    """The same with normals that are smooth along the profile, too."""
+    positions, normals, indices = [], [], []
+    for row, (radius, height) in enumerate(profile):
+        before, after = profile[max(row - 1, 0)], profile[min(row + 1, len(profile) - 1)]
+        length = math.hypot(after[0] - before[0], after[1] - before[1])
+        out, up = (after[1] - before[1]) / length, (before[0] - after[0]) / length
+        for segment in range(segments + 1):
+            angle = 2 * math.pi * segment / segments
+            x, z = math.cos(angle), -math.sin(angle)
+            positions += [radius * x, height, radius * z]
+            normals += [out * x, up, out * z]
+            if row > 0 and segment > 0:
+                a = row * (segments + 1) + segment
+                b = a - segments - 1
+                indices += [b - 1, b, a, b - 1, a, a - 1]
+    return mesh(buffer, material, positions, normals, indices)
+
+
+def ball(buffer, material, radius):
+    positions, normals, _, _, indices = sphere(64, 32)
+    return mesh(buffer, material, [radius * p for p in positions], normals, indices)
 
 
 def glass(color, **volume):
@@ -94,21 +121,43 @@ def camera(yfov, place, pitch):
             [{"type": "perspective", "perspective": {"yfov": yfov, "aspectRatio": 16 / 9, "znear": 0.01}}])
 
 
-def write_panes(path, panes):
-    """Writes a floor with columns under four lamps, and `panes` sheets of glass between them."""
+def sheet(kind, color):
+    """Returns the material of a pane. The texture of MASK is texture 0."""
+    if kind == "glass":
+        return glass(color)
+    alpha = 0.4 if kind == "blend" else 1
+    material = {"pbrMetallicRoughness": {"baseColorFactor": [*color, alpha], "metallicFactor": 0},
+                "alphaMode": kind.upper(), "doubleSided": True}
+    if kind == "mask":
+        material["pbrMetallicRoughness"]["baseColorTexture"] = {"index": 0}
+    return material
+
+
+def hole(x, y):
+    """A pixel of a texture of 16 x 16 with a round hole."""
+    return 255, 255, 255, 0 if math.hypot(x - 7.5, y - 7.5) < 5 else 255
+
+
+def write_panes(path, kind, panes):
+    """Writes a floor with columns under four lamps, and `panes` sheets of a kind between them."""
     buffer = Buffer()
-    materials = [matte(0.7, 0.7, 0.7), matte(0.6, 0.5, 0.4)] + [glass((0.95, 0.8, 0.6)), glass((0.7, 0.9, 0.95))]
+    materials = [matte(0.7, 0.7, 0.7), matte(0.6, 0.5, 0.4)]
+    textures = {}
+    if panes:
+        materials += [sheet(kind, color) for color in ((0.95, 0.8, 0.6), (0.7, 0.9, 0.95))]
+        if kind == "mask":
+            textures = {"images": [{"uri": png(16, 16, hole)}], "textures": [{"source": 0}]}
     meshes = [quad(buffer, 0, [-8, 0, 6], [16, 0, 0], [0, 0, -16])]
     meshes += [turned(buffer, 1, [(0.3, 0), (0.3, 1.4), (0, 1.4)], 24)]
     # The panes are above the view.
-    meshes += [quad(buffer, 2 + number % 2, [-9, 3.0 + 0.1 * number, 8], [18, 0, 0], [0, 0, -20])
-               for number in range(panes)]
+    meshes += [quad(buffer, 2 + number % 2, [-9, 3.0 + 0.1 * number, 8], [18, 0, 0], [0, 0, -20],
+                    24 if kind == "mask" else 0) for number in range(panes)]
     nodes = [{"mesh": 0}] + [{"mesh": 1, "translation": [x, 0, z]} for x in (-3, -1, 1, 3) for z in (-6, -3, 0)]
     nodes += [{"mesh": 2 + number} for number in range(panes)]
     view, cameras = camera(0.7, [0, 2.2, 5.5], 0.3)
     lamps, lights = point_lights([([x, 5.5, z], 30) for x in (-3, 3) for z in (-5, 1)])
     write_scene(path, USED, nodes + [view] + lamps, buffer, meshes=meshes, materials=materials, cameras=cameras,
-                extensions=lights)
+                extensions=lights, **textures)
 
 
 def write_candle(path):
@@ -127,6 +176,36 @@ def write_candle(path):
     lamps, lights = point_lights([([2.0, 2.5, 2.5], 30), ([-3.0, 3.0, 1.0], 15)])
     write_scene(path, USED, nodes + [view] + lamps, buffer, meshes=meshes, materials=materials, cameras=cameras,
                 extensions=lights)
+
+
+def write_vase(path):
+    """Writes a vase of smooth glass that is made by BLEND, with sand and two stalks in it, beside a matte one."""
+    buffer = Buffer()
+    vase = {"pbrMetallicRoughness": {"baseColorFactor": [0.75, 0.9, 0.95, 0.25], "metallicFactor": 0,
+                                     "roughnessFactor": 0.03}, "alphaMode": "BLEND", "doubleSided": True}
+    materials = [matte(0.6, 0.6, 0.6), vase, matte(0.75, 0.5, 0.25), matte(0.1, 0.45, 0.12), matte(0.8, 0.08, 0.1),
+                 matte(0.75, 0.9, 0.95)]
+    profile = [(0.32 + 0.14 * math.sin(4.4 * h / 1.3 + 0.3), h) for h in [1.3 * i / 48 for i in range(49)]]
+    profile = [(0.0, 0.0)] + profile
+    sand = [(0.9 * r, h + 0.02) for r, h in profile[:14]] + [(0.0, profile[14][1])]
+    stalk = [(0.03, 0.1), (0.03, 1.65), (0.0, 1.66)]
+    meshes = [quad(buffer, 0, [-5, 0, 4], [10, 0, 0], [0, 0, -8]), turned_smoothly(buffer, 1, profile),
+              turned(buffer, 2, sand), turned(buffer, 3, stalk, 16), ball(buffer, 4, 0.16),
+              turned_smoothly(buffer, 5, profile)]
+    nodes = [{"mesh": 0}]
+    for x, number in ((-0.65, 1), (0.65, 5)):
+        nodes += [{"mesh": number, "translation": [x, 0, 0]}, {"mesh": 2, "translation": [x, 0, 0]}]
+        for side in (-1, 1):
+            lean = [0, 0, -side * math.sin(0.06), math.cos(0.06)]
+            nodes += [{"mesh": 3, "translation": [x, 0, 0.1 * side], "rotation": lean},
+                      {"mesh": 4, "translation": [x + side * 0.2, 1.68, 0.1 * side]}]
+    view, cameras = camera(0.6, [0, 1.6, 3.8], 0.22)
+    lamps, lights = point_lights([([2.0, 3.0, 2.5], 40), ([-3.0, 3.0, 1.0], 20)])
+    write_scene(path, ["KHR_lights_punctual"], nodes + [view] + lamps, buffer, meshes=meshes, materials=materials,
+                cameras=cameras, extensions=lights)
+
+
+WRITERS = {"candle": write_candle, "vase": write_vase}
 
 
 def device_time(arguments, scene, folder, setting):
@@ -150,15 +229,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--glint", default=ROOT / "build/release/bin/glint", help="default build/release/bin/glint")
     parser.add_argument("--panes", default="0,1,2,4,8", help="default 0,1,2,4,8")
+    parser.add_argument("--kinds", default="glass", help="of panes: glass, blend and mask; default glass")
     parser.add_argument("--size", default="640x360", help="default 640x360")
     parser.add_argument("--rounds", type=int, default=5, help="default 5")
     parser.add_argument("--tracer", default="auto", help="auto, ray-query or ray-pipeline; default auto")
     parser.add_argument("--device", help="part of the device's name; default the first that will do")
     parser.add_argument("--bounces", type=int, default=1, help="default 1")
-    parser.add_argument("--write", type=pathlib.Path, help="write the scene of the candle to this file, and end")
+    parser.add_argument("--write", type=pathlib.Path, help="write a scene to this file, and end")
+    parser.add_argument("--scene", choices=WRITERS, default="candle", help="the scene of --write; default candle")
     arguments = parser.parse_args()
     if arguments.write:
-        write_candle(arguments.write)
+        WRITERS[arguments.scene](arguments.write)
         return
     chance = random.Random(1)
     with tempfile.TemporaryDirectory(prefix="glint-shadows-") as name:
@@ -167,16 +248,17 @@ def main():
         print(f"{arguments.size}, {arguments.rounds} rounds, {arguments.bounces} bounces, ms of a sample\n")
         print(f"| panes | {DEFAULT}, ms | " + " | ".join(f"{setting} / {DEFAULT}" for setting in others) + " |")
         print("|---|---|" + "---|" * len(others), flush=True)
-        for count in [int(count) for count in arguments.panes.split(",")]:
-            scene = folder / f"panes{count}.gltf"
-            write_panes(scene, count)
-            times = {setting: [] for setting in SETTINGS}
-            for _ in range(arguments.rounds):
-                for setting in chance.sample(SETTINGS, len(SETTINGS)):
-                    times[setting].append(device_time(arguments, scene, folder, setting))
-            ratios = [[now / then for now, then in zip(times[setting], times[DEFAULT])] for setting in others]
-            print(f"| {count} | {spread(times[DEFAULT])} | " + " | ".join(spread(ratio) for ratio in ratios) + " |",
-                  flush=True)
+        for kind in arguments.kinds.split(","):
+            for count in [int(count) for count in arguments.panes.split(",")]:
+                scene = folder / f"{kind}{count}.gltf"
+                write_panes(scene, kind, count)
+                times = {setting: [] for setting in SETTINGS}
+                for _ in range(arguments.rounds):
+                    for setting in chance.sample(SETTINGS, len(SETTINGS)):
+                        times[setting].append(device_time(arguments, scene, folder, setting))
+                ratios = [[now / then for now, then in zip(times[setting], times[DEFAULT])] for setting in others]
+                print(f"| {count} {kind} | {spread(times[DEFAULT])} | " +
+                      " | ".join(spread(ratio) for ratio in ratios) + " |", flush=True)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 // so that the mean is the same, and the noise is less.
 #include "emit/lights.h"
 #include "render/harness.h"
+#include "render/moving_scenes.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
 #include "support/nightly.h"
@@ -347,6 +348,37 @@ TEST(EmissiveLights, LampsThatMoveAreFollowed) {
         ASSERT_TRUE(moving.gpuScene().updateAndWait({instances, {}}));
         EXPECT_EQ(meanOf(render(moving, setupOf(scene, 2, 1))), 0.0) << "hidden";
     }
+}
+
+// Samples of a lamp that follows joints lie on the triangles of its pose, not on those of the mesh.
+TEST(EmissiveLights, ASkinnedLampIsFollowed) {
+    const auto lampAt = [](double angle) {
+        gltf::Scene scene = skinnedScene(angle);
+        scene.lights.clear();
+        scene.materials[0] = matte(0.5F);
+        materials::Material strip = lamp({1, 1, 1}, 8.0F);
+        strip.doubleSided = true;
+        scene.materials[1] = strip;
+        return scene;
+    };
+    const gltf::Scene rest = lampAt(0.0);
+    const gltf::Scene bent = lampAt(1.2);
+    const gltf::Scene still = bakedScene(bent);
+    const Ways ways{EmissiveLights::On, 1, 1, false};
+    const LoadedScene expected = load(still, ways);
+    const LoadedScene moving(rest, settingsOf(ways), [](scene_view::SceneViewData& data) {
+        data.lights.clear();
+        data.moves = true;
+    });
+    ASSERT_TRUE(expected.ok() && moving.ok());
+    const Estimate before = estimate(moving, rest, ways, 32);
+    scene_view::SceneViewData data = scene_view::makeSceneView(rest);
+    scene_view::poseSceneView(bent, data);
+    const Status moved = moving.gpuScene().updateAndWait(data.motion());
+    ASSERT_TRUE(moved) << toString(moved.error());
+    const Estimate after = estimate(moving, rest, ways, 32);
+    expectSameMean(after, estimate(expected, still, ways, 32), "bent");
+    EXPECT_GT(std::abs(after.mean - before.mean), 0.02 * before.mean) << "bending changes nothing";
 }
 
 // At as many samples, the noise is a fraction of that of chance, and falls with their root.

@@ -113,20 +113,41 @@ TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
     }
 }
 
+// Without the light of sky and emissive triangles, and with both as lights.
 TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
     const gltf::Scene scene = roomOfMaterials();
-    const LoadedScene loaded(scene, pathSettings(3));
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = pathSetup(scene, 24, 16, 2);
-    const LinearImage reference = loaded.render(pathOptions(3), setup);
-    ASSERT_FALSE(reference.pixels.empty());
-    for (const package::Ordering ordering :
-         {package::Ordering::WaveBallot, package::Ordering::LocalHistogram, package::Ordering::TileSort}) {
-        RendererOptions options = pathOptions(3);
-        options.ordering = ordering;
-        options.batchEffects = ordering == package::Ordering::LocalHistogram;
-        setup.frame.binning = ordering == package::Ordering::TileSort ? Binning::Octahedral : Binning::Sign;
-        expectSameImage(loaded.render(options, setup), reference, std::string(package::nameOf(ordering)));
+    for (const bool lights : {false, true}) {
+        compiler::CompileSettings settings = pathSettings(3);
+        if (lights) {
+            settings.strategies |= package::kStrategySortedUber;
+            settings.effects.named = compiler::builtinEffects({"shadow", "reflection", "indirect-diffuse"});
+            settings.emissiveLights = compiler::EmissiveLights::On;
+            settings.skyLight = compiler::SkyLight::On;
+        }
+        const LoadedScene loaded(scene, settings);
+        ASSERT_TRUE(loaded.ok());
+        ASSERT_EQ(loaded.package().emission() != nullptr, lights);
+        setup.frame.binning = Binning::None;
+        const LinearImage reference = loaded.render(pathOptions(3), setup);
+        ASSERT_FALSE(reference.pixels.empty());
+        for (const package::Ordering ordering :
+             {package::Ordering::WaveBallot, package::Ordering::LocalHistogram,
+              package::Ordering::TileSort}) {
+            const package::Strategy strategy = lights && ordering != package::Ordering::WaveBallot
+                                                   ? package::kStrategySortedUber
+                                                   : package::kStrategyVisibility;
+            RendererOptions options = pathOptions(3, strategy);
+            options.ordering = ordering;
+            options.batchEffects = ordering == package::Ordering::LocalHistogram;
+            options.checkOrder = true;
+            setup.frame.binning =
+                ordering == package::Ordering::TileSort ? Binning::Octahedral : Binning::Sign;
+            FrameCounters counters;
+            expectSameImage(loaded.render(options, setup, &counters), reference,
+                            std::string(package::nameOf(ordering)) + (lights ? " with lights" : ""));
+            EXPECT_EQ(counters.orderErrors, 0U);
+        }
     }
 }
 

@@ -100,6 +100,11 @@ std::size_t countEmitters(const gltf::Scene& scene) {
     return count;
 }
 
+std::size_t countLights(const gltf::Scene& scene, const CompileSettings& settings) {
+    const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
+    return scene.lights.size() + emitters + (settings.addsLight ? 1 : 0);
+}
+
 Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
                                         const CompileSettings& settings) {
     const bool isOn = settings.emissiveLights == EmissiveLights::On;

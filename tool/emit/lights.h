@@ -32,6 +32,10 @@ inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
 // animation.
 std::size_t countEmitters(const gltf::Scene& scene);
 
+// Returns the number of lights of a scene in a package: its own, the light that `settings` add, and the
+// emissive triangles, where these are lights. emissiveLights must be decided.
+std::size_t countLights(const gltf::Scene& scene, const CompileSettings& settings);
+
 // Returns EmissiveLights::On or Off for a package of `scenes`. It is Off where nothing emits light. Error
 // "emissive-lights" if the settings demand what a host with lights of its own, or a package without shadow
 // rays, can't have.

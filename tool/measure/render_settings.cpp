@@ -80,9 +80,14 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     emissive.skyLight = compiler::SkyLight::On;
     facts.skyMayLight = compiler::skyLightOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
-    facts.lights = static_cast<std::size_t>(std::ranges::count_if(
-        data.lights, [](const LightView& light) { return light.type != LightView::Type::Directional; }));
-    facts.manyLights = scene.lights.size() > compiler::kFewLights;
+    compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
+    const Result<compiler::EmissiveLights> emissiveLights = compiler::emissiveLightsOf({&scene, 1}, own);
+    own.emissiveLights = emissiveLights ? *emissiveLights : compiler::EmissiveLights::Off;
+    const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
+    facts.lights = compiler::countLights(scene, own) - static_cast<std::size_t>(directional);
+    own.lightSamples.reset();
+    const Result<std::uint32_t> samples = compiler::lightSamplesOf({&scene, 1}, own);
+    facts.manyLights = samples && *samples > 0;
     facts.sizedLights =
         std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });
     return facts;

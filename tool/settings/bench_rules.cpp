@@ -48,7 +48,7 @@ std::string withoutChoice(std::string_view value, const BenchFacts& facts, const
     }
     return static_cast<std::size_t>(chosen) < facts.lights
                ? ""
-               : fmt::format("the scene has no more lights with a position: {}", facts.lights);
+               : fmt::format("the default has no more lights with a position: {}", facts.lights);
 }
 
 std::string withoutEmission(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {

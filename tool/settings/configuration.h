@@ -25,7 +25,7 @@ struct BenchFacts {
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool packsTextures = true;  // the device reads BC formats, and this program packs them
-    std::size_t lights = 0;     // with a position, of which a hierarchy chooses
+    std::size_t lights = 0;     // with a position, of which the default's hierarchy chooses
     bool manyLights = false;    // more than --lights auto takes whole
     bool sizedLights = false;   // some light casts soft shadows
     bool rayPipeline = false;   // this and the next two are features of the device
