@@ -158,7 +158,9 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
         const double distance = glm::length(toCenter);
         const double share = irradianceBesides({toSun, 0.5 * sizes.sunDiameter},
                                                {toCenter / distance, std::asin(0.4 / distance)}, hit.normal);
-        return lit(scene.lights[0], hit, {Vec3(share), Vec3(0.0), Vec3(share)});
+        // All of the sun has nearly the cosine of its centre.
+        const Vec3 square(share * glm::dot(hit.normal, toSun));
+        return lit(scene.lights[0], hit, {Vec3(share), Vec3(0.0), square});
     });
     expectAgrees(render(scene, sizes), closed,
                  {"shadow", "a sphere under a sun of 24°", "lens of two caps", 1,
