@@ -34,7 +34,9 @@ fi
 mkdir -p "$work"
 rm -f "$work/names"
 "$bin/gallery" "$work/gallery" > /dev/null
-scenes=("$work/gallery/gallery.gltf")
+# The same scene once more, whose lights have a size.
+cp "$work/gallery/gallery.gltf" "$work/gallery/gallery-sizes.gltf"
+scenes=("$work/gallery/gallery.gltf" "$work/gallery/gallery-sizes.gltf")
 for name in features/{ClearCoatTest/ClearCoatTest.gltf,SpecularTest/SpecularTest.glb} \
     features/AnisotropyStrengthTest/AnisotropyStrengthTest.gltf features/SheenChair/SheenChair.gltf \
     features/TextureTransformMultiTest/TextureTransformMultiTest.glb features/NegativeScaleTest/NegativeScaleTest.glb \
@@ -64,15 +66,22 @@ for scene in "${scenes[@]}"; do
     name=$(basename "${scene%.*}")
     out=$work/$name
     [[ $name =~ $only ]] || continue
+    # The oracle takes radians.
+    device_lights=()
+    truth_lights=()
+    if [[ $name == *-sizes ]]; then
+        device_lights=(--light-radius 0.1 --sun-angle 11.4591559)
+        truth_lights=(--light-radius 0.1 --sun-angle 0.2)
+    fi
     if [[ ! -s $out.exr ]]; then
         "$glint" render "$scene" --size "$size" --sky 1 --spp "$device_samples" --texture-lod mip0 --strategy uber \
-            --merge all --batch-effects "${paths[@]}" --quiet -o "$out-rendered.exr"
+            --merge all --batch-effects "${paths[@]}" "${device_lights[@]}" --quiet -o "$out-rendered.exr"
         mv "$out-rendered.exr" "$out.exr"
     fi
     if [[ ! -s $out.json ]]; then
         "$bin/glint_oracle" "$scene" --size "$size" --bounces "$bounces" --samples "$samples" \
-            --texels "$work/texels.exr" --device-texels --against "$out.exr" --device-spp "$device_samples" \
-            --json "$out.json" -o "$out-truth.png" --diff "$out-difference.png" --list 20 > "$out.txt"
+            "${truth_lights[@]}" --texels "$work/texels.exr" --device-texels --against "$out.exr" \
+            --device-spp "$device_samples" --json "$out.json" -o "$out-truth.png" --diff "$out-difference.png" --list 20 > "$out.txt"
     fi
     echo "$name" >> "$work/names"
     echo "oracle_paths.sh: $name done" >&2

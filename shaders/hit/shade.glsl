@@ -46,26 +46,6 @@ vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample li
     return scatteredLight(surface, features, hit.geometricNormal, light.direction) * light.irradiance;
 }
 
-// Aims the shadow ray at the light's position, or at a point of a light that has a size.
-void aimAtLight(Hit hit, HostLight light, inout ShadeResult result) {
-    LightSample aim = hostSampleLight(light, hit.position);
-#if GLINT_EFFECT_SHADOW
-    if (hostLightHasSize(light)) {
-        vec3 centre = aim.direction;
-        aim = hostSampleLightPoint(light, aim, hostRandomPair(hit.target, shadingDimension(kPairLightArea)));
-        if (aim.distance <= 0.0) {
-            // The point is within the light.
-            result.radiance += result.direct;
-        } else if (dot(hit.geometricNormal, centre) * dot(hit.geometricNormal, aim.direction) <= 0.0) {
-            // The surface itself hides the part of the light that is below it.
-            aim.distance = 0.0;
-        }
-    }
-#endif
-    result.shadowDirection = aim.direction;
-    result.shadowDistance = aim.distance;
-}
-
 #if GLINT_SHARED_LIGHTS
 
 // Whether a ray of the path follows from the hit, which finds shared lights, too.
@@ -147,10 +127,17 @@ vec3 countedEmission(Hit hit, Surface surface) {
     return surface.emission;
 }
 
-// The light of a light that emits from no triangle, without its shadow. Where shadow rays pass glass, the surface that
-// sent the ray has had the light of such lights behind this glass on the straight line, with all that happens within:
-// it would count twice.
-vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light) {
+// The light of a light that emits from no triangle, without its shadow, from its centre or from a point of a light that
+// has a size; the shadow ray goes there, too. Where shadow rays pass glass, the surface that sent the ray has had the
+// light of such lights behind this glass on the straight line, with all that happens within: it would count twice.
+vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light, out LightSample aim) {
+    aim = hostSampleLight(light, hit.position);
+#if GLINT_EFFECT_SHADOW
+    // All lights may have the same numbers, because only one of them counts.
+    if (hostLightHasSize(light)) {
+        aim = hostSampleLightPoint(light, aim, hostRandomPair(hit.target, shadingDimension(kPairLightArea)));
+    }
+#endif
 #if GLINT_SHADOW_GLASS
     if (hasLobe(features, GLINT_TRANSMISSION)) {
         if (isWithinGlass(hit, features)) {
@@ -159,7 +146,7 @@ vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light) 
         surface.bsdf.transmitted = vec3(0.0);
     }
 #endif
-    return unshadowedLight(hit, surface, features, hostSampleLight(light, hit.position));
+    return unshadowedLight(hit, surface, features, aim);
 }
 
 // Direct light from one light. The light is chosen in one pass, with probability proportional to the luminance that it
@@ -171,20 +158,15 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
     float total = 0.0;
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
-    uint index = 0u;
-#if GLINT_SHARED_LIGHTS
-    uint chosenSees = kShadowOfLight;
-    bool shares = false;
-    LightSample chosenAim;
-#endif
     for (uint i = 0u; i < lights; ++i) {
         HostLight light = lightOfHost(hit, features, i);
-#if GLINT_SHARED_LIGHTS
         LightSample aim;
-        vec3 contribution = isShared(light) ? lightOfSharedAtHit(hit, surface, features, light, i, sky, aim)
-                                            : lightOfLight(hit, surface, features, light);
+#if GLINT_SHARED_LIGHTS
+        bool shares = isShared(light);
+        vec3 contribution = shares ? lightOfSharedAtHit(hit, surface, features, light, i, sky, aim)
+                                   : lightOfLight(hit, surface, features, light, aim);
 #else
-        vec3 contribution = lightOfLight(hit, surface, features, light);
+        vec3 contribution = lightOfLight(hit, surface, features, light, aim);
 #endif
         float weight = luminance(contribution);
         if (weight <= 0.0) {
@@ -196,28 +178,22 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
             random /= probability;
             chosen = contribution;
             chosenWeight = weight;
-            index = i;
+            result.shadowDirection = aim.direction;
+            result.shadowDistance = aim.distance;
 #if GLINT_SHARED_LIGHTS
-            shares = isShared(light);
-            chosenAim = aim;
-            chosenSees = shares ? seenTowardsShared(hit, features, light, aim.direction) : kShadowOfLight;
+            result.shadowSees = shares ? seenTowardsShared(hit, features, light, aim.direction) : kShadowOfLight;
 #endif
         } else {
             random = (random - probability) / (1.0 - probability);
         }
     }
     result.direct = chosen * (total / chosenWeight);
-#if GLINT_SHARED_LIGHTS
-    if (total > 0.0 && shares) {
-        result.shadowDirection = chosenAim.direction;
-        result.shadowDistance = chosenAim.distance;
-        result.shadowSees = chosenSees;
-        return;
+#if GLINT_EFFECT_SHADOW
+    // Nothing is between the surface and a light around it.
+    if (result.shadowDistance <= 0.0) {
+        result.radiance += result.direct;
     }
 #endif
-    if (total > 0.0) {
-        aimAtLight(hit, lightOfHost(hit, features, index), result);
-    }
 }
 
 // The shares of the ambient light where no ray follows the hit. Where shadow rays to the sky pass glass, those of the

@@ -147,13 +147,14 @@ LightSample hostSampleLight(HostLight light, vec3 position) {
     return sampleLight(GLINT_PUNCTUAL(light), position);
 }
 
-// Whether shadow rays go to a random point of the light, instead of its centre.
+// Whether the light has a size. Its light then comes from random points of it, instead of its centre.
 bool hostLightHasSize(HostLight light) {
     return GLINT_PUNCTUAL(light).size > 0.0;
 }
 
 // Samples a point of a light that has a size, by the solid angle that it fills. `centre` comes from hostSampleLight(),
-// and u is uniform in [0, 1)². The distance is 0 if the point is within the light.
+// and u is uniform in [0, 1)². The irradiance is that of a surface that faces the point, if all of the light were there.
+// The distance is 0 if the surface is within the light.
 LightSample hostSampleLightPoint(HostLight light, LightSample centre, vec2 u) {
     return sampleLightArea(GLINT_PUNCTUAL(light), centre, u);
 }

@@ -39,22 +39,12 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     return LightSample(direction, distance, light.intensity * attenuation, gate);
 }
 
-// Samples a direction within a cone, uniformly by solid angle; u is uniform in [0, 1)².
-vec3 sampleCone(vec3 axis, float sine, vec2 u) {
-    // 1 - cos of the half angle. The plain difference would cancel for the sun.
-    float height = sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0)));
-    float below = u.x * height;
-    float radius = sqrt(max(below * (2.0 - below), 0.0));
-    float phi = 2.0 * kPi * u.y;
-    vec3 tangent;
-    vec3 bitangent;
-    buildBasis(axis, tangent, bitangent);
-    return normalize((1.0 - below) * axis + radius * (cos(phi) * tangent + sin(phi) * bitangent));
-}
-
 // Samples a point of a light that has a size, uniformly by the solid angle that it fills: a sphere, or a disk
-// infinitely far away. `centre` comes from sampleLight(). Shirley, Wang and Zimmerman, "Monte Carlo Techniques for
-// Direct Lighting Calculations" (1996). From inside of the sphere nothing can block the light, so the distance is 0.
+// infinitely far away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and Zimmerman,
+// "Monte Carlo Techniques for Direct Lighting Calculations" (1996). A sphere shines equally in all directions, so on a
+// surface that faces its centre its irradiance is that of a light without a size, π sine² times its radiance. The
+// sample's is the whole solid angle 2 π height times that radiance. From inside of the sphere nothing can block the
+// light, so the distance is 0.
 LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
     LightSample result = centre;
     bool sphere = light.type != kLightDirectional;
@@ -63,12 +53,24 @@ LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
         result.distance = 0.0;
         return result;
     }
-    result.direction = sampleCone(centre.direction, sine, u);
+    // 1 - cos of the half angle. The plain difference would cancel for the sun.
+    precise float height = sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0)));
+    precise float below = u.x * height;
+    precise float radius = sqrt(max(below * (2.0 - below), 0.0));
+    precise float phi = 2.0 * kPi * u.y;
+    vec3 tangent;
+    vec3 bitangent;
+    buildBasis(centre.direction, tangent, bitangent);
+    precise vec3 direction =
+        normalize((1.0 - below) * centre.direction + radius * (cos(phi) * tangent + sin(phi) * bitangent));
+    result.direction = direction;
+    result.irradiance *= 2.0 / (2.0 - height);
     if (sphere) {
         // The distance to the near side of the sphere.
-        float along = centre.distance * dot(result.direction, centre.direction);
-        vec3 across = centre.distance * (result.direction - centre.direction * dot(result.direction, centre.direction));
-        result.distance = along - sqrt(max(light.size * light.size - dot(across, across), 0.0));
+        precise float along = centre.distance * (1.0 - below);
+        precise float across = centre.distance * radius;
+        precise float distance = along - sqrt(max(light.size * light.size - across * across, 0.0));
+        result.distance = distance;
     }
     return result;
 }

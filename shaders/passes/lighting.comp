@@ -68,15 +68,19 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
         }
 #endif
         LightSample centre = hostSampleLight(light, hit.position);
-        vec3 contribution = unshadowedLight(hit, surface, features, centre);
-        bool reaches = luminance(contribution) > 0.0;
 #if GLINT_EFFECT_SHADOW
-        countGate(centre, reaches, counts);
-        if (reaches) {
-            sum += contribution * visibleShare(hit, light, centre, i, counts);
+        if (!passesGate(centre, counts)) {
+            continue;
+        }
+        uint points = lightPointCount(light);
+        centre.irradiance /= float(points);
+        for (uint j = 0u; j < points; ++j) {
+            LightSample point = lightPoint(hit, light, centre, i, j);
+            sum += visibleLight(hit, point, unshadowedLight(hit, surface, features, point), counts);
         }
 #else
-        sum += reaches ? contribution : vec3(0.0);
+        vec3 contribution = unshadowedLight(hit, surface, features, centre);
+        sum += luminance(contribution) > 0.0 ? contribution : vec3(0.0);
 #endif
     }
 #if GLINT_EFFECT_SHADOW

@@ -62,47 +62,55 @@ Vec3 irradianceFrom(const gltf::Light& light, const Vec3& position) {
     return emitted * attenuation;
 }
 
-Estimate visibleShare(const World& world, const LightCap& cap, const Vec3& position, const Vec3& normal,
-                      const Strata& strata, Random& random) {
+Estimate lightOfCap(const World& world, const LightCap& cap, const Vec3& position, const Scattered& scattered,
+                    const Strata& strata, Random& random) {
     const glm::dmat3 frame = frameAbout(cap.direction);
     return average(strata, random, [&](Vec2 point) {
         const Vec3 direction = frame * capDirection(point, cap.halfAngle);
-        const bool seen = glm::dot(normal, direction) > 0.0 &&
-                          world.visible({position, direction}, cap.distanceAlong(direction));
-        return Vec3(seen ? 1.0 : 0.0);
+        const Vec3 light = scattered(direction) * cap.overFacing();
+        const bool seen =
+            light != Vec3(0.0) && world.visible({position, direction}, cap.distanceAlong(direction));
+        return seen ? light : Vec3(0.0);
     });
 }
 
-double shareBesidesEdge(double halfAngle, double elevation) {
-    const double height = std::abs(elevation);
-    if (height >= halfAngle) {
-        return elevation > 0.0 ? 0.0 : 1.0;
-    }
-    const double segment =
-        2.0 * (clampedArcCosine(std::sin(height) / std::sin(halfAngle)) -
-               std::cos(halfAngle) * clampedArcCosine(std::tan(height) / std::tan(halfAngle)));
-    const double share = segment / (2.0 * kPi * (1.0 - std::cos(halfAngle)));
-    return elevation > 0.0 ? share : 1.0 - share;
+Estimate irradianceOfCap(const World& world, const LightCap& cap, const Vec3& position, const Vec3& normal,
+                         const Strata& strata, Random& random) {
+    const auto cosine = [&](const Vec3& toLight) { return Vec3(std::max(glm::dot(normal, toLight), 0.0)); };
+    return lightOfCap(world, cap, position, cosine, strata, random);
 }
 
-double shareBesidesCap(double halfAngle, double hiding, double apart) {
-    const double whole = 2.0 * kPi * (1.0 - std::cos(halfAngle));
-    if (apart >= halfAngle + hiding) {
-        return 1.0;
+Vec3 vectorIrradiance(const Circle& first, const Circle& second) {
+    const double a = first.halfAngle;
+    const double b = second.halfAngle;
+    const double apart = clampedArcCosine(glm::dot(first.axis, second.axis));
+    if (apart >= a + b) {
+        return Vec3(0.0);
     }
-    if (apart <= std::abs(halfAngle - hiding)) {
-        return hiding >= halfAngle ? 0.0 : 1.0 - 2.0 * kPi * (1.0 - std::cos(hiding)) / whole;
+    if (apart <= std::abs(a - b)) {
+        const Circle& inner = a < b ? first : second;
+        return kPi * squared(std::sin(inner.halfAngle)) * inner.axis;
     }
-    // The half angles of the lens at either axis, and the angle between the circles where they cross.
-    const double atLight = angleOf(halfAngle, apart, hiding);
-    const double atHiding = angleOf(hiding, apart, halfAngle);
-    const double between = angleOf(halfAngle, hiding, apart);
-    // Two triangles and the two sectors, by Girard's theorem.
-    const double lens = 2.0 * (kPi - between - atLight * std::cos(halfAngle) - atHiding * std::cos(hiding));
-    return 1.0 - lens / whole;
+    // The arc of a circle that is within the other; `half` is half of its azimuth.
+    const auto arc = [](const Circle& circle, const Vec3& other, double half) {
+        const Vec3 towards = glm::normalize(other - circle.axis * glm::dot(other, circle.axis));
+        const double sine = std::sin(circle.halfAngle);
+        return sine * (sine * half * circle.axis - std::cos(circle.halfAngle) * std::sin(half) * towards);
+    };
+    return arc(first, second.axis, angleOf(a, apart, b)) + arc(second, first.axis, angleOf(b, apart, a));
 }
 
-double shareBesidesDisk(double halfAngle, double radius, double aside) {
+double irradianceAboveHorizon(const Circle& light, const Vec3& normal) {
+    const Vec3 above = vectorIrradiance(light, {normal, 0.5 * kPi});
+    return glm::dot(normal, above) / (kPi * squared(std::sin(light.halfAngle)));
+}
+
+double irradianceBesides(const Circle& light, const Circle& hiding, const Vec3& normal) {
+    const Vec3 hidden = vectorIrradiance(light, hiding);
+    return glm::dot(normal, light.axis - hidden / (kPi * squared(std::sin(light.halfAngle))));
+}
+
+double irradianceBesidesDisk(double halfAngle, double radius, double aside) {
     // On the plane at height 1, a direction of tangent r is hidden where a circle of radius r runs through
     // the disk.
     const auto hidden = [&](double tangent) {
@@ -128,10 +136,11 @@ double shareBesidesDisk(double halfAngle, double radius, double aside) {
             const double phase = kPi * step / kSteps;
             const double angle = from + (to - from) * 0.5 * (1.0 - std::cos(phase));
             const double weight = step == 0 || step == kSteps ? 1.0 : (step % 2 == 1 ? 4.0 : 2.0);
-            sum += weight * hidden(std::tan(angle)) * std::sin(angle) * (to - from) * 0.5 * std::sin(phase);
+            sum += weight * hidden(std::tan(angle)) * std::sin(2.0 * angle) * (to - from) * 0.5 *
+                   std::sin(phase);
         }
     }
-    return 1.0 - sum * kPi / (3.0 * kSteps) / (1.0 - std::cos(halfAngle));
+    return 1.0 - sum * kPi / (3.0 * kSteps) / squared(std::sin(halfAngle));
 }
 
 }  // namespace glint::oracle

@@ -28,11 +28,10 @@ SceneFile diskOverFloor() {
     return file;
 }
 
-// Returns the light that a point of the floor shows if a share of the light is visible: albedo / π E cos θ.
-// The cosine is that of the centre.
-Estimate lit(const gltf::Light& light, const Hit& hit, const Vec3& toLight, const Estimate& share) {
-    const Vec3 whole =
-        irradianceFrom(light, hit.position) * (std::max(glm::dot(hit.normal, toLight), 0.0) / kPi);
+// Returns the light that a white point of the floor shows: its irradiance over π. `share` is the irradiance
+// over that on a surface which faces the light.
+Estimate lit(const gltf::Light& light, const Hit& hit, const Estimate& share) {
+    const Vec3 whole = irradianceFrom(light, hit.position) / kPi;
     return {share.mean * whole, share.error * whole, share.square * whole * whole};
 }
 
@@ -48,8 +47,8 @@ std::vector<PixelTruth> truths(const gltf::Scene& scene, const World& world, con
 std::vector<PixelTruth> byQuadrature(const gltf::Scene& scene, const World& world, const LightSizes& sizes) {
     return truths(scene, world, {6, 4}, [&](const Hit& hit, Random& random) {
         const LightCap cap = lightCap(scene.lights[0], sizes, hit.position);
-        return lit(scene.lights[0], hit, cap.direction,
-                   visibleShare(world, cap, hit.position, hit.normal, {3, 2}, random));
+        return lit(scene.lights[0], hit,
+                   irradianceOfCap(world, cap, hit.position, hit.normal, {3, 2}, random));
     });
 }
 
@@ -76,8 +75,8 @@ TEST(SoftShadow, OfADiskUnderTheSun) {
         {"shadow", "a disk under a sun of 24°", "quadrature", 1, samplesOf(kSoftShadowSamples), 1.0, 1e-4});
     const auto closed = truths(scene, world, {5, 4}, [&](const Hit& hit, Random&) {
         const double aside = std::hypot(hit.position.x, hit.position.z) / kDiskHeight;
-        const double share = shareBesidesDisk(0.5 * sizes.sunDiameter, kDisk / kDiskHeight, aside);
-        return Estimate{Vec3(share), Vec3(0.0), Vec3(share)};
+        const double share = irradianceBesidesDisk(0.5 * sizes.sunDiameter, kDisk / kDiskHeight, aside);
+        return lit(scene.lights[0], hit, {Vec3(share), Vec3(0.0), Vec3(share)});
     });
     // The polygon's outline is within 4e-4 of the disk's radius.
     expectAgrees(image, closed,
@@ -133,8 +132,8 @@ TEST(SoftShadow, OfADiskInAMirror) {
         [&](const Ray& ray, Random& random) {
             const Hit hit = *world.closest(*reflected(ray), Faces::Culled);
             const LightCap cap = lightCap(scene.lights[0], sizes, hit.position);
-            return lit(scene.lights[0], hit, cap.direction,
-                       visibleShare(world, cap, hit.position, hit.normal, {3, 2}, random));
+            return lit(scene.lights[0], hit,
+                       irradianceOfCap(world, cap, hit.position, hit.normal, {3, 2}, random));
         });
     EXPECT_GT(truths.size(), 200U);
     expectAgrees(render(scene, sizes, 1, package::kEffectReflection), truths,
@@ -157,9 +156,11 @@ TEST(SoftShadow, OfASphereUnderTheSun) {
     const auto closed = truths(scene, world, {5, 4}, [&](const Hit& hit, Random&) {
         const Vec3 toCenter = kBallCenter - hit.position;
         const double distance = glm::length(toCenter);
-        const double apart = std::acos(std::min(glm::dot(toCenter, toSun) / distance, 1.0));
-        const double share = shareBesidesCap(0.5 * sizes.sunDiameter, std::asin(0.4 / distance), apart);
-        return lit(scene.lights[0], hit, toSun, {Vec3(share), Vec3(0.0), Vec3(share)});
+        const double share = irradianceBesides({toSun, 0.5 * sizes.sunDiameter},
+                                               {toCenter / distance, std::asin(0.4 / distance)}, hit.normal);
+        // All of the sun has nearly the cosine of its centre.
+        const Vec3 square(share * glm::dot(hit.normal, toSun));
+        return lit(scene.lights[0], hit, {Vec3(share), Vec3(0.0), square});
     });
     expectAgrees(render(scene, sizes), closed,
                  {"shadow", "a sphere under a sun of 24°", "lens of two caps", 1,

@@ -97,6 +97,11 @@ LightBounds boundsOfLight(const gpu::LightRecord& light) {
     LightBounds bounds;
     bounds.isEmpty = false;
     bounds.lower = bounds.upper = doublesOf(light.position);
+    // The upper part of a light may shine on a surface that its centre is below.
+    for (std::size_t i = 0; i < 3; ++i) {
+        bounds.lower[i] -= light.size;
+        bounds.upper[i] += light.size;
+    }
     bounds.emission = kLightPi / 2.0;
     const Double3 color = doublesOf(light.intensity);
     // The luminance of linear Rec. 709, as in bsdf/constants.glsl.

@@ -13,16 +13,16 @@ const uint kPairShadow = 64u;
 struct ShadowCounts {
     uint rays;
     uint misses;  // rays that reached the light
-    uint facing;  // lights that the surface faces away from or does not scatter
+    uint facing;  // points of lights that the surface faces away from or does not scatter
     uint range;
     uint cone;
 };
 
-// Counts the reason why a light needs no ray.
-void countGate(LightSample centre, bool reaches, inout ShadowCounts counts) {
+// Returns whether the light may reach the surface. If not, counts the reason.
+bool passesGate(LightSample centre, inout ShadowCounts counts) {
     counts.range += centre.gate == kRayRange ? 1u : 0u;
     counts.cone += centre.gate == kRayCone ? 1u : 0u;
-    counts.facing += centre.gate == kRaySent && !reaches ? 1u : 0u;
+    return centre.gate == kRaySent;
 }
 
 void reportShadows(ShadowCounts counts) {
@@ -34,40 +34,33 @@ void reportShadows(ShadowCounts counts) {
     }
 }
 
-// A share of a light: of each colour if glass may stand before it, or counted.
-#if GLINT_SHADOW_GLASS
-#define LightShare vec3
-#define LightSum vec3
-#else
-#define LightShare float
-#define LightSum uint
-#endif
+// The points of a light that a sample takes: one of a light without a size.
+uint lightPointCount(HostLight light) {
+    return hostLightHasSize(light) ? GLINT_FRAME.shadowSamples : 1u;
+}
 
-// The visible share of a light's solid angle. A light without a size is visible or not.
-LightShare visibleShare(Hit hit, HostLight light, LightSample centre, uint index, inout ShadowCounts counts) {
-    vec3 share = vec3(1.0);
+// Point number `point` of the light number `index`.
+LightSample lightPoint(Hit hit, HostLight light, LightSample centre, uint index, uint point) {
     if (!hostLightHasSize(light)) {
-        bool visible = lightArrives(rayOrigin(hit, centre.direction), centre.direction, centre.distance, share);
-        counts.rays += 1u;
-        counts.misses += visible ? 1u : 0u;
-        return visible ? LightShare(share) : LightShare(0.0);
+        return centre;
     }
-    float side = dot(hit.geometricNormal, centre.direction);
-    LightSum seen = LightSum(0u);
-    for (uint i = 0u; i < GLINT_FRAME.shadowSamples; ++i) {
-        uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.shadowSamples + i;
-        vec2 u = sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index);
-        LightSample point = hostSampleLightPoint(light, centre, u);
-        // The surface itself hides the part of the light that is below it.
-        if (point.distance <= 0.0) {
-            seen += LightSum(1u);
-        } else if (side * dot(hit.geometricNormal, point.direction) > 0.0) {
-            share = vec3(1.0);
-            bool visible = lightArrives(rayOrigin(hit, point.direction), point.direction, point.distance, share);
-            counts.rays += 1u;
-            counts.misses += visible ? 1u : 0u;
-            seen += visible ? LightSum(share) : LightSum(0u);
-        }
+    uint number = GLINT_FRAME.sampleIndex * GLINT_FRAME.shadowSamples + point;
+    return hostSampleLightPoint(light, centre,
+                                sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index));
+}
+
+// Returns how much of `light`, which a surface scatters from a point of a light, arrives. Within the light nothing
+// blocks it.
+vec3 visibleLight(Hit hit, LightSample point, vec3 light, inout ShadowCounts counts) {
+    if (luminance(light) <= 0.0) {
+        counts.facing += 1u;
+        return vec3(0.0);
     }
-    return LightShare(seen) / float(GLINT_FRAME.shadowSamples);
+    if (point.distance <= 0.0) {
+        return light;
+    }
+    bool visible = lightArrives(rayOrigin(hit, point.direction), point.direction, point.distance, light);
+    counts.rays += 1u;
+    counts.misses += visible ? 1u : 0u;
+    return visible ? light : vec3(0.0);
 }

@@ -51,6 +51,7 @@ struct Settings {
     bool noRoulette = false;
     LightSizes sizes;
     std::string environment;
+    bool noSky = false;
     PathSampling sampling;
     std::string errors;
 };
@@ -116,9 +117,9 @@ Result<std::uint32_t> bouncesOf(const std::string& text) {
     return bounces;
 }
 
-Result<PathSky> skyOf(const std::string& environment) {
+Result<PathSky> skyOf(const std::string& environment, bool none) {
     if (environment.empty()) {
-        return PathSky(defaultSky());
+        return PathSky(none ? GradientSky{} : defaultSky());
     }
     Result<LinearImage> map = image::readImage(environment);
     if (!map) {
@@ -147,7 +148,7 @@ Status runPaths(const Settings& settings, const OracleInput& input) {
     if (!bounces) {
         return bounces.error();
     }
-    Result<PathSky> sky = skyOf(settings.environment);
+    Result<PathSky> sky = skyOf(settings.environment, settings.noSky);
     if (!sky) {
         return sky.error();
     }
@@ -295,6 +296,7 @@ int parseAndRun(int argc, char** argv) {
         ->needs(bounces);
     app.add_option("--environment", settings.environment, "the sky as an equirectangular map, .hdr or .exr")
         ->needs(bounces);
+    app.add_flag("--no-sky", settings.noSky, "the sky is black")->needs(bounces)->excludes("--environment");
     app.add_option("--seed", settings.sampling.seed, "of the paths")->capture_default_str()->needs(bounces);
     app.add_option("--threads", settings.sampling.threads, "0: one for each core; all give the same picture")
         ->check(CLI::Range(0U, 1024U))

@@ -215,16 +215,19 @@ TEST(PathOracle, AThinPaneShadesALampOnTheStraightLine) {
                 arriving * passes * Vec3(0.9, 0.5, 0.2), 1e-6, 100);
 }
 
-// The mean cosine over a cap about the zenith is (1 + cos a) / 2.
+// A sphere lights as a point does, unless the floor hides part of it.
 TEST(PathOracle, LampsWithASizeLightByTheirCap) {
-    SceneFile file;
-    file.addQuad(file.addMaterial(diffuseMaterial(Vec3(0.8))), {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
-    file.addLight({{"type", "point"}, {"intensity", 3.0}}, {0, 2, 0}, {0, 0, 0});
-    const gltf::Scene scene = file.import();
-    const double half = std::asin(0.8 / 2.0);
-    const double truth = 3.0 / 4.0 * 0.5 * (1.0 + std::cos(half)) * 0.8 / kPi;
-    expectLight(scene, {}, {.sizes = {0.8, 0.0}}, rayTo({0.3, 0.5, 0.5}, {0, 0, 0}), Vec3(truth), 1e-3,
-                10000);
+    for (const double height : {2.0, 0.4}) {
+        SceneFile file;
+        file.addQuad(file.addMaterial(diffuseMaterial(Vec3(0.8))), {-5, 0, 5}, {10, 0, 0}, {0, 0, -10});
+        file.addLight({{"type", "point"}, {"intensity", 3.0}}, {1, height, 0}, {1, 0, 0});
+        const gltf::Scene scene = file.import();
+        const double distance = std::hypot(1.0, height);
+        const Circle lamp{Vec3(1.0, height, 0.0) / distance, std::asin(0.8 / distance)};
+        const double truth = 3.0 / squared(distance) * irradianceAboveHorizon(lamp, {0, 1, 0}) * 0.8 / kPi;
+        expectLight(scene, {}, {.sizes = {0.8, 0.0}}, rayTo({0.3, 0.5, 0.5}, {0, 0, 0}), Vec3(truth), 4e-3,
+                    10000);
+    }
 }
 
 }  // namespace

@@ -184,7 +184,8 @@ Vec3 PathTracer::lampLight(const Vertex& vertex, const gltf::Light& light, Rando
         return Vec3(0.0);
     }
     const double weight = density > 0.0 ? powerWeight(density, vertex.surface.density(direction)) : 1.0;
-    return weight * scattered * arrival.share * irradianceFrom(light, vertex.point.position);
+    return weight * cap.overFacing() * scattered * arrival.share *
+           irradianceFrom(light, vertex.point.position);
 }
 
 Vec3 PathTracer::lampsFound(const Vertex& vertex, const PathSample& sample) const {
@@ -201,8 +202,8 @@ Vec3 PathTracer::lampsFound(const Vertex& vertex, const PathSample& sample) cons
         const double density = 1.0 / solidAngleOf(cap.halfAngle);
         const Arrival arrival =
             arriving(vertex, sample.direction, cap.distanceAlong(sample.direction), Backs::All);
-        sum += (powerWeight(sample.density, density) * density) * sample.weight * arrival.share *
-               irradianceFrom(*light, vertex.point.position);
+        sum += (powerWeight(sample.density, density) * density * cap.overFacing()) * sample.weight *
+               arrival.share * irradianceFrom(*light, vertex.point.position);
     }
     return sum;
 }

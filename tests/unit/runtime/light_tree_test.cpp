@@ -43,6 +43,7 @@ std::vector<gpu::LightRecord> mixedLights(std::size_t count, unsigned seed) {
                              ? point(unit(random), unit(random), unit(random), 1.0F + unit(random), 3.0F)
                              : spot(unit(random), unit(random), unit(random),
                                     {d.x / length, d.y / length, d.z / length}, 0.5F));
+        lights.back().size = i % 3 == 0 ? 0.2F : 0.0F;
         if (i % 50 == 0) {
             lights.back().type = gpu::kLightDirectional;
         }
@@ -86,9 +87,11 @@ void expectBounds(const LightTree& tree, const std::vector<gpu::LightRecord>& li
         const gpu::LightRecord& light = lights[leaf.light];
         for (const std::uint32_t above : leaf.ancestors) {
             const gpu::LightNode& node = tree.nodes[above];
-            EXPECT_TRUE(light.position.x >= node.lower.x && light.position.x <= node.upper.x);
-            EXPECT_TRUE(light.position.y >= node.lower.y && light.position.y <= node.upper.y);
-            EXPECT_TRUE(light.position.z >= node.lower.z && light.position.z <= node.upper.z);
+            const gpu::vec3& at = light.position;
+            const float size = light.size - 1e-6F;
+            EXPECT_TRUE(at.x - size >= node.lower.x && at.x + size <= node.upper.x);
+            EXPECT_TRUE(at.y - size >= node.lower.y && at.y + size <= node.upper.y);
+            EXPECT_TRUE(at.z - size >= node.lower.z && at.z + size <= node.upper.z);
             EXPECT_GE(node.reach, light.range > 0.0F ? light.range : INFINITY);
             EXPECT_GE(node.intensity, tree.nodes[leaf.node].intensity * 0.999F);
             EXPECT_LE(node.cosEmission, tree.nodes[leaf.node].cosEmission);

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Measures the error of light samples of a light with a size, by the roughness of the surface.
+
+    benchmarks/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
+                                       [--truth N] [--size WxH]
+
+A metal floor is lit by a spherical lamp of radius 0.25 m alone. The truth is that of glint_oracle, which also lets the
+rays of lobes find the lamp. Prints Markdown: the RMSE of glint render, and what the RMSE of the oracle would be with
+the same number of samples. DIR holds both programs (build/release/bin).
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "examples"))
+from measure_shadows import camera, point_lights, quad  # noqa: E402
+from scene_parts import Buffer, write_scene  # noqa: E402
+
+RADIUS = "0.25"
+
+
+def write_floor(path, roughness):
+    buffer = Buffer()
+    material = {"pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.9, 0.9, 1], "metallicFactor": 1,
+                                         "roughnessFactor": roughness}}
+    view, cameras = camera(0.5, [0, 1.2, 2.2], 0.5)
+    lamps, lights = point_lights([([0, 0.9, -1.2], 4)])
+    meshes = [quad(buffer, 0, [-4, 0, 4], [8, 0, 0], [0, 0, -8])]
+    write_scene(path, ["KHR_lights_punctual"], [{"mesh": 0}, view] + lamps, buffer, meshes=meshes,
+                materials=[material], cameras=cameras, extensions=lights)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/release/bin")
+    parser.add_argument("--roughness", default="0.05,0.1,0.2,0.4")
+    parser.add_argument("--spp", type=int, default=64)
+    parser.add_argument("--shadow-spp", default="1,16")
+    parser.add_argument("--truth", type=int, default=2048, help="samples of the truth")
+    parser.add_argument("--size", default="32x18")
+    arguments = parser.parse_args()
+    points = arguments.shadow_spp.split(",")
+    print("| roughness | mean |" + "".join(f" --shadow-spp {n} |" for n in points) + " with rays of lobes |")
+    print("|--:|--:|" + "--:|" * (len(points) + 1))
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        for roughness in arguments.roughness.split(","):
+            scene = folder / "floor.gltf"
+            write_floor(scene, float(roughness))
+            row = []
+            for n in points:
+                picture = folder / "floor.exr"
+                options = ["--size", arguments.size, "--light-radius", RADIUS]
+                subprocess.run([arguments.bin / "glint", "render", scene, *options, "--sky", "0", "--spp",
+                                str(arguments.spp), "--shadow-spp", n, "--strategy", "uber", "--merge", "all",
+                                "--effects", "shadow", "--quiet", "-o", picture], check=True)
+                subprocess.run([arguments.bin / "glint_oracle", scene, *options, "--bounces", "0", "--no-sky",
+                                "--samples", str(arguments.truth), "--against", picture, "--device-spp",
+                                str(arguments.spp), "--json", folder / "floor.json"], check=True,
+                               stdout=subprocess.DEVNULL)
+                truth = json.loads((folder / "floor.json").read_text())
+                row.append(f"{truth['difference']['rmse']:.2g}")
+            row.append(f"{truth['difference']['expectedRmse']:.2g}")
+            print(f"| {roughness} | {truth['mean']:.2f} | " + " | ".join(row) + " |", flush=True)
+
+
+if __name__ == "__main__":
+    main()
