@@ -3,15 +3,15 @@
 
     benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--kinds glass,blend,mask] [--size WxH]
                                   [--rounds N] [--tracer NAME] [--device NAME] [--bounces N]
-    benchmarks/measure_shadows.py --write FILE [--scene candle|vase]
+    benchmarks/measure_shadows.py --write FILE [--scene candle|vase|nested|apart]
 
 A floor with columns stands under lamps, with panes between them: of coloured glass, of BLEND with an alpha of 0.4, or
 of MASK with a texture of holes. The scene is rendered with each setting in turn, in an order that changes from round to
 round. Prints Markdown, a row as soon as it is measured: the device time of the passes that send shadow rays (lighting
 and the shading of hits), and the ratio to the default in the same round.
 
---write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), or a vase
-made by BLEND (docs/materials.md).
+--write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), a vase made
+by BLEND (docs/materials.md), or a coloured ball of glass in a block of glass or beside it (docs/paths.md).
 """
 import argparse
 import json
@@ -205,7 +205,45 @@ def write_vase(path):
                 cameras=cameras, extensions=lights)
 
 
-WRITERS = {"candle": write_candle, "vase": write_vase}
+def box(buffer, material, low, high):
+    """Returns a mesh of six sides that face outwards."""
+    x, y, z = ([high[axis] - low[axis] if axis == side else 0 for axis in range(3)] for side in range(3))
+    minus = [[-c for c in side] for side in (x, y, z)]
+    sides = [(low, y, x), (low, x, z), (low, z, y), (high, minus[0], minus[1]), (high, minus[2], minus[0]),
+             (high, minus[1], minus[2])]
+    meshes = [quad(buffer, material, *side) for side in sides]
+    return {"primitives": [part for side in meshes for part in side["primitives"]]}
+
+
+def write_volumes(path, nested):
+    """Writes a ball of coloured glass in a block of clear glass, or beside it, on a floor. The camera "mirror" sees a
+    mirror in front of it, which shows both. The camera "direct" is where its image is, behind the mirror's back."""
+    buffer = Buffer()
+    clear = glass((1, 1, 1), thicknessFactor=1, attenuationColor=[0.9, 0.95, 0.95], attenuationDistance=1.0)
+    ruby = glass((1, 1, 1), thicknessFactor=1, attenuationColor=[0.9, 0.4, 0.3], attenuationDistance=0.4)
+    for material, index in ((clear, 1.5), (ruby, 1.7)):
+        material["extensions"]["KHR_materials_ior"] = {"ior": index}
+    metal = {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 1, "roughnessFactor": 0}}
+    meshes = [quad(buffer, 0, [-6, 0, 8], [12, 0, 0], [0, 0, -14]), box(buffer, 1, [-0.6, 0.1, 1.4], [0.6, 1.3, 2.6]),
+              ball(buffer, 2, 0.4), quad(buffer, 3, [-1.2, 0.2, -1], [2.4, 0, 0], [0, 1.6, 0])]
+    nodes = [{"mesh": 0}, {"mesh": 1}, {"mesh": 2, "translation": [0 if nested else 1.3, 0.7, 2]}, {"mesh": 3},
+             {"camera": 0, "translation": [0, 1, 0]},
+             {"camera": 1, "translation": [0, 1, -2], "rotation": [0, 1, 0, 0]}]
+    lens = {"yfov": 0.55, "aspectRatio": 16 / 9, "znear": 0.01}
+    cameras = [{"name": name, "type": "perspective", "perspective": lens} for name in ("mirror", "direct")]
+    write_scene(path, [*USED[:2], "KHR_materials_ior"], nodes, buffer, meshes=meshes,
+                materials=[matte(0.7, 0.7, 0.7), clear, ruby, metal], cameras=cameras)
+
+
+def write_nested(path):
+    write_volumes(path, True)
+
+
+def write_apart(path):
+    write_volumes(path, False)
+
+
+WRITERS = {"candle": write_candle, "vase": write_vase, "nested": write_nested, "apart": write_apart}
 
 
 def device_time(arguments, scene, folder, setting):
