@@ -2,22 +2,24 @@
 """Measures what --shadow-through costs, by the number of panes between surfaces and their lights.
 
     benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--kinds glass,blend,mask] [--size WxH]
-                                  [--rounds N] [--tracer NAME] [--device NAME] [--bounces N]
-    benchmarks/measure_shadows.py --write FILE [--scene candle|vase]
+                                  [--rounds N] [--tracer NAME] [--device NAME] [--bounces N] [--processor]
+    benchmarks/measure_shadows.py --write FILE [--scene candle|vase|nested|apart]
 
 A floor with columns stands under lamps, with panes between them: of coloured glass, of BLEND with an alpha of 0.4, or
 of MASK with a texture of holes. The scene is rendered with each setting in turn, in an order that changes from round to
 round. Prints Markdown, a row as soon as it is measured: the device time of the passes that send shadow rays (lighting
-and the shading of hits), and the ratio to the default in the same round.
+and the shading of hits), and the ratio to the default in the same round. With --processor it is the processor time of
+all passes, for devices on the processor while other programs run: that of many samples, less that of two.
 
---write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), or a vase
-made by BLEND (docs/materials.md).
+--write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), a vase made
+by BLEND (docs/materials.md), or a coloured ball of glass in a block of glass or beside it (docs/paths.md).
 """
 import argparse
 import json
 import math
 import pathlib
 import random
+import resource
 import statistics
 import subprocess
 import sys
@@ -205,20 +207,76 @@ def write_vase(path):
                 cameras=cameras, extensions=lights)
 
 
-WRITERS = {"candle": write_candle, "vase": write_vase}
+def box(buffer, material, low, high):
+    """Returns a mesh of six sides that face outwards."""
+    x, y, z = ([high[axis] - low[axis] if axis == side else 0 for axis in range(3)] for side in range(3))
+    minus = [[-c for c in side] for side in (x, y, z)]
+    sides = [(low, y, x), (low, x, z), (low, z, y), (high, minus[0], minus[1]), (high, minus[2], minus[0]),
+             (high, minus[1], minus[2])]
+    meshes = [quad(buffer, material, *side) for side in sides]
+    return {"primitives": [part for side in meshes for part in side["primitives"]]}
 
 
-def device_time(arguments, scene, folder, setting):
-    """Renders once; returns the milliseconds of the passes that send shadow rays."""
+def write_volumes(path, nested):
+    """Writes a ball of coloured glass in a block of clear glass, or beside it, on a floor. The camera "mirror" sees a
+    mirror in front of it, which shows both. The camera "direct" is where its image is, behind the mirror's back."""
+    buffer = Buffer()
+    clear = glass((1, 1, 1), thicknessFactor=1, attenuationColor=[0.9, 0.95, 0.95], attenuationDistance=1.0)
+    ruby = glass((1, 1, 1), thicknessFactor=1, attenuationColor=[0.9, 0.4, 0.3], attenuationDistance=0.4)
+    for material, index in ((clear, 1.5), (ruby, 1.7)):
+        material["extensions"]["KHR_materials_ior"] = {"ior": index}
+    metal = {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "metallicFactor": 1, "roughnessFactor": 0}}
+    meshes = [quad(buffer, 0, [-6, 0, 8], [12, 0, 0], [0, 0, -14]), box(buffer, 1, [-0.6, 0.1, 1.4], [0.6, 1.3, 2.6]),
+              ball(buffer, 2, 0.4), quad(buffer, 3, [-1.2, 0.2, -1], [2.4, 0, 0], [0, 1.6, 0])]
+    nodes = [{"mesh": 0}, {"mesh": 1}, {"mesh": 2, "translation": [0 if nested else 1.3, 0.7, 2]}, {"mesh": 3},
+             {"camera": 0, "translation": [0, 1, 0]},
+             {"camera": 1, "translation": [0, 1, -2], "rotation": [0, 1, 0, 0]}]
+    lens = {"yfov": 0.55, "aspectRatio": 16 / 9, "znear": 0.01}
+    cameras = [{"name": name, "type": "perspective", "perspective": lens} for name in ("mirror", "direct")]
+    write_scene(path, [*USED[:2], "KHR_materials_ior"], nodes, buffer, meshes=meshes,
+                materials=[matte(0.7, 0.7, 0.7), clear, ruby, metal], cameras=cameras)
+
+
+def write_nested(path):
+    write_volumes(path, True)
+
+
+def write_apart(path):
+    write_volumes(path, False)
+
+
+WRITERS = {"candle": write_candle, "vase": write_vase, "nested": write_nested, "apart": write_apart}
+
+
+def render(arguments, scene, folder, setting, samples):
+    """Renders once, and returns the statistics file."""
     stats = folder / "stats.json"
-    command = [arguments.glint, "render", scene, "-o", folder / "picture.png", "--size", arguments.size, "--spp", "2",
-               "--strategy", "uber", "--tracer", arguments.tracer, "--effects", "shadow,reflection", "--max-roughness",
-               "1", "--bounces", str(arguments.bounces), "--shadow-through", setting, "--stats", stats]
+    command = [arguments.glint, "render", scene, "-o", folder / "picture.png", "--size", arguments.size, "--spp",
+               str(samples), "--strategy", "uber", "--tracer", arguments.tracer, "--effects", "shadow,reflection",
+               "--max-roughness", "1", "--bounces", str(arguments.bounces), "--shadow-through", setting, "--stats",
+               stats]
     if arguments.device:
         command += ["--device", arguments.device]
     subprocess.run(command, check=True, capture_output=True)
-    passes = json.loads(stats.read_text())["passes"]
+    return stats
+
+
+def device_time(arguments, scene, folder, setting):
+    """Returns the milliseconds of the passes that send shadow rays."""
+    passes = json.loads(render(arguments, scene, folder, setting, 2).read_text())["passes"]
     return sum(entry["milliseconds"] for entry in passes if entry["name"] in ("lighting", "uber"))
+
+
+def processor_time(arguments, scene, folder, setting):
+    """Returns the milliseconds of processor time that a sample takes."""
+    def spent(samples):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        render(arguments, scene, folder, setting, samples)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+    more = 48
+    return 1000 * (spent(2 + more) - spent(2)) / more
 
 
 def spread(values):
@@ -235,17 +293,20 @@ def main():
     parser.add_argument("--tracer", default="auto", help="auto, ray-query or ray-pipeline; default auto")
     parser.add_argument("--device", help="part of the device's name; default the first that will do")
     parser.add_argument("--bounces", type=int, default=1, help="default 1")
+    parser.add_argument("--processor", action="store_true", help="measure processor time, of all passes")
     parser.add_argument("--write", type=pathlib.Path, help="write a scene to this file, and end")
     parser.add_argument("--scene", choices=WRITERS, default="candle", help="the scene of --write; default candle")
     arguments = parser.parse_args()
     if arguments.write:
         WRITERS[arguments.scene](arguments.write)
         return
+    measure = processor_time if arguments.processor else device_time
     chance = random.Random(1)
     with tempfile.TemporaryDirectory(prefix="glint-shadows-") as name:
         folder = pathlib.Path(name)
         others = [setting for setting in SETTINGS if setting != DEFAULT]
-        print(f"{arguments.size}, {arguments.rounds} rounds, {arguments.bounces} bounces, ms of a sample\n")
+        print(f"{arguments.size}, {arguments.rounds} rounds, {arguments.bounces} bounces, "
+              f"ms of {'processor time of ' if arguments.processor else ''}a sample\n")
         print(f"| panes | {DEFAULT}, ms | " + " | ".join(f"{setting} / {DEFAULT}" for setting in others) + " |")
         print("|---|---|" + "---|" * len(others), flush=True)
         for kind in arguments.kinds.split(","):
@@ -255,7 +316,7 @@ def main():
                 times = {setting: [] for setting in SETTINGS}
                 for _ in range(arguments.rounds):
                     for setting in chance.sample(SETTINGS, len(SETTINGS)):
-                        times[setting].append(device_time(arguments, scene, folder, setting))
+                        times[setting].append(measure(arguments, scene, folder, setting))
                 ratios = [[now / then for now, then in zip(times[setting], times[DEFAULT])] for setting in others]
                 print(f"| {count} {kind} | {spread(times[DEFAULT])} | " +
                       " | ".join(spread(ratio) for ratio in ratios) + " |", flush=True)
