@@ -33,8 +33,7 @@ struct EmitterBounds {
 // "Importance Sampling of Many Lights with Adaptive Tree Splitting" (2018), equation 1. Large trees are built
 // by several threads. The result depends on the lights alone. Takes O(n log n) time, unless the lights are
 // spaced very unevenly. The leaf of an emitter has gpu::kLightEmitter in its number. With `keepsDark`,
-// emitters that are dark have
-// leaves, too, because they may shine after refitLightTree().
+// emitters that are dark have leaves, too, because they may shine after refitLightTree().
 LightTree buildLightTree(std::span<const gpu::LightRecord> lights,
                          std::span<const EmitterBounds> emitters = {}, bool keepsDark = false);
 
