@@ -31,6 +31,7 @@
 #include <sstream>
 #include <string>
 #include <sys/wait.h>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -80,6 +81,8 @@ public:
         if (arguments.noEarly) {
             words.emplace_back("--no-early");
         }
+        std::error_code ignored;
+        fs::remove(out_, ignored);  // of an earlier program
         child_ = fork();
         if (child_ == 0) {
             constexpr int kMode = 0600;

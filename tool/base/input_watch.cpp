@@ -55,8 +55,10 @@ std::vector<std::string> InputWatch::suspects() const {
 }
 
 bool InputWatch::looksChanged() const {
-    return std::ranges::any_of(files_,
-                               [](const auto& entry) { return lookAt(entry.first) != entry.second.look; });
+    return std::ranges::any_of(files_, [](const auto& entry) {
+        const bool isFolder = entry.second.look && !entry.second.hash;
+        return !isFolder && lookAt(entry.first) != entry.second.look;
+    });
 }
 
 std::vector<std::string> InputWatch::changed() {

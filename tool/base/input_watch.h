@@ -26,7 +26,8 @@ public:
     // kRestMs, as programs write large files piece by piece, but at most kPatienceMs.
     std::vector<std::string> changed();
 
-    // Whether changed() would look at some file more closely. Any thread may ask while no other member runs.
+    // Whether a file looks other than known. Folders do not count: what the program writes may change them.
+    // Any thread may ask while no other member runs.
     bool looksChanged() const;
 
     // Takes the present contents of a file as known: the program itself has written it.

@@ -154,7 +154,8 @@ public:
                 changed = newOrGone();
             }
             if (!changed.empty() && interrupted == 0) {
-                changed_.insert(changed.begin(), changed.end());
+                // Folders are watched after a failure, and change with any file in them.
+                std::ranges::copy_if(changed, std::inserter(changed_, changed_.end()), isFile);
                 takeSettings(changed);
                 compile(namesOf(withoutFolders(std::move(changed))));
             }
@@ -282,6 +283,11 @@ private:
     void print(const std::string& why, const std::string& text) const {
         console_.print(fmt::format("{}. {}: {}\n", runs_ + 1, why, text));
         std::fflush(stdout);
+    }
+
+    static bool isFile(const std::string& path) {
+        std::error_code error;
+        return !fs::is_directory(path, error);
     }
 
     static bool isGlsl(const std::string& path) {
