@@ -2,6 +2,7 @@
 // `glint compile --watch` as a process of its own, renders the scene, and edits the file again and again.
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/json.h"
 #include "gltf/import.h"
 #include "materials/packs.h"
 
@@ -20,12 +21,17 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <exception>
 #include <fcntl.h>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <sstream>
 #include <string>
 #include <sys/wait.h>
+#include <system_error>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -49,7 +55,16 @@ struct Arguments {
     std::uint32_t height = 180;
     int rounds = 5;
     bool noFallback = false;
+    bool noEarly = false;
+    std::string json;
 };
+
+double processorTimeOf(clockid_t clock) {
+    timespec time{};
+    return clock_gettime(clock, &time) == 0
+               ? 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec)
+               : 0.0;
+}
 
 // `glint compile --watch`, which writes its lines to a file.
 class Compiler {
@@ -63,6 +78,11 @@ public:
         if (!arguments.noFallback) {
             words.emplace_back("--fallback");
         }
+        if (arguments.noEarly) {
+            words.emplace_back("--no-early");
+        }
+        std::error_code ignored;
+        fs::remove(out_, ignored);  // of an earlier program
         child_ = fork();
         if (child_ == 0) {
             constexpr int kMode = 0600;
@@ -84,22 +104,32 @@ public:
         waitpid(child_, nullptr, 0);
     }
 
-    // Waits for the line of a run, counted from 1.
-    std::string line(std::size_t number) const {
+    // Waits for the last line of a run, counted from 1, and returns it and the line of its early package,
+    // which is empty if there is none.
+    std::pair<std::string, std::string> lines(std::size_t number) const {
         constexpr int kPatience = 60'000;
+        const std::string start = fmt::format("{}. ", number);
         for (int i = 0; i < kPatience; ++i) {
+            std::string early;
             if (const Result<base::Bytes> bytes = base::readFile(out_)) {
-                std::string_view text = base::asText(*bytes);
-                for (std::size_t n = 1; n < number && !text.empty(); ++n) {
-                    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
-                }
-                if (const std::size_t end = text.find('\n'); end != std::string_view::npos) {
-                    return std::string(text.substr(0, end));
+                std::istringstream text{std::string(base::asText(*bytes))};
+                for (std::string line; std::getline(text, line) && !text.eof();) {
+                    if (line.starts_with(start) && line.find(": early package;") != std::string::npos) {
+                        early = line;
+                    } else if (line.starts_with(start)) {
+                        return {line, early};
+                    }
                 }
             }
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
         return {};
+    }
+
+    // Returns the processor time that the process has taken so far.
+    double processorMs() const {
+        clockid_t clock{};
+        return clock_getcpuclockid(child_, &clock) == 0 ? processorTimeOf(clock) : 0.0;
     }
 
 private:
@@ -113,79 +143,207 @@ double numberAfter(const std::string& line, const std::string& word) {
     return place == std::string::npos ? 0.0 : std::strtod(line.c_str() + place + word.size(), nullptr);
 }
 
-constexpr std::array kParts{"notice", "read",    "plan",      "compile",     "write",
-                            "load",   "replace", "pipelines", "first frame", "sum"};
+constexpr std::array kParts{"notice", "read", "plan", "early", "compile", "write", "load", "replace",
+                            "pipelines", "first frame", "sum",
+                            // Of the first frame, on the device.
+                            "lighting", "cases",
+                            // Processor time since the edit: of the compiler, and of this program.
+                            "compiler", "renderer"};
+// The parts of the way from the edit to a picture, in the order of kParts, milliseconds.
 using Times = std::array<double, kParts.size()>;
+enum Part : std::uint8_t {
+    kNotice,
+    kRead,
+    kPlan,
+    kEarly,
+    kCompile,
+    kWrite,
+    kLoad,
+    kReplace,
+    kPipelines,
+    kFrame,
+    kSum,
+    kLighting,
+    kCases,
+    kCompiler,
+    kRenderer,
+};
 
-// The parts of one edit's way, in the order of kParts, milliseconds.
-Result<Times> follow(const Compiler& compiler, PackageWatch& packages, Renderer& renderer,
-                     const FrameOptions& frame, const fs::path& file, const std::string& text,
-                     std::size_t run, PackageReplacement& replaced) {
-    const fs::path temporary = file.string() + ".edited";
-    if (Status status = base::writeFile(temporary, text); !status) {
-        return status.error();
+// The pictures that show an edit: the draft of an early package, if there was one, and the whole.
+struct Edit {
+    std::optional<Times> early;
+    Times whole{};
+};
+
+// Follows one edit to its pictures.
+class Follower {
+public:
+    Follower(const Compiler& compiler, PackageWatch& packages, Renderer& renderer, const FrameOptions& frame)
+        : compiler_(compiler), packages_(packages), renderer_(renderer), frame_(frame) {
+        frame_.timing = Timing::Passes;
     }
-    const base::Clock::time_point start = base::Clock::now();
-    fs::rename(temporary, file);
-    std::shared_ptr<const Package> package;
-    double stampMs = 0.0;
-    double loadMs = 0.0;
-    const std::uint64_t before = renderer.replacementProgress().inUse;
-    base::Clock::time_point replacedAt;
-    double replaceMs = 0.0;
-    double readyMs = -1.0;
-    while (renderer.replacementProgress().inUse == before) {
-        if (!package) {
-            const base::Clock::time_point begin = base::Clock::now();
-            Result<std::shared_ptr<const Package>> polled = packages.poll();
+
+    // Writes `text` to `file`, and returns once the whole package is in use. `run` is that of the compiler.
+    Result<Edit> follow(const fs::path& file, const std::string& text, std::size_t run,
+                        PackageReplacement& replaced) {
+        const fs::path temporary = file.string() + ".edited";
+        if (Status status = base::writeFile(temporary, text); !status) {
+            return status.error();
+        }
+        start_ = base::Clock::now();
+        compilerStart_ = compiler_.processorMs();
+        rendererStart_ = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID);
+        fs::rename(temporary, file);
+        Edit edit;
+        for (bool whole = false; !whole;) {
+            std::shared_ptr<const Package> package;
+            Result<Times> times = showNext(package, replaced);
+            if (!times) {
+                return times.error();
+            }
+            whole = !package->shape().early;
+            (whole ? edit.whole : edit.early.emplace()) = *times;
+        }
+        const auto [line, earlyLine] = compiler_.lines(run);
+        if (edit.early) {
+            addLine(earlyLine, *edit.early);
+        }
+        addLine(line, edit.whole);
+        fmt::print("<!-- {}\n     {} -->\n", earlyLine, line);
+        return edit;
+    }
+
+private:
+    // Waits for the next package and its first picture.
+    Result<Times> showNext(std::shared_ptr<const Package>& package, PackageReplacement& replaced) {
+        Times times{};
+        base::Clock::time_point begin;
+        while (!package) {
+            begin = base::Clock::now();
+            Result<std::shared_ptr<const Package>> polled = packages_.poll();
             if (!polled) {
                 return polled.error();
             }
             package = *polled;
-            if (package) {
-                stampMs = base::millisecondsBetween(start, begin);
-                loadMs = base::millisecondsSince(begin);
-                const base::Clock::time_point began = base::Clock::now();
-                Result<PackageReplacement> result = renderer.replacePackage(package);
-                if (!result) {
-                    return result.error();
-                }
-                replaced = *result;
-                replaceMs = base::millisecondsSince(began);
-                replacedAt = base::Clock::now();
+            if (!package) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
             }
         }
-        const ReplacementProgress progress = renderer.replacementProgress();
-        if (progress.error) {
-            return *progress.error;
+        times[kCompiler] = compiler_.processorMs() - compilerStart_;
+        // Until addLine() knows the other parts of this time.
+        times[kNotice] = base::millisecondsBetween(start_, begin);
+        times[kLoad] = base::millisecondsSince(begin);
+        base::Clock::time_point last = base::Clock::now();
+        const auto lap = [&] {
+            const base::Clock::time_point now = base::Clock::now();
+            return base::millisecondsBetween(std::exchange(last, now), now);
+        };
+        const std::uint64_t before = renderer_.replacementProgress().inUse;
+        Result<PackageReplacement> result = renderer_.replacePackage(package);
+        if (!result) {
+            return result.error();
         }
-        if (package && progress.ready && readyMs < 0.0) {
-            readyMs = base::millisecondsSince(replacedAt);
-        }
+        replaced = *result;
+        times[kReplace] = lap();
         // A program would draw all the time; here the compiler and the driver have the processor.
-        if (package && progress.ready) {
-            if (Status status = renderer.renderSamples(frame, 1); !status) {
-                return status.error();
+        while (!renderer_.replacementProgress().ready) {
+            if (const std::optional<Diagnostic> error = renderer_.replacementProgress().error) {
+                return *error;
             }
-        } else {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
+        times[kPipelines] = lap();
+        if (Status status = renderer_.renderSamples(frame_, 1); !status) {
+            return status.error();
+        }
+        times[kFrame] = lap();
+        times[kSum] = base::millisecondsBetween(start_, last);
+        times[kRenderer] = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID) - rendererStart_;
+        if (renderer_.replacementProgress().inUse == before) {
+            return makeError("live-edit", "", "the frame does not use the package that was ready");
+        }
+        const Result<std::vector<PassTiming>> passes = renderer_.timings();
+        if (!passes) {
+            return passes.error();
+        }
+        for (const PassTiming& pass : *passes) {
+            times[kLighting] += pass.pass == Pass::Lighting ? pass.milliseconds : 0.0;
+            times[kCases] += pass.pass == Pass::ShadeCase ? pass.milliseconds : 0.0;
+        }
+        return times;
     }
-    const double sum = base::millisecondsSince(start);
-    const std::string line = compiler.line(run);
-    Times times{};
-    times[1] = numberAfter(line, "read ");
-    times[2] = numberAfter(line, "plan ");
-    times[3] = numberAfter(line, "compile ");
-    times[4] = numberAfter(line, "write ");
-    times[0] = std::max(stampMs - (times[1] + times[2] + times[3] + times[4]), 0.0);
-    times[5] = loadMs;
-    times[6] = replaceMs;
-    times[7] = readyMs;
-    times[9] = sum;
-    times[8] = sum - stampMs - loadMs - replaceMs - readyMs;
-    fmt::print("<!-- {} -->\n", line);
-    return times;
+
+    // Divides the time until the package was there by what the compiler says about it.
+    static void addLine(const std::string& line, Times& times) {
+        times[kRead] = numberAfter(line, "read ");
+        times[kPlan] = numberAfter(line, "plan ");
+        times[kEarly] = numberAfter(line, ", early ");
+        times[kCompile] = numberAfter(line, "compile ");
+        times[kWrite] = numberAfter(line, "write ");
+        const double known = times[kRead] + times[kPlan] + times[kEarly] + times[kCompile] + times[kWrite];
+        times[kNotice] = std::max(times[kNotice] - known, 0.0);
+    }
+
+    const Compiler& compiler_;
+    PackageWatch& packages_;
+    Renderer& renderer_;
+    FrameOptions frame_;
+    base::Clock::time_point start_;
+    double compilerStart_ = 0.0;
+    double rendererStart_ = 0.0;
+};
+
+base::Json toJson(const Times& times) {
+    base::Json json = base::Json::object();
+    for (std::size_t part = 0; part < kParts.size(); ++part) {
+        json[kParts[part]] = times[part];
+    }
+    return json;
+}
+
+void printTable(const std::vector<Times>& rows) {
+    fmt::print("| part | median, ms | least | most |\n|---|--:|--:|--:|\n");
+    for (std::size_t part = 0; part < kParts.size(); ++part) {
+        std::vector<double> values;
+        for (const Times& row : rows) {
+            values.push_back(row[part]);
+        }
+        std::ranges::sort(values);
+        fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} |\n", kParts[part], values[values.size() / 2],
+                   values.front(), values.back());
+    }
+}
+
+// Prints the tables, and writes the JSON that benchmarks/charts/live_edit_chart.py draws.
+Status report(const Arguments& arguments, const std::string& device, const std::vector<Edit>& edits) {
+    std::vector<Times> early;
+    std::vector<Times> whole;
+    base::Json list = base::Json::array();
+    for (const Edit& edit : edits) {
+        whole.push_back(edit.whole);
+        if (edit.early) {
+            early.push_back(*edit.early);
+        }
+        list.push_back({{"early", edit.early ? toJson(*edit.early) : base::Json(nullptr)},
+                        {"whole", toJson(edit.whole)}});
+    }
+    if (!early.empty()) {
+        fmt::print("until the draft of the edit, {} edits:\n\n", early.size());
+        printTable(early);
+        fmt::print("\nuntil the whole package:\n\n");
+    }
+    printTable(whole);
+    if (arguments.json.empty()) {
+        return okStatus();
+    }
+    const base::Json all = {{"device", device},
+                            {"width", arguments.width},
+                            {"height", arguments.height},
+                            {"strategy", arguments.strategy},
+                            {"fallback", !arguments.noFallback},
+                            {"early", !arguments.noEarly},
+                            {"edits", std::move(list)}};
+    return base::writeFile(arguments.json, all.dump(1) + "\n");
 }
 
 Status measure(const Arguments& arguments) {
@@ -213,7 +371,7 @@ Status measure(const Arguments& arguments) {
     options.backgroundPipelines = !arguments.noFallback;
     const bool queries = ((*context)->handles().tracers & package::kTracerRayQuery) != 0;
     const Compiler compiler(arguments, package, queries ? "ray-query" : "ray-pipeline");
-    fmt::print("<!-- {} -->\n", compiler.line(1));
+    fmt::print("<!-- {} -->\n", compiler.lines(1).first);
     PackageWatch packages(package);
     Result<Package> first = Package::load(package);
     if (!first) {
@@ -245,37 +403,32 @@ Status measure(const Arguments& arguments) {
     if (place == std::string::npos) {
         return makeError("live-edit", arguments.file, "the file lacks the text of --from");
     }
-    std::vector<Times> rows;
+    std::vector<Edit> edits;
     PackageReplacement replaced;
-    for (int round = 0; round < arguments.rounds; ++round) {
+    Follower follower(compiler, packages, **renderer, frame);
+    Status result = okStatus();
+    for (int round = 0; round < arguments.rounds && result; ++round) {
         std::string text = original;
         // A number that no earlier round had, so that no cache knows it.
         const auto now = std::chrono::system_clock::now().time_since_epoch().count();
         text.replace(place, arguments.from.size(),
                      fmt::format("{} * {}.{:09}", arguments.from, 1, now % 1'000'000));
-        Result<Times> times = follow(compiler, packages, **renderer, frame, arguments.file, text,
-                                     static_cast<std::size_t>(round) + 2, replaced);
-        if (!times) {
-            static_cast<void>(base::writeFile(arguments.file, original));
-            return times.error();
+        Result<Edit> edit =
+            follower.follow(arguments.file, text, static_cast<std::size_t>(round) + 2, replaced);
+        if (edit) {
+            edits.push_back(*edit);
+        } else {
+            result = edit.error();
         }
-        rows.push_back(*times);
     }
     static_cast<void>(base::writeFile(arguments.file, original));
+    if (!result) {
+        return result;
+    }
     fmt::print("\n{} cases; pipelines: {} made, {} kept; {} x {}, {} edits\n\n", (*first).caseCount(),
                replaced.pipelinesMade, replaced.pipelinesKept, arguments.width, arguments.height,
                arguments.rounds);
-    fmt::print("| part | median, ms | least | most |\n|---|--:|--:|--:|\n");
-    for (std::size_t part = 0; part < kParts.size(); ++part) {
-        std::vector<double> values;
-        for (const Times& row : rows) {
-            values.push_back(row[part]);
-        }
-        std::ranges::sort(values);
-        fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} |\n", kParts[part], values[values.size() / 2],
-                   values.front(), values.back());
-    }
-    return okStatus();
+    return report(arguments, (*context)->deviceName(), edits);
 }
 
 }  // namespace
@@ -297,6 +450,8 @@ int main(int count, char** words) {
     app.add_option("--rounds", arguments.rounds, "edits")->capture_default_str();
     app.add_flag("--no-fallback", arguments.noFallback,
                  "compile no fallback, and make pipelines in replacePackage()");
+    app.add_flag("--no-early", arguments.noEarly, "write no early packages");
+    app.add_option("--json", arguments.json, "a file for every edit's times");
     CLI11_PARSE(app, count, words);
     try {
         if (const glint::Status status = glint::measure(arguments); !status) {

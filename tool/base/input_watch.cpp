@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/files.h"
 
+#include <algorithm>
 #include <chrono>
 #include <sys/stat.h>
 #include <thread>
@@ -51,6 +52,13 @@ std::vector<std::string> InputWatch::suspects() const {
         }
     }
     return paths;
+}
+
+bool InputWatch::looksChanged() const {
+    return std::ranges::any_of(files_, [](const auto& entry) {
+        const bool isFolder = entry.second.look && !entry.second.hash;
+        return !isFolder && lookAt(entry.first) != entry.second.look;
+    });
 }
 
 std::vector<std::string> InputWatch::changed() {

@@ -26,6 +26,10 @@ public:
     // kRestMs, as programs write large files piece by piece, but at most kPatienceMs.
     std::vector<std::string> changed();
 
+    // Whether a file looks other than known. Folders do not count: what the program writes may change them.
+    // Any thread may ask while no other member runs.
+    bool looksChanged() const;
+
     // Takes the present contents of a file as known: the program itself has written it.
     void accept(const std::string& path);
 

@@ -380,10 +380,15 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         watched->readMs = base::millisecondsSince(start);
     }
     console.progress("compiling " + base::join(arguments.scenes));
-    const Result<compiler::CompiledPackage> package =
+    Result<compiler::CompiledPackage> package =
         compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)), cache.modules(),
-                       std::move(made), watched != nullptr ? &watched->warm : nullptr);
+                       std::move(made), watched != nullptr ? &watched->warm : nullptr,
+                       watched != nullptr && watched->showing ? &*watched->showing : nullptr);
     if (!package) {
+        if (watched != nullptr && package.error().id == "outdated") {
+            watched->outdated = true;
+            return kExitFailed;
+        }
         return fail(console, package.error());
     }
     console.progress("writing " + outputsOf(arguments));
@@ -396,6 +401,7 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
     if (watched != nullptr) {
         describeRun(*package, *watched);
         watched->writeMs = package->tablesMs + base::millisecondsSince(compiled);
+        watched->made = std::move(*package);
         return kExitDone;
     }
     CompileSummary summary = summaryOf(Outcome{arguments, list, package->plan, &*package});

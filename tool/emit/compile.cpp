@@ -11,6 +11,7 @@
 #include "emit/material_code.h"
 #include "emit/module_files.h"
 #include "emit/modules.h"
+#include "emit/package/early.h"
 #include "emit/package/header.h"
 #include "emit/package/manifest.h"
 #include "emit/package/tables.h"
@@ -21,6 +22,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <new>
 #include <set>
@@ -129,10 +131,27 @@ struct Prepared {
     Plan plan;
     SourceSet sources;
     std::vector<ModuleSource> modules;
+    bool shownEarly = false;
+    double earlyMs = 0.0;  // that the early package took
 };
 
+// Returns whether an early package is shown. An error of it is not reported: the whole package has the same
+// GLSL. `planMs` is how long planning took so far.
+bool showEarly(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
+               const CompileSettings& settings, const EarlyShowing& showing, double planMs,
+               WarmModules* warm) {
+    Result<std::optional<CompiledPackage>> early =
+        makeEarlyPackage(scenes, plan, sources, settings, *showing.before, warm);
+    if (!early || !*early) {
+        return false;
+    }
+    (*early)->planMs += planMs;
+    return showing.publish(**early);
+}
+
 Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& settings, std::optional<Plan> made,
-                         WarmModules* warm = nullptr) {
+                         WarmModules* warm = nullptr, const EarlyShowing* showing = nullptr) {
+    const base::Clock::time_point start = base::Clock::now();
     if (Status valid = checkSettings(settings, scenes.path()); !valid) {
         return valid.error();
     }
@@ -151,24 +170,29 @@ Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& setting
     if (!sources) {
         return sources.error();
     }
+    const base::Clock::time_point planned = base::Clock::now();
+    const bool shown = showing != nullptr && showEarly(scenes, plan, *sources, settings, *showing,
+                                                       base::millisecondsBetween(start, planned), warm);
+    const double earlyMs = base::millisecondsSince(planned);
     Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings, warm);
     if (!modules) {
         return modules.error();
     }
-    return Prepared{std::move(plan), std::move(*sources), std::move(*modules)};
+    return Prepared{std::move(plan), std::move(*sources), std::move(*modules), shown, earlyMs};
 }
 
 Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings settings, ModuleCache* cache,
-                                std::optional<Plan> made, WarmModules* warm) {
+                                std::optional<Plan> made, WarmModules* warm, const EarlyShowing* showing) {
     const base::Clock::time_point start = base::Clock::now();
-    Result<Prepared> prepared = prepare(scenes, settings, std::move(made), warm);
+    Result<Prepared> prepared = prepare(scenes, settings, std::move(made), warm, showing);
     if (!prepared) {
         return prepared.error();
     }
     const base::Clock::time_point planned = base::Clock::now();
     Result<std::vector<CompiledModule>> compiled =
         settings.modules.empty()
-            ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm)
+            ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm,
+                             prepared->shownEarly ? showing->isOutdated : std::function<bool()>())
             : takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules);
     if (!compiled) {
         return explainGlslError(compiled.error(), *prepared->plan.model, settings.host);
@@ -199,7 +223,8 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings s
     std::ranges::sort(package.files, {}, &PackageFile::name);
     package.files.push_back({package::kManifestFile, toBytes(makeManifest(scenes, package, settings))});
     std::ranges::sort(package.files, {}, &PackageFile::name);
-    package.planMs = base::millisecondsBetween(start, planned);
+    package.planMs = base::millisecondsBetween(start, planned) - prepared->earlyMs;
+    package.earlyMs = prepared->shownEarly ? prepared->earlyMs : 0.0;
     package.compileMs = base::millisecondsBetween(planned, haveSpirv);
     package.tablesMs = base::millisecondsSince(haveSpirv);
     return package;
@@ -291,13 +316,14 @@ Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const Compi
 }
 
 Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
-                                       ModuleCache* cache, std::optional<Plan> made, WarmModules* warm) {
+                                       ModuleCache* cache, std::optional<Plan> made, WarmModules* warm,
+                                       const EarlyShowing* showing) {
     return guarded<CompiledPackage>(scenes, [&]() -> Result<CompiledPackage> {
         Result<CompileSettings> complete = completed(scenes, settings);
         if (!complete) {
             return complete.error();
         }
-        return compile(gltf::SceneList(scenes), *complete, cache, std::move(made), warm);
+        return compile(gltf::SceneList(scenes), *complete, cache, std::move(made), warm, showing);
     });
 }
 

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -57,6 +58,7 @@ struct CompiledPackage {
     std::uint64_t spirvBytes = 0;  // sum over the distinct modules
     // Wall clock: planning and making GLSL, making SPIR-V of it, and all else.
     double planMs = 0.0;
+    double earlyMs = 0.0;  // that its early package took, between planning and making GLSL
     double compileMs = 0.0;
     double tablesMs = 0.0;
 };
@@ -79,15 +81,26 @@ struct PackagePlan {
 Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                 std::optional<Plan> made = {});
 
+// How a compilation after an edit shows it early (emit/package/early.h).
+struct EarlyShowing {
+    const CompiledPackage* before = nullptr;  // the last whole package
+    // Gets the early package, if one can show the edit, before other modules are compiled. Returns whether it
+    // is shown.
+    std::function<bool(const CompiledPackage&)> publish;
+    // Asked between two modules after publish() has returned true, by any thread. If it returns true, nobody
+    // needs the whole package any more, and the compilation ends with the error "outdated".
+    std::function<bool()> isOutdated;
+};
+
 // Compiles one package for `scenes` (at least one): they share the cases, and each has its own tables.
 // Modules that `cache` has are not compiled; others are compiled and added to it. `warm` keeps modules in
 // memory in the same way, and their GLSL. Both may be null.
 // Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
 // line (a defect of Glint itself); with settings.modules, also those of takeModules(). `made` is that of
-// planPackage().
+// planPackage(). `showing` may be null.
 Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                        ModuleCache* cache = nullptr, std::optional<Plan> made = {},
-                                       WarmModules* warm = nullptr);
+                                       WarmModules* warm = nullptr, const EarlyShowing* showing = nullptr);
 inline Result<CompiledPackage> compilePackage(const gltf::Scene& scene, const CompileSettings& settings,
                                               ModuleCache* cache = nullptr) {
     return compilePackage(std::span(&scene, 1), settings, cache);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -150,11 +151,12 @@ private:
 class TextCompiler {
 public:
     TextCompiler(const std::vector<DistinctTexts::Text>& texts, bool debugInfo, ModuleCache* cache,
-                 WarmModules* warm)
+                 WarmModules* warm, const std::function<bool()>& isOutdated)
         : texts_(texts),
           options_{debugInfo},
           cache_(cache),
           warm_(warm),
+          isOutdated_(isOutdated),
           results_(texts.size()),
           done_(texts.size()) {}
 
@@ -223,6 +225,10 @@ private:
         if (std::optional<CachedModule> found = findCompiled(*text.text, cache_, warm_)) {
             return CompiledText{std::move(*found), false};
         }
+        if (isOutdated_ && isOutdated_()) {
+            return makeError("outdated", text.source->name,
+                             "an input changed while the package was compiled");
+        }
         return keep(text, compileMeasured(shaderOf(*text.source), options_, text.source->link));
     }
 
@@ -250,6 +256,7 @@ private:
     ShaderCompileOptions options_;
     ModuleCache* cache_;
     WarmModules* warm_;
+    const std::function<bool()>& isOutdated_;
     std::vector<std::optional<Result<CompiledText>>> results_;
     std::vector<std::atomic<bool>> done_;
 };
@@ -315,10 +322,11 @@ std::string moduleCompiler() {
 }
 
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache, WarmModules* warm) {
+                                                   bool debugInfo, ModuleCache* cache, WarmModules* warm,
+                                                   const std::function<bool()>& isOutdated) {
     const DistinctTexts distinct(sources, debugInfo);
     Result<std::vector<std::optional<CompiledText>>> compiled =
-        TextCompiler(distinct.texts(), debugInfo, cache, warm).run(jobs);
+        TextCompiler(distinct.texts(), debugInfo, cache, warm, isOutdated).run(jobs);
     if (!compiled) {
         return compiled.error();
     }

@@ -7,6 +7,7 @@
 #include "spirv/compiler.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,10 +31,12 @@ std::string moduleCompiler();
 // Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
 // texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported
 // error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
-// SPIR-V get the same `file`, that of the first of them.
+// SPIR-V get the same `file`, that of the first of them. If `isOutdated` is given and returns true before a
+// text is compiled, on any thread, the error is "outdated".
 Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
                                                    bool debugInfo, ModuleCache* cache = nullptr,
-                                                   WarmModules* warm = nullptr);
+                                                   WarmModules* warm = nullptr,
+                                                   const std::function<bool()>& isOutdated = {});
 
 // Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
 // readCompiledModule(); if there are several, that of the first module is reported.

@@ -186,6 +186,16 @@ void addLightingParts(ModuleSource& module, const std::string& origin, std::stri
     module.parts = {head, surface};
 }
 
+// Every module that shades surfaces evaluates what emissive lights emit.
+materials::FeatureMask emitterMask(const gltf::SceneList& scenes, const Plan& plan,
+                                   const CompileSettings& settings) {
+    if (settings.emissiveLights != EmissiveLights::On) {
+        return 0;
+    }
+    const EmitterFeatures features = emitterFeatures(scenes, plan);
+    return features.always | features.sometimes;
+}
+
 }  // namespace
 
 package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
@@ -204,17 +214,45 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             settings.shadowThrough != package::ShadowThrough::Alpha};
 }
 
+Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
+                                    const CompileSettings& settings, materials::FeatureMask edited,
+                                    WarmModules* warm) {
+    const package::ModuleKey key{ModuleRole::LightingEdit};
+    const package::RoleInfo& info = *package::findRole(key.role);
+    kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
+    const Case shaderCase = editCase(plan, edited);
+    addCase(context, scenes, *plan.model, shaderCase);
+    context.set("editedLobes", fmt::format("{:#x}u", edited & materials::kLobeMask));
+    context.set("editedInputs", fmt::format("{:#x}u", edited >> 32U));
+    SourceSet own;
+    if (Status made = addMaterialCode(sources, *plan.model,
+                                      shaderCase.sometimes | emitterMask(scenes, plan, settings), own);
+        !made) {
+        return made.error();
+    }
+    Result<std::string> text =
+        makeText(info.source, moduleDefines(info, key, settings.precision), sources, context);
+    if (!text) {
+        return text.error();
+    }
+    const auto module = std::make_shared<ModuleSource>();
+    module->key = key;
+    module->stage = stageOf(info, key.tracer);
+    module->name = moduleName(info.source, info, key, "", *plan.model);
+    ModuleDrafts drafts(sources, warm);
+    drafts.add(module, module->name, std::move(*text), own);
+    if (Status finished = drafts.finish(settings.jobs); !finished) {
+        return finished.error();
+    }
+    return std::move(*module);
+}
+
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources, const CompileSettings& settings,
                                                     WarmModules* warm) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     MaterialCodeOfCases codeOfCases(sources, *plan.model);
-    // Every case evaluates what emissive lights emit.
-    materials::FeatureMask ofEmitters = 0;
-    if (settings.emissiveLights == EmissiveLights::On) {
-        const EmitterFeatures features = emitterFeatures(scenes, plan);
-        ofEmitters = features.always | features.sometimes;
-    }
+    const materials::FeatureMask ofEmitters = emitterMask(scenes, plan, settings);
     const SourceSet none;
     const Case fallback = fallbackCase(plan);
     const Case draft = draftCase(plan);

@@ -37,4 +37,9 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const SourceSet& sources, const CompileSettings& settings,
                                                     WarmModules* warm = nullptr);
 
+// Returns the module of an early package that shows `edited` features. Has the errors of makeModuleSources().
+Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
+                                    const CompileSettings& settings, materials::FeatureMask edited,
+                                    WarmModules* warm = nullptr);
+
 }  // namespace glint::compiler

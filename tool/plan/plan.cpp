@@ -243,6 +243,20 @@ Case draftCase(const Plan& plan) {
     return shaderCase;
 }
 
+Case editCase(const Plan& plan, materials::FeatureMask edited) {
+    Case shaderCase = draftCase(plan);
+    shaderCase.name = "Edit";
+    for (const materials::Feature& feature : plan.model->features) {
+        const bool ofEdited =
+            feature.lobe >= 0 &&
+            (plan.model->features[static_cast<std::size_t>(feature.lobe)].mask() & edited) != 0;
+        shaderCase.sometimes |= ofEdited ? feature.mask() : 0;
+    }
+    shaderCase.sometimes |= edited;
+    shaderCase.sometimes &= plan.primaryAlways | plan.primarySometimes;
+    return shaderCase;
+}
+
 std::size_t caseCount(const Plan& plan) {
     return static_cast<std::size_t>(
         std::ranges::count_if(plan.cases, [](const Case& shaderCase) { return !shaderCase.isRetired(); }));

@@ -114,6 +114,8 @@ Case fallbackCase(const Plan& plan);
 
 // Returns the case of the draft of the lighting pass: the features of primary surfaces that it shows.
 Case draftCase(const Plan& plan);
+// Returns the case of a draft that shows `edited` features beside those of draftCase(), and their textures.
+Case editCase(const Plan& plan, materials::FeatureMask edited);
 
 // Returns the largest number of cases that a plan may have; 0 means no limit.
 int budgetOf(const PlanOptions& options);

@@ -9,8 +9,8 @@ namespace glint::prove {
 namespace {
 
 // What is longer is no share that anybody wrote.
-constexpr std::size_t kMostTerms = 16;
-constexpr std::size_t kMostFactors = 6;
+constexpr std::size_t kMostTermsOfShares = 16;
+constexpr std::size_t kMostFactorsOfShares = 6;
 constexpr int kMostDepth = 10;
 
 }  // namespace
@@ -75,7 +75,7 @@ bool ProgramBuilder::termsOf(NodeId id, const std::vector<NodeId>& parts, std::v
     if (at.op == Op::Add) {
         terms = std::move(left);
         terms.insert(terms.end(), right.begin(), right.end());
-        return terms.size() <= kMostTerms;
+        return terms.size() <= kMostTermsOfShares;
     }
     for (const Factors& first : left) {
         for (const Factors& second : right) {
@@ -85,7 +85,7 @@ bool ProgramBuilder::termsOf(NodeId id, const std::vector<NodeId>& parts, std::v
             terms.push_back(std::move(both));
         }
     }
-    return terms.size() <= kMostTerms;
+    return terms.size() <= kMostTermsOfShares;
 }
 
 NodeId ProgramBuilder::sumOfTerms(const std::vector<Factors>& terms, Format format) {
@@ -149,7 +149,8 @@ NodeId ProgramBuilder::share(const Node& given) {
             factorsOf(given.b, divisor, factors);
         }
         std::sort(factors.begin(), factors.end());
-        if (factors.empty() || factors.size() > kMostFactors || !isSumWith(divisor, factors, kMostDepth)) {
+        if (factors.empty() || factors.size() > kMostFactorsOfShares ||
+            !isSumWith(divisor, factors, kMostDepth)) {
             continue;
         }
         if (const NodeId made = shareOf(appendOnce(given), {factors}, divisor); made != kNoNode) {

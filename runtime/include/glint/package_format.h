@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 15;
+inline constexpr std::uint32_t kVersion = 16;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -141,7 +141,7 @@ struct PackageHeader {
     std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
     std::uint32_t trustTextures;  // 1: shaders rely on what the textures of the scenes hold
     std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
-    std::uint32_t pad;            // 0
+    std::uint32_t early;          // 1: shows an edit; its other modules are those before it
 };
 
 enum class SectionKind : std::uint32_t {
@@ -197,6 +197,7 @@ enum class ModuleRole : std::uint32_t {
     PathRays = 18,       // puts the next rays of paths on the list, in packages with several bounces
     Deform = 19,         // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
     LightingDraft = 20,  // stands in for Lighting until that is made
+    LightingEdit = 21,   // shades surfaces with edited features, after Lighting
 };
 
 struct ModuleEntry {

@@ -291,6 +291,9 @@ public:
     // Its commands must be submitted, because those of later recordings rely on them. If it has a sampleIndex
     // above 0, its picture averages samples of both packages; see ReplacementProgress::ready.
     //
+    // An early package (PackageShape::early) is taken over in the same way. It needs one small pipeline, and
+    // shows the edit as a draft until the whole package, which is given as soon as it is there, is ready.
+    //
     // The options stay those of create(). A package that waits gives way to one that is given later. If two
     // renderers share a GpuScene, the other one's recordings then fail with "package-replaced". Call this on
     // the thread that records. `package` must not be null; the renderer keeps it as long as it is needed.

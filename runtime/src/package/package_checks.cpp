@@ -123,6 +123,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.fallback > 1) {
         return outside("the kind of fallback", header.fallback);
     }
+    if (header.early > 1) {
+        return outside("the kind of package", header.early);
+    }
     if (header.textureLevels > 1) {
         return outside("the kind of notes about textures", header.textureLevels);
     }
@@ -429,6 +432,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     shape.passes = header.passes;
     shape.maxBounces = header.maxBounces;
     shape.fallback = header.fallback != 0;
+    shape.early = header.early != 0;
     shape.shadowsApart = header.shadowThrough != package::ShadowThrough::Alpha;
     return shape;
 }

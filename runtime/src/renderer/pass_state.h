@@ -15,7 +15,7 @@
 namespace glint {
 
 // The largest number of passes of a round: the fixed ones of the longest strategy, and one for each case.
-inline constexpr std::uint32_t kMaxFixedPasses = 26;
+inline constexpr std::uint32_t kMaxFixedPasses = 27;
 
 // The label of a timer's stretch.
 struct PassLabel {

@@ -30,6 +30,8 @@ struct PipelineChoice {
     bool background = false;
     // Frames begin with a draft. Requires `background`.
     bool draft = false;
+    // The edit of an early package is shown.
+    bool showsEdit = false;
 };
 
 // When a pipeline is made: these follow each other.

@@ -254,6 +254,7 @@ ReplacementProgress Renderer::replacementProgress() const {
     ReplacementProgress progress;
     progress.inUse = state_->replacementsInUse;
     progress.error = state_->replacementError;
+    progress.early = state_->pipelines.passes.contains(package::ModuleRole::LightingEdit);
     if (state_->next) {
         const auto& background = state_->next->pipelines.background;
         progress.pending = true;

@@ -87,11 +87,15 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     CLI::Option& dry =
         addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile nothing and write nothing");
     dry.group("Output");
-    addFlag(command, kWatch, arguments.watch,
-            "compile again whenever an input changes, until Ctrl-C, and\n"
-            "increment the counter in DIR.stamp after each new package")
+    CLI::Option& watch = addFlag(command, kWatch, arguments.watch,
+                                 "compile again whenever an input changes, until Ctrl-C, and\n"
+                                 "increment the counter in DIR.stamp after each new package");
+    watch.group("Output")->excludes(&dry);
+    addFlag(command, "--no-early", arguments.noEarly,
+            "with --watch: write whole packages alone, and no early one\n"
+            "that shows an edit of a pack as a draft")
         .group("Output")
-        ->excludes(&dry);
+        ->needs(&watch);
     addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one for each core")
         .group("Output");
     addCacheOptions(command, arguments.cache);

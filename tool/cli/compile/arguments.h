@@ -34,6 +34,7 @@ struct CompileArguments {
     std::string modules;                   // folder of compiled modules; empty: they are compiled
     bool dryRun = false;
     bool watch = false;
+    bool noEarly = false;
     std::vector<std::string> line;  // the command line, without the program; for --watch
 };
 

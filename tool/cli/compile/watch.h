@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,11 +19,17 @@ struct WatchedRun {
     explicit WatchedRun(compiler::WarmModules& memory) : warm(memory) {}
 
     compiler::WarmModules& warm;
+    // How the run may show an edit before the whole package is compiled.
+    std::optional<compiler::EarlyShowing> showing;
+    // The whole package that the run has written.
+    std::optional<compiler::CompiledPackage> made;
+    bool outdated = false;  // the run ended early, because an input changed
     // The files that were read; empty if the run failed before it knew them.
     std::vector<std::string> inputs;
     // Wall clock: reading and checking, planning and making GLSL, making SPIR-V, and making and writing
     // files.
     double readMs = 0.0;
+    double earlyMs = 0.0;  // of the early package, without reading and planning; 0: there is none
     double planMs = 0.0;
     double compileMs = 0.0;
     double writeMs = 0.0;

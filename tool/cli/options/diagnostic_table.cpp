@@ -216,6 +216,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"order-check", kError,
      "`glint render --validate`: hits were lost, doubled or misplaced; a defect of Glint or of the driver."},
     {"out-of-memory", kError, "The scene does not fit into memory."},
+    {"outdated", kError, "An input changed while `compile --watch` compiled, so the command compiles again."},
     {"output", kError, "Standard output can't be written."},
     {"output-busy", kError, "Another process is writing below the same folder."},
     {"output-folder", kError, "The folder of an output is not there, or the output is a folder."},

@@ -351,6 +351,8 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alpha = settings.plan.keys.alpha;
     header.shadowThrough = settings.shadowThrough;
+    header.early = std::ranges::any_of(
+        modules, [](const CompiledModule& module) { return module.key.role == ModuleRole::LightingEdit; });
     header.materialTextureOffset = layout.textureOffset;
     header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
