@@ -73,33 +73,33 @@ void keepSampledLobes(Hit hit, Features features, HostLight light, SkyShares sky
 #endif
 }
 
-// The light of a shared light at the hit of a ray, without its shadow. Where no ray follows, this sample counts alone.
-// Its aim is the shadow ray.
-vec3 lightOfSharedAtHit(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares sky,
-                        out LightSample aim) {
+// A sample of a shared light at the hit of a ray: the shadow ray and the irradiance without a shadow, which comes from
+// `direction` and which the lobes that `lit` keeps scatter. Where no ray follows, this sample counts alone.
+LightSample aimAtSharedFromHit(Hit hit, Features features, HostLight light, uint index, SkyShares sky,
+                               inout Surface lit, out vec3 direction) {
     SharedSample drawn = sampleShared(hit, light, index, shadingDimension(0u));
-    aim = LightSample(vec3(0.0), 0.0, vec3(0.0), kRaySent);
+    direction = drawn.direction;
+    LightSample aim = LightSample(vec3(0.0), 0.0, vec3(0.0), kRaySent);
     if (drawn.density <= 0.0) {
-        return vec3(0.0);
+        return aim;
     }
 #if GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
     if (light.emitter == kSkyEmitter && isWithinGlass(hit, features)) {
-        return vec3(0.0);
+        return aim;
     }
 #endif
     aim = aimAtShared(hit, light, drawn);
     float density = drawn.density;
 #if GLINT_PATHS
     if (pathGoesOn()) {
-        Surface whole = surface;
+        Surface whole = lit;
         whole.bsdf.transmitted *= sky.transmitted;
-        density += bsdfPdf(whole.bsdf, features, toSurface(surface, drawn.direction));
+        density += bsdfPdf(whole.bsdf, features, toSurface(lit, drawn.direction));
     }
 #endif
-    keepSampledLobes(hit, features, light, sky, surface);
-    return aim.distance > 0.0
-               ? scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / density
-               : vec3(0.0);
+    keepSampledLobes(hit, features, light, sky, lit);
+    aim.irradiance = aim.distance > 0.0 ? drawn.radiance / density : vec3(0.0);
+    return aim;
 }
 
 // What its shadow ray sees: as much as a ray of the path, or what rays to other lights see.
@@ -127,11 +127,11 @@ vec3 countedEmission(Hit hit, Surface surface) {
     return surface.emission;
 }
 
-// The light of a light that emits from no triangle, without its shadow, from its centre or from a point of a light that
-// has a size; the shadow ray goes there, too. Where shadow rays pass glass, the surface that sent the ray has had the
-// light of such lights behind this glass on the straight line, with all that happens within: it would count twice.
-vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light, out LightSample aim) {
-    aim = hostSampleLight(light, hit.position);
+// The same of a light that emits from no triangle, from its centre or from a point of a light that has a size. Where
+// shadow rays pass glass, the surface that sent the ray has had the light of such lights behind this glass on the
+// straight line, with all that happens within: it would count twice.
+LightSample aimAtLight(Hit hit, Features features, HostLight light, inout Surface lit) {
+    LightSample aim = hostSampleLight(light, hit.position);
 #if GLINT_EFFECT_SHADOW
     // All lights may have the same numbers, because only one of them counts.
     if (hostLightHasSize(light)) {
@@ -141,12 +141,12 @@ vec3 lightOfLight(Hit hit, Surface surface, Features features, HostLight light, 
 #if GLINT_SHADOW_GLASS
     if (hasLobe(features, GLINT_TRANSMISSION)) {
         if (isWithinGlass(hit, features)) {
-            return vec3(0.0);
+            aim.irradiance = vec3(0.0);
         }
-        surface.bsdf.transmitted = vec3(0.0);
+        lit.bsdf.transmitted = vec3(0.0);
     }
 #endif
-    return unshadowedLight(hit, surface, features, aim);
+    return aim;
 }
 
 // Direct light from one light. The light is chosen in one pass, with probability proportional to the luminance that it
@@ -160,13 +160,25 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
     vec3 chosen = vec3(0.0);
     for (uint i = 0u; i < lights; ++i) {
         HostLight light = lightOfHost(hit, features, i);
-        LightSample aim;
+        Surface lit = surface;
 #if GLINT_SHARED_LIGHTS
+        // Both kinds of lights share one evaluation of the BSDF, which is most of the code.
         bool shares = isShared(light);
-        vec3 contribution = shares ? lightOfSharedAtHit(hit, surface, features, light, i, sky, aim)
-                                   : lightOfLight(hit, surface, features, light, aim);
+        vec3 direction;
+        LightSample aim;
+        if (shares) {
+            aim = aimAtSharedFromHit(hit, features, light, i, sky, lit, direction);
+        } else {
+            aim = aimAtLight(hit, features, light, lit);
+            direction = aim.direction;
+        }
+        vec3 contribution = vec3(0.0);
+        if (aim.irradiance != vec3(0.0)) {
+            contribution = scatteredLight(lit, features, hit.geometricNormal, direction) * aim.irradiance;
+        }
 #else
-        vec3 contribution = lightOfLight(hit, surface, features, light, aim);
+        LightSample aim = aimAtLight(hit, features, light, lit);
+        vec3 contribution = unshadowedLight(hit, lit, features, aim);
 #endif
         float weight = luminance(contribution);
         if (weight <= 0.0) {

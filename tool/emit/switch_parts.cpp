@@ -53,6 +53,11 @@ Result<std::shared_ptr<const ModuleSource>> SwitchParts::partOf(const Case& shad
     }
     insertPartDefines(*text, settings_.precision);
     const std::shared_ptr<ModuleSource> part = makePart(function + ".part", {function});
+    if (settings_.emissiveLights == EmissiveLights::On) {
+        // It shades the point on the emissive triangle, whatever the case. Inlined, it would be most of each case;
+        // apart, it is equal in all parts, and the joined shader has it once.
+        part->functionsApart.emplace_back("sampleEmitter");
+    }
     drafts_.add(part, part->name, std::move(*text), **code);
     made = part;
     return made;

@@ -192,8 +192,10 @@ Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const
             return translated;
         }
     }
+    std::vector<std::string> apart = source.functionsApart;
+    std::ranges::copy(linkedFunctions(names), std::back_inserter(apart));
     const Result<std::vector<std::uint32_t>> optimized =
-        optimizePart(*translated, source.name, linkedFunctions(names), options.halvesAll);
+        optimizePart(*translated, source.name, apart, options.halvesAll);
     if (!optimized) {
         return optimized;
     }

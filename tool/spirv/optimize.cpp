@@ -236,10 +236,10 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
 
 Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>& words,
                                                 const std::string& name,
-                                                const std::vector<std::string>& linked, bool halvesAll) {
+                                                const std::vector<std::string>& apart, bool halvesAll) {
     std::vector<std::uint32_t> optimized = words;
     const std::vector<SpirvFunction> functions = findFunctions(optimized);
-    keepApart(optimized, functions, idsOf(functions, linked));
+    keepApart(optimized, functions, idsOf(functions, apart));
     if (Status status = inlineAndClear(optimized, name, true, halvesAll); !status) {
         return status.error();
     }

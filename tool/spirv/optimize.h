@@ -21,12 +21,12 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
                                                  const std::vector<std::string>& apart, bool keepNames,
                                                  bool halvesAll = false);
 
-// Optimises a part of a shader: everything is inlined into main and the functions named in `linked`, which
+// Optimises a part of a shader: everything is inlined into main and the functions named in `apart`, which
 // stay functions. Names and members are kept, because the join needs them. A part's literals decide about its
 // features before anything is inlined, so levels would only cost time. Error "spirv-optimize".
 Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>& words,
                                                 const std::string& name,
-                                                const std::vector<std::string>& linked, bool halvesAll);
+                                                const std::vector<std::string>& apart, bool halvesAll);
 
 // Removes what parts of a shader declare and nothing reads, after they were joined: functions, members,
 // types and constants. `keepNames` keeps the members. Error "spirv-optimize".
