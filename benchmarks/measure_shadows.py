@@ -4,6 +4,7 @@
     benchmarks/measure_shadows.py [--glint FILE] [--panes 0,1,2,4,8] [--kinds glass,blend,mask] [--size WxH]
                                   [--rounds N] [--tracer NAME] [--device NAME] [--bounces N] [--processor]
     benchmarks/measure_shadows.py --write FILE [--scene candle|vase|nested|apart]
+    benchmarks/measure_shadows.py --write FILE --slab ROUGHNESS,INDEX
 
 A floor with columns stands under lamps, with panes between them: of coloured glass, of BLEND with an alpha of 0.4, or
 of MASK with a texture of holes. The scene is rendered with each setting in turn, in an order that changes from round to
@@ -12,7 +13,8 @@ and the shading of hits), and the ratio to the default in the same round. With -
 all passes, for devices on the processor while other programs run: that of many samples, less that of two.
 
 --write writes another scene of the documents instead: a candle in a holder of blue glass (docs/shadows.md), a vase made
-by BLEND (docs/materials.md), or a coloured ball of glass in a block of glass or beside it (docs/paths.md).
+by BLEND (docs/materials.md), or a coloured ball of glass in a block of glass or beside it (docs/paths.md). With --slab
+it is a floor below a slab of clear glass, which fills its sky (docs/shadows.md).
 """
 import argparse
 import json
@@ -245,6 +247,20 @@ def write_apart(path):
     write_volumes(path, False)
 
 
+def write_slab(path, roughness, index):
+    """Writes a diffuse floor that sees nothing but a wide slab of clear glass, from between the two."""
+    buffer = Buffer()
+    clear = glass((1, 1, 1), thicknessFactor=0.2)
+    clear["pbrMetallicRoughness"]["roughnessFactor"] = roughness
+    clear["extensions"]["KHR_materials_ior"] = {"ior": index}
+    floor = matte(0.5, 0.5, 0.5)
+    floor["extensions"] = {"KHR_materials_specular": {"specularFactor": 0}}
+    meshes = [quad(buffer, 0, [-40, 0, 40], [80, 0, 0], [0, 0, -80]), box(buffer, 1, [-40, 1, -40], [40, 1.2, 40])]
+    view, cameras = camera(0.7, [0, 0.8, 0.5], 1.0)
+    write_scene(path, [*USED[:2], "KHR_materials_ior", "KHR_materials_specular"], [{"mesh": 0}, {"mesh": 1}, view],
+                buffer, meshes=meshes, materials=[floor, clear], cameras=cameras)
+
+
 WRITERS = {"candle": write_candle, "vase": write_vase, "nested": write_nested, "apart": write_apart}
 
 
@@ -296,7 +312,11 @@ def main():
     parser.add_argument("--processor", action="store_true", help="measure processor time, of all passes")
     parser.add_argument("--write", type=pathlib.Path, help="write a scene to this file, and end")
     parser.add_argument("--scene", choices=WRITERS, default="candle", help="the scene of --write; default candle")
+    parser.add_argument("--slab", help="ROUGHNESS,INDEX of the slab that --write writes instead")
     arguments = parser.parse_args()
+    if arguments.write and arguments.slab:
+        write_slab(arguments.write, *map(float, arguments.slab.split(",")))
+        return
     if arguments.write:
         WRITERS[arguments.scene](arguments.write)
         return

@@ -95,31 +95,32 @@ float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
     return keepsBlocked(b, features, eta) ? pdf + bendingPdf(b, features, vec3(l.xy, -l.z), eta) : pdf;
 }
 
-// facetDensity() for what baseReflection() has: above the plane, the half vector counts as rounding leaves it. At grazing
+// facetDensity() for what baseReflection() has above the plane: the half vector counts as rounding leaves it. At grazing
 // angles that may be nothing of it. Then the density is as wrong as the lobe, and their quotient is still a share of
 // light. A density of 0 would let the few samples of a weak lobe bring the whole peak.
-float sampledFacetDensity(Bsdf b, vec3 l) {
+float densityAbove(Bsdf b, vec3 l) {
     vec3 sum = b.view + l;
-    vec3 h = sum / max(sqrt(dot(sum, sum)), 1e-12);
-    return l.z > 0.0 ? mirroredPdf(b.view, h, b.alpha) : facetDensity(b, l);
+    return mirroredPdf(b.view, sum / max(sqrt(dot(sum, sum)), 1e-12), b.alpha);
 }
 
-// The density of the microfacets' reflections: of a direction above the plane, or below it.
-float reflectedPdf(Bsdf b, Features features, vec3 l) {
+// The density of the microfacets' reflections, of which `facets` is that of the facets: of a direction above the plane,
+// or below it.
+float reflectedPdf(Bsdf b, Features features, vec3 l, float facets) {
     vec2 facet2 = halfCosine2(b.view, l);
     float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;
     if (hasLobe(features, GLINT_DISPERSION)) {
         chance = (facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.x), b.eta.x).x + chance +
                   facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.z), b.eta.z).x) / 3.0;
     }
-    return chance * sampledFacetDensity(b, l);
+    return chance * facets;
 }
 
 float microfacetPdf(Bsdf b, Features features, vec3 l) {
     if (l.z > 0.0) {
-        float pdf = reflectedPdf(b, features, l);
+        float pdf = reflectedPdf(b, features, l, densityAbove(b, l));
         bool mirrors = seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y);
-        return mirrors ? pdf + reflectedPdf(b, features, vec3(l.xy, -l.z)) : pdf;
+        vec3 below = vec3(l.xy, -l.z);
+        return mirrors ? pdf + reflectedPdf(b, features, below, facetDensity(b, below)) : pdf;
     }
     if (!hasLobe(features, GLINT_TRANSMISSION)) {
         return 0.0;

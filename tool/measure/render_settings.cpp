@@ -80,6 +80,7 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     emissive.skyLight = compiler::SkyLight::On;
     facts.skyMayLight = compiler::skyLightOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
+    facts.punctualLights = !data.lights.empty();
     compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
     const Result<compiler::EmissiveLights> emissiveLights = compiler::emissiveLightsOf({&scene, 1}, own);
     own.emissiveLights = emissiveLights ? *emissiveLights : compiler::EmissiveLights::Off;

@@ -24,11 +24,12 @@ struct BenchFacts {
     bool skyMayLight = false;    // packages with the default's effects can have the sky as a light
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
-    bool packsTextures = true;  // the device reads BC formats, and this program packs them
-    std::size_t lights = 0;     // with a position, of which the default's hierarchy chooses
-    bool manyLights = false;    // more than --lights auto takes whole
-    bool sizedLights = false;   // some light casts soft shadows
-    bool rayPipeline = false;   // this and the next two are features of the device
+    bool packsTextures = true;    // the device reads BC formats, and this program packs them
+    bool punctualLights = false;  // the picture has punctual lights or a sun, which no path finds by itself
+    std::size_t lights = 0;       // with a position, of which the default's hierarchy chooses
+    bool manyLights = false;      // more than --lights auto takes whole
+    bool sizedLights = false;     // some light casts soft shadows
+    bool rayPipeline = false;     // this and the next two are features of the device
     bool positionFetch = false;
     bool float16 = false;
     std::set<std::string, std::less<>> effects;  // effects of the default configuration, by name

@@ -50,6 +50,7 @@ compiler::BenchFacts rich() {
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.effectsOfAnyRoughness = facts.effects;
     facts.sendsRays = true;
+    facts.punctualLights = true;
     facts.lights = 1000;
     facts.rayEffects = "auto,indirect-diffuse";
     facts.fullTransport = true;
@@ -193,6 +194,17 @@ TEST(BenchSettings, OfTheReferenceApproximateNothing) {
     EXPECT_FALSE(same.contains("effects"));
     EXPECT_FALSE(same.contains("max-roughness"));
     EXPECT_EQ(same.at("texture-lod"), "mip0");
+}
+
+// Light of lights that paths can't find passes glass on straight lines. Paths find all other light
+// themselves.
+TEST(BenchSettings, OfTheReferencePassGlassStraightForPunctualLightsAlone) {
+    compiler::BenchFacts facts = rich();
+    EXPECT_EQ(exactValues(facts).at("shadow-through"), "glass");
+    facts.punctualLights = false;
+    EXPECT_EQ(exactValues(facts).at("shadow-through"), "alpha");
+    facts.fullTransport = false;
+    EXPECT_EQ(exactValues(facts).at("shadow-through"), "glass");
 }
 
 TEST(BenchSettings, DropWhatHasNoEffectBesideOthers) {
