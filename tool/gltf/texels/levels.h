@@ -3,17 +3,33 @@
 
 #include "gltf/scene.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace glint::gltf {
 
-// How the numbers of an image are averaged.
+// How the numbers of a channel are averaged.
+//
+// Roughness r stands for a lobe whose alpha is r². The slopes of a rough surface's facets have a variance in
+// proportion to alpha² (Beckmann and Spizzichino 1963), and variances of patches add by their area (Toksvig
+// 2005, "Mipmapping normal maps"; Olano and Baker 2010, "LEAN mapping"). So the mean is that of r⁴. GGX has
+// no variance, but its density far from the normal is alpha² / (pi slope⁴), so there the mean of r⁴ is right
+// as well. Such means lie between the least and the greatest of their numbers, as plain ones do.
 enum class LevelFilter : std::uint8_t {
-    Color,    // red, green and blue in linear light, though stored in sRGB; alpha as it is
-    Data,     // each channel as it is
-    Normals,  // red, green and blue are vectors; their mean is made a unit vector again
+    Data,        // as they are
+    Color,       // in linear light, though stored in sRGB
+    Normals,     // red, green and blue are vectors; their mean is made a unit vector again
+    Roughness,   // by their fourth powers
+    Glossiness,  // 1 - roughness, averaged as roughness
 };
+
+using LevelFilters = std::array<LevelFilter, 4>;  // by channel
+
+// Returns the filters of an image in which one of Data, Color and Normals is right for red, green and blue.
+constexpr LevelFilters filtersOf(LevelFilter filter) {
+    return {filter, filter, filter, LevelFilter::Data};
+}
 
 // An RGBA image with levels, the largest first.
 struct Texels {
@@ -30,6 +46,6 @@ int fullLevels(int width, int height);
 // Appends the levels that a full pyramid has more. A texel is the mean over the area that it covers of the
 // last level that is there, where a size is odd with shares of texels. Levels are not averaged from ones that
 // were rounded.
-void completeLevels(Texels& texels, LevelFilter filter);
+void completeLevels(Texels& texels, const LevelFilters& filters);
 
 }  // namespace glint::gltf
