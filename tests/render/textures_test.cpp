@@ -272,6 +272,7 @@ gltf::Scene roughFloors(std::uint8_t smooth, std::uint8_t rough) {
         slot.texture = addTexture(scene, kTexels, kTexels, std::move(texels));
         slot.transform.scale = {400.0F, 400.0F};
         scene.samplers.back() = gltf::Sampler();
+        scene.samplers.back().magnification = gltf::Filter::Nearest;
         const float height = -1.0F - kBetweenFloors * static_cast<float>(i);
         addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {-40.0F, height, 5.0F},
                                                    {80, 0, 0}, {0, 0, -80})));

@@ -207,7 +207,7 @@ TEST(TexelBounds, EncloseWhatSamplersGive) {
     EXPECT_EQ(escapesOf(exactly), 0);
 }
 
-// Means of fourth powers are between the least and the greatest of their numbers, as other means are.
+// Roots of mean squares are between the least and the greatest of their numbers, as other means are.
 TEST(TexelBounds, EncloseLevelsOfRoughness) {
     using enum gltf::LevelFilter;
     constexpr gltf::LevelFilters kFilters{Roughness, Glossiness, Data, Roughness};

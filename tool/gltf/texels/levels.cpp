@@ -28,13 +28,6 @@ double encodeSrgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
-double fourthPower(double value) {
-    return value * value * value * value;
-}
-float fourthRoot(float value) {
-    return std::sqrt(std::sqrt(value));
-}
-
 // Returns the number whose mean is taken, for a number in [0, 1] that the image stores.
 double decoded(double value, LevelFilter filter) {
     switch (filter) {
@@ -43,9 +36,9 @@ double decoded(double value, LevelFilter filter) {
         case LevelFilter::Normals:
             return 2.0 * value - 1.0;
         case LevelFilter::Roughness:
-            return fourthPower(value);
+            return value * value;
         case LevelFilter::Glossiness:
-            return fourthPower(1.0 - value);
+            return (1.0 - value) * (1.0 - value);
         case LevelFilter::Data:
             break;
     }
@@ -102,9 +95,9 @@ private:
             case LevelFilter::Color:
                 return encodeColor(value);
             case LevelFilter::Roughness:
-                return rounded(fourthRoot(value));
+                return rounded(std::sqrt(value));
             case LevelFilter::Glossiness:
-                return rounded(1.0F - fourthRoot(value));
+                return rounded(1.0F - std::sqrt(value));
             case LevelFilter::Data:
             case LevelFilter::Normals:
                 break;

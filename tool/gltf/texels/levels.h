@@ -11,16 +11,15 @@ namespace glint::gltf {
 
 // How the numbers of a channel are averaged.
 //
-// Roughness r stands for a lobe whose alpha is r². The slopes of a rough surface's facets have a variance in
-// proportion to alpha² (Beckmann and Spizzichino 1963), and variances of patches add by their area (Toksvig
-// 2005, "Mipmapping normal maps"; Olano and Baker 2010, "LEAN mapping"). So the mean is that of r⁴. GGX has
-// no variance, but its density far from the normal is alpha² / (pi slope⁴), so there the mean of r⁴ is right
-// as well. Such means lie between the least and the greatest of their numbers, as plain ones do.
+// Roughness r stands for a lobe with alpha = r². The variance of its facets' slopes adds over an area
+// (Toksvig 2005, "Mipmapping normal maps"; Olano and Baker 2010, "LEAN mapping"), but GGX has none that is
+// finite. The mean of its slopes is pi / 2 alpha, and adds as well, so the mean is that of r². Such means lie
+// between the least and the greatest of their numbers, as plain ones do. docs/textures.md compares powers.
 enum class LevelFilter : std::uint8_t {
     Data,        // as they are
     Color,       // in linear light, though stored in sRGB
     Normals,     // red, green and blue are vectors; their mean is made a unit vector again
-    Roughness,   // by their fourth powers
+    Roughness,   // by their squares
     Glossiness,  // 1 - roughness, averaged as roughness
 };
 
