@@ -87,7 +87,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
                 continue;
             }
             made[i] = {image.width, image.height, gltf::PixelFormat::Rgba8, 1, image.pixels};
-            gltf::completeLevels(made[i], gltf::LevelFilter::Color);
+            gltf::completeLevels(made[i], gltf::filtersOf(gltf::LevelFilter::Color));
             data.images[i].pixels = made[i].bytes;
             data.images[i].levels = static_cast<std::uint32_t>(made[i].levels);
         }

@@ -2,6 +2,7 @@
 // while frames are drawn, and the report of the levels that a frame reads.
 #include "gltf/codecs/basisu.h"
 #include "gltf/texels/block_decode.h"
+#include "gltf/texels/fit.h"
 #include "gltf/texels/levels.h"
 #include "render/edited_scene.h"
 #include "render/pixel_test.h"
@@ -245,8 +246,85 @@ gltf::Texels noise(std::uint32_t seed) {
     for (std::uint8_t& byte : texels.bytes) {
         byte = static_cast<std::uint8_t>(random());
     }
-    completeLevels(texels, gltf::LevelFilter::Color);
+    completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Color));
     return texels;
+}
+
+constexpr float kBetweenFloors = 100.0F;
+
+// Metal floors far below each other, which a low sun lights. The first has squares of two roughnesses, and
+// the others one of them each.
+gltf::Scene roughFloors(std::uint8_t smooth, std::uint8_t rough) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addDirectionalLight(scene, {0.0F, -0.5F, 0.866F}, 3.0F);
+    const std::array<std::array<std::uint8_t, 2>, 3> pairs{
+        {{smooth, rough}, {smooth, smooth}, {rough, rough}}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        constexpr int kTexels = 16;
+        std::vector<std::uint8_t> texels;
+        for (int texel = 0; texel < kTexels * kTexels; ++texel) {
+            const std::uint8_t code = pairs[i][static_cast<std::size_t>((texel + texel / kTexels) % 2)];
+            texels.insert(texels.end(), {255, code, 255, 255});
+        }
+        materials::Material material;
+        materials::TextureInfo& slot = material.texture("metallicRoughnessTexture");
+        slot.texture = addTexture(scene, kTexels, kTexels, std::move(texels));
+        slot.transform.scale = {400.0F, 400.0F};
+        scene.samplers.back() = gltf::Sampler();
+        scene.samplers.back().magnification = gltf::Filter::Nearest;
+        const float height = -1.0F - kBetweenFloors * static_cast<float>(i);
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {-40.0F, height, 5.0F},
+                                                   {80, 0, 0}, {0, 0, -80})));
+    }
+    return scene;
+}
+
+// Returns the luminance of a floor's pixels, from a camera 1 m above it.
+std::vector<double> pictureOf(const LoadedScene& loaded, const gltf::Scene& scene, std::size_t floor) {
+    constexpr std::uint32_t kPixels = 24;
+    RenderSetup setup = defaultSetup(scene, kPixels, kPixels);
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    setup.frame.camera.position = {0, -kBetweenFloors * static_cast<float>(floor), 0};
+    setup.frame.camera.forward = {0, -0.5F, -0.8660254F};
+    setup.frame.camera.up = {0, 0.8660254F, -0.5F};
+    const LinearImage image = loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+    std::vector<double> light;
+    for (const auto& pixel : image.pixels) {
+        light.push_back(pixel[1]);
+    }
+    return light;
+}
+
+// Where a pixel covers many squares, the picture that is supersampled on the finest level is the mean of
+// those of the two roughnesses.
+TEST(TextureLevels, LevelsOfRoughnessAreNearerToTheFinestLevelThanPlainMeans) {
+    for (const auto& [smooth, rough] : {std::pair<std::uint8_t, std::uint8_t>{26, 230}, {20, 64}}) {
+        const gltf::Scene scene = roughFloors(smooth, rough);
+        const gltf::Image& image = scene.images[0];
+        const auto errorOf = [&](const std::vector<std::uint8_t>& texels, int levels) {
+            const LoadedScene loaded(scene, settingsForDevice(), [&](scene_view::SceneViewData& data) {
+                data.images[0].pixels = texels;
+                data.images[0].levels = static_cast<std::uint32_t>(levels);
+            });
+            const std::vector<double> picture = pictureOf(loaded, scene, 0);
+            const std::vector<double> ofSmooth = pictureOf(loaded, scene, 1);
+            const std::vector<double> ofRough = pictureOf(loaded, scene, 2);
+            double sum = 0.0;
+            for (std::size_t i = 0; i < picture.size(); ++i) {
+                const double expected = 0.5 * (ofSmooth[i] + ofRough[i]);
+                sum += std::pow(picture[i] - expected, 2.0) / (std::pow(expected, 2.0) + 0.01);
+            }
+            return sum / static_cast<double>(picture.size());
+        };
+        gltf::Texels plain{image.width, image.height, image.format, 1, image.pixels};
+        completeLevels(plain, gltf::filtersOf(gltf::LevelFilter::Data));
+        const auto fitted =
+            fitImage(scene, image, imageUses(scene)[0], {.formats = sharedContext().texelFormats()});
+        ASSERT_TRUE(fitted.ok());
+        EXPECT_LT(errorOf(fitted->texels, fitted->levels), 0.5 * errorOf(plain.bytes, plain.levels));
+    }
+    expectNoValidationMessages();
 }
 
 // Two unlit squares side by side, with textures of 64 x 64 texels, and one behind the camera.

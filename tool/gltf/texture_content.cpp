@@ -151,7 +151,7 @@ public:
           works_(scene.images.size()) {}
 
     Status read() {
-        const std::vector<ImageUse> uses = imageUses(scene_);
+        std::vector<ImageUse> uses = imageUses(scene_);
         for (std::size_t i = 0; i < works_.size(); ++i) {
             works_[i].rules = levelRulesOf(scene_.images[i], uses[i]);
             works_[i].isKnown = hasKnownTexels(scene_.images[i]) &&
@@ -185,7 +185,7 @@ public:
             }
         }
         tellMaterials();
-        findSameImages(uses);
+        findSameImages(std::move(uses));
         return okStatus();
     }
 
@@ -255,7 +255,9 @@ private:
 
     void readLookups(const Image& image, std::string key, ImageWork& work, std::optional<Texels>& texels) {
         std::vector<Lookup*> open;
-        append(key, static_cast<int>(work.rules.filter));
+        for (const LevelFilter filter : work.rules.filters) {
+            append(key, static_cast<int>(filter));
+        }
         append(key, static_cast<int>(work.rules.mayBlit) + 2 * static_cast<int>(work.rules.mayStop) +
                         4 * static_cast<int>(work.rules.isUnknown));
         for (auto& [name, lookup] : work.lookups) {
@@ -441,7 +443,14 @@ private:
             });
     }
 
-    void findSameImages(const std::vector<ImageUse>& uses) {
+    // Whether both uses make the same levels of the channels that both read.
+    static bool haveSameLevels(const ImageUse& a, const ImageUse& b) {
+        const std::uint32_t both = a.channels & b.channels;
+        return a.isColor == b.isColor && a.isData == b.isData && a.isNormals == b.isNormals &&
+               (a.roughness & both) == (b.roughness & both) && (a.glossiness & both) == (b.glossiness & both);
+    }
+
+    void findSameImages(std::vector<ImageUse> uses) {
         for (std::size_t i = 0; i < works_.size(); ++i) {
             Image& image = scene_.images[i];
             for (std::size_t j = 0; j < i && image.sameAs < 0; ++j) {
@@ -454,9 +463,11 @@ private:
                     image.width == other.width && image.height == other.height &&
                     image.format == other.format && image.levels == other.levels &&
                     image.storage == other.storage && image.transfer == other.transfer &&
-                    uses[i].isColor == uses[j].isColor && uses[i].isData == uses[j].isData &&
-                    uses[i].isNormals == uses[j].isNormals) {
+                    haveSameLevels(uses[i], uses[j])) {
                     image.sameAs = static_cast<int>(j);
+                    uses[j].channels |= uses[i].channels;
+                    uses[j].roughness |= uses[i].roughness;
+                    uses[j].glossiness |= uses[i].glossiness;
                 }
             }
         }

@@ -9,6 +9,8 @@ namespace glint::materials {
 
 namespace {
 
+constexpr std::string_view kTexelLetters = "rgba";
+
 // "clearcoatRoughnessTexture" becomes "CLEARCOAT_ROUGHNESS_TEXTURE", and "texCoord0" "TEX_COORD_0".
 std::string macroCase(std::string_view name) {
     std::string macro;
@@ -221,21 +223,48 @@ void ModelBuilder::addAttribute(const File& file, const Members& members) {
     model_.attributes.push_back(std::move(attribute));
 }
 
+// "g" is a channel of roughness, "1 - a" one of glossiness.
+void ModelBuilder::readRoughness(const Members& members, TextureReads& reads) {
+    if (!members.has("roughness")) {
+        return;
+    }
+    const std::string text = members.text("roughness");
+    constexpr std::string_view kInverse = "1 - ";
+    const bool isInverse = text.starts_with(kInverse);
+    const std::string_view letter = std::string_view(text).substr(isInverse ? kInverse.size() : 0);
+    const std::size_t channel = letter.size() == 1 ? kTexelLetters.find(letter) : std::string_view::npos;
+    if (channel == std::string_view::npos) {
+        failAt(
+            members.at("roughness"),
+            fmt::format("\"{}\" is neither one of the channels \"rgba\" nor \"1 - \" and a channel", text));
+    }
+    const std::uint32_t bit = 1U << channel;
+    if ((reads.channels & bit) == 0 || reads.isNormals) {
+        failAt(members.at("roughness"), "must be a channel that \"reads\" names");
+    }
+    if (members.flag("color", false) && channel < 3) {
+        failAt(members.at("roughness"),
+               "must be alpha in a texture of colours, because the others are in sRGB");
+    }
+    (isInverse ? reads.glossiness : reads.roughness) = bit;
+}
+
 TextureReads ModelBuilder::readsOfTexture(const Members& members) {
     TextureReads reads;
     if (!members.has("reads")) {
+        readRoughness(members, reads);
         return reads;
     }
     const std::string text = members.text("reads");
     if (text == "normal") {
         reads.channels = 7;
         reads.isNormals = true;
+        readRoughness(members, reads);
         return reads;
     }
-    constexpr std::string_view kChannels = "rgba";
     reads.channels = 0;
     for (const char letter : text) {
-        const std::size_t channel = kChannels.find(letter);
+        const std::size_t channel = kTexelLetters.find(letter);
         const std::uint32_t bit = channel == std::string_view::npos ? 0U : 1U << channel;
         if (bit == 0 || bit <= reads.channels) {
             failAt(members.at("reads"),
@@ -244,6 +273,7 @@ TextureReads ModelBuilder::readsOfTexture(const Members& members) {
         }
         reads.channels |= bit;
     }
+    readRoughness(members, reads);
     return reads;
 }
 

@@ -79,11 +79,13 @@ bool Material::isColor(int texture) const {
 }
 
 TextureReads Material::readsOf(int texture) const {
-    TextureReads all{0, true};
+    TextureReads all{.channels = 0, .isNormals = true};
     for (const MaterialTexture::Place& place : model_->textures[static_cast<std::size_t>(texture)].places) {
         if (reads(place.object)) {
             all.channels |= place.reads.channels;
             all.isNormals = all.isNormals && place.reads.isNormals;
+            all.roughness |= place.reads.roughness;
+            all.glossiness |= place.reads.glossiness;
         }
     }
     return all;

@@ -103,6 +103,9 @@ struct DerivedField {
 struct TextureReads {
     std::uint32_t channels = 15;  // bit 0: red, to bit 3: alpha
     bool isNormals = false;  // red and green are the x and y of unit vectors in tangent space, z is positive
+    std::uint32_t roughness =
+        0;  // channels of those above with the roughness of a lobe, whose square is alpha
+    std::uint32_t glossiness = 0;  // and with 1 - roughness
 };
 
 // A texture that a material can have. Two places can fill one, because there are two base models.

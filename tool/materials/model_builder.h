@@ -78,8 +78,8 @@ private:
     static constexpr std::string_view kFeatureMembers[] = {
         "name", "about", "stage", "short", "order", "needs", "gltf", "given", "neutral", "cost", "draft"};
     static constexpr std::string_view kTextureMembers[] = {
-        "name", "about", "short",   "order", "needs",       "color", "scales",
-        "of",   "is",    "neutral", "cost",  "coordinates", "reads", "draft"};
+        "name", "about",   "short", "order",       "needs", "color", "scales",   "of",
+        "is",   "neutral", "cost",  "coordinates", "reads", "draft", "roughness"};
     static constexpr std::string_view kParameterMembers[] = {"name", "at", "type", "default", "range", "also",
                                                              "unit", "of", "is",   "about",   "record"};
 
@@ -109,6 +109,7 @@ private:
     void addAttribute(const File& file, const Members& members);
     void addTexture(const File& file, const Members& members);
     static TextureReads readsOfTexture(const Members& members);
+    static void readRoughness(const Members& members, TextureReads& reads);
     // Parameters and textures that fill those of another base model.
     void collectAliases(const File& file);
     MaterialTexture& textureNamed(const Members& members, std::string_view member);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kKind = "texture";
 // Counts up when the same file gives other blocks.
-constexpr std::uint64_t kPackerVersion = 1;
+constexpr std::uint64_t kPackerVersion = 2;
 
 std::string_view textOf(std::span<const std::uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -38,6 +38,7 @@ std::string keyOf(const gltf::Image& image, const gltf::ImageUse& use, const glt
         packer.add(flag ? 1U : 0U);
     }
     packer.add(std::uint64_t{use.channels}).add(static_cast<std::uint64_t>(format));
+    packer.add(std::uint64_t{use.roughness}).add(std::uint64_t{use.glossiness});
     return packer.take();
 }
 

@@ -22,12 +22,12 @@ gltf::Texels texelsOf(int width, int height, std::vector<std::uint8_t> bytes) {
 // The mean of black and white is half of the light, 188 in sRGB.
 TEST(Levels, ColoursAreAveragedInLinearLight) {
     gltf::Texels texels = texelsOf(2, 2, {0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 0});
-    completeLevels(texels, gltf::LevelFilter::Color);
+    completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Color));
     ASSERT_EQ(texels.levels, 2);
     EXPECT_EQ(texels.bytes[16], 188);
     EXPECT_EQ(texels.bytes[19], 128);  // alpha is linear
     texels = texelsOf(2, 2, {0, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 0});
-    completeLevels(texels, gltf::LevelFilter::Data);
+    completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Data));
     EXPECT_EQ(texels.bytes[16], 128);
 }
 
@@ -37,7 +37,7 @@ TEST(Levels, OddSizesAreWeightedByArea) {
     for (const std::uint8_t value : std::array<std::uint8_t, 5>{0, 0, 250, 100, 100}) {
         texels.bytes.insert(texels.bytes.end(), {value, value, value, value});
     }
-    completeLevels(texels, gltf::LevelFilter::Data);
+    completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Data));
     ASSERT_EQ(texels.levels, 3);
     EXPECT_EQ(texels.bytes[20], 50);   // (0 + 0 + 125) / 2.5
     EXPECT_EQ(texels.bytes[24], 130);  // (125 + 100 + 100) / 2.5
@@ -47,7 +47,7 @@ TEST(Levels, OddSizesAreWeightedByArea) {
 TEST(Levels, MeansOfVectorsAreUnitVectors) {
     // (1, 0, 0) and (0, 1, 0), and two that cancel.
     gltf::Texels texels = texelsOf(2, 1, {255, 128, 128, 255, 128, 255, 128, 255});
-    completeLevels(texels, gltf::LevelFilter::Normals);
+    completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Normals));
     const double half = 127.5 + 127.5 / std::sqrt(2.0);
     EXPECT_NEAR(texels.bytes[8], half, 1.0);
     EXPECT_NEAR(texels.bytes[9], half, 1.0);
@@ -59,12 +59,41 @@ TEST(Levels, SixteenBitsStaySixteen) {
     const std::uint16_t values[8] = {1000, 0, 0, 65535, 1003, 65535, 0, 65535};
     std::memcpy(bytes.data(), values, sizeof values);
     gltf::Texels texels{2, 1, gltf::PixelFormat::Rgba16, 1, bytes};
-    completeLevels(texels, gltf::LevelFilter::Data);
+    completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Data));
     std::uint16_t mean[4]{};
     ASSERT_EQ(texels.bytes.size(), 24U);
     std::memcpy(mean, &texels.bytes[16], sizeof mean);
     EXPECT_NEAR(mean[0], 1001.5, 0.51);
     EXPECT_NEAR(mean[1], 32767.5, 0.51);
+}
+
+// Squares of the roughnesses 0.1 and 0.9.
+gltf::Texels squaresOf(int width, int height) {
+    gltf::Texels texels = texelsOf(width, height, {});
+    for (int i = 0; i < width * height; ++i) {
+        const bool isRough = (i % width + i / width) % 2 == 0;
+        const std::uint8_t code = isRough ? 230 : 26;
+        texels.bytes.insert(texels.bytes.end(), {code, code, code, static_cast<std::uint8_t>(255 - code)});
+    }
+    return texels;
+}
+
+// The mean of r², whichever level it is made for; levels are not made from ones that were rounded.
+TEST(Levels, RoughnessIsAveragedByAlpha) {
+    using enum gltf::LevelFilter;
+    gltf::Texels texels = squaresOf(8, 8);
+    completeLevels(texels, {Data, Roughness, Data, Glossiness});
+    ASSERT_EQ(texels.levels, 4);
+    const double smooth = 26.0 / 255.0;
+    const double rough = 230.0 / 255.0;
+    const double mean = std::sqrt(0.5 * (smooth * smooth + rough * rough));
+    const auto code = [](double value) { return static_cast<int>(std::lround(255.0 * value)); };
+    for (std::size_t texel = 64; texel < texels.bytes.size() / 4; ++texel) {
+        EXPECT_EQ(texels.bytes[4 * texel], 128);
+        EXPECT_EQ(texels.bytes[4 * texel + 1], code(mean));
+        EXPECT_EQ(texels.bytes[4 * texel + 2], 128);
+        EXPECT_EQ(texels.bytes[4 * texel + 3], 255 - code(mean));
+    }
 }
 
 TexelFormats formatsOf(std::initializer_list<TexelFormat> formats) {
@@ -133,9 +162,41 @@ TEST(Fit, UsesComeFromTheMaterials) {
         return gltf::ImageUse();
     };
     EXPECT_EQ(useOf("/images/0"), (gltf::ImageUse{true, false, false, false, 15}));
-    EXPECT_EQ(useOf("/images/1"), (gltf::ImageUse{false, true, false, false, 7}));
+    EXPECT_EQ(useOf("/images/1"), (gltf::ImageUse{false, true, false, false, 7, 2}));
     EXPECT_EQ(useOf("/images/2"), (gltf::ImageUse{false, true, true, false, 7}));
     EXPECT_EQ(useOf("/images/3"), (gltf::ImageUse{true, false, false, true, 7}));
+}
+
+// A channel is averaged as roughness if all textures read it so: of colours, alpha can hold it.
+TEST(Fit, RoughnessIsFoundByTheDeclarations) {
+    gltf::Scene scene;
+    scene.images.resize(4);
+    scene.samplers.emplace_back();
+    for (int i = 0; i < 4; ++i) {
+        scene.textures.push_back({i, 0});
+    }
+    materials::Material coated;
+    coated.give("KHR_materials_clearcoat");
+    coated.give("KHR_materials_volume");
+    coated.texture("metallicRoughnessTexture").texture = 0;
+    coated.texture("occlusionTexture").texture = 0;
+    coated.texture("clearcoatRoughnessTexture").texture = 1;
+    coated.texture("thicknessTexture").texture = 1;  // the same channel
+    materials::Material glossy;
+    glossy.give("KHR_materials_pbrSpecularGlossiness");
+    glossy.texture("metallicRoughnessTexture").texture = 2;
+    materials::Material plain;
+    plain.texture("baseColorTexture").texture = 3;
+    scene.materials = {coated, glossy, plain};
+    const std::vector<gltf::ImageUse> uses = imageUses(scene);
+    using enum gltf::LevelFilter;
+    EXPECT_EQ(levelFiltersOf(uses[0]), (gltf::LevelFilters{Data, Roughness, Data, Data}));
+    EXPECT_EQ(levelFiltersOf(uses[1]), (gltf::LevelFilters{Data, Data, Data, Data}));
+    EXPECT_EQ(levelFiltersOf(uses[2]), (gltf::LevelFilters{Color, Color, Color, Glossiness}));
+    EXPECT_EQ(levelFiltersOf(uses[3]), (gltf::LevelFilters{Color, Color, Color, Data}));
+    EXPECT_FALSE(blitsSuit(uses[0]));
+    EXPECT_TRUE(blitsSuit(uses[1]));
+    EXPECT_FALSE(blitsSuit(uses[2]));
 }
 
 // A smooth picture with values of its own in each channel.
@@ -252,6 +313,8 @@ TEST(Fit, UncompressedImagesGetLevelsWhereBlitsWouldBeWrong) {
     EXPECT_EQ(levelsOf(16, 8, color, false), 1);
     EXPECT_EQ(levelsOf(16, 8, color, true), 5);
     EXPECT_EQ(levelsOf(16, 8, normals, false), 5);
+    EXPECT_EQ(levelsOf(16, 8, {.isData = true, .channels = 2, .roughness = 2}, false), 5);
+    EXPECT_EQ(levelsOf(16, 8, {.isData = true, .channels = 2}, false), 1);
     EXPECT_EQ(levelsOf(15, 8, color, false), 4);
 }
 
@@ -278,6 +341,13 @@ TEST(Fit, BlocksOfFilesStay) {
     EXPECT_EQ(unpacked->format, TexelFormat::Rgba8);
     EXPECT_EQ(unpacked->levels, 5);
     EXPECT_EQ(unpacked->texels.size(), bytesOfLevels(TexelFormat::Rgba8, 16, 8, 5));
+    // Levels of the file are not made again for roughness.
+    const gltf::ImageUse roughness{.isData = true, .channels = 2, .roughness = 2};
+    const auto asData = fitImage(scene, image, {.isData = true, .channels = 2}, {.formats = kMobile});
+    const auto asRoughness = fitImage(scene, image, roughness, {.formats = kMobile});
+    ASSERT_TRUE(asData.ok() && asRoughness.ok());
+    EXPECT_EQ(asRoughness->texels, asData->texels);
+    EXPECT_EQ(fitImage(scene, image, roughness, {.formats = kDesktop})->texels, blocks);
     // BC4 has no sRGB.
     image.levels = 1;
     image.file = makeDds(16, 8, 1, "ATI1", 0, randomBlocks(TexelFormat::Bc4, 16, 8, 1));

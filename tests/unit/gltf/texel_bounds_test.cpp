@@ -177,21 +177,21 @@ std::vector<Trial> trials(int width, int height, std::mt19937& random) {
     return made;
 }
 
-gltf::Texels completed(gltf::Texels texels, gltf::LevelFilter filter) {
-    completeLevels(texels, filter);
+gltf::Texels completed(gltf::Texels texels, const gltf::LevelFilters& filters) {
+    completeLevels(texels, filters);
     return texels;
 }
 
 // Runs all trials on images of many sizes. Returns the number of results that escape from what `make`
 // returns.
-int escapesOf(const std::function<Query(const TexelBounds&)>& make) {
+int escapesOf(const std::function<Query(const TexelBounds&)>& make, const gltf::LevelFilters& filters = {}) {
     std::mt19937 random(7);
     int escapes = 0;
     for (const auto& [width, height] :
          std::vector<std::pair<int, int>>{{1, 1}, {2, 2}, {3, 2}, {1, 5}, {4, 4}, {7, 5}, {17, 9}, {32, 8}}) {
         const gltf::Texels texels = randomTexels(width, height, random, width == 4 ? 2 : 1);
-        const ReferenceSampler reference(completed(texels, gltf::LevelFilter::Data));
-        const TexelBounds bounds(texels, {.mayBlit = false});
+        const ReferenceSampler reference(completed(texels, filters));
+        const TexelBounds bounds(texels, {.filters = filters, .mayBlit = false});
         for (const Trial& trial : trials(width, height, random)) {
             escapes += countEscapes(reference, make(bounds), trial.box, trial.kind);
         }
@@ -205,6 +205,24 @@ Query exactly(const TexelBounds& bounds) {
 
 TEST(TexelBounds, EncloseWhatSamplersGive) {
     EXPECT_EQ(escapesOf(exactly), 0);
+}
+
+// Roots of mean squares are between the least and the greatest of their numbers, as other means are.
+TEST(TexelBounds, EncloseLevelsOfRoughness) {
+    using enum gltf::LevelFilter;
+    constexpr gltf::LevelFilters kFilters{Roughness, Glossiness, Data, Roughness};
+    EXPECT_EQ(escapesOf(exactly, kFilters), 0);
+    std::mt19937 random(17);
+    for (const auto& [width, height] : {std::pair{16, 16}, std::pair{13, 7}}) {
+        gltf::Texels texels = randomTexels(width, height, random);
+        for (std::size_t i = 0; i < texels.bytes.size(); ++i) {
+            texels.bytes[i] = static_cast<std::uint8_t>(40 + 10 * (i % 4) + texels.bytes[i] % 100);
+        }
+        const TexelBounds finest(texels, {.filters = kFilters, .complete = false});
+        const TexelBounds all(texels, {.filters = kFilters, .mayBlit = false});
+        EXPECT_GT(all.levels(), finest.levels());
+        EXPECT_EQ(all.whole(), finest.whole());
+    }
 }
 
 TEST(TexelBounds, TheTestFindsBoundsThatAreTooNarrowByOneCode) {

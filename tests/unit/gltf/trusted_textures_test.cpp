@@ -1,5 +1,6 @@
 // Tests what an import with ImportOptions::trustTextures knows of textures and tangents, and what it changes.
 #include "gltf/derived_tangents.h"
+#include "gltf/texels/texture_use.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -130,6 +131,33 @@ TEST(TrustedTextures, EqualTexelsAreOneTexture) {
     EXPECT_EQ(scene.images.size(), 4U);
     EXPECT_EQ(scene.images[1].sameAs, 0);
     EXPECT_EQ(scene.images[3].sameAs, -1);
+}
+
+// Levels of roughness are other ones than those of what else a channel may hold.
+TEST(TrustedTextures, EqualTexelsShareTheLevelsOfTheirChannels) {
+    Squares squares;
+    const auto texture = [&] {
+        const PngSpec texels{2, 1, 8, PngColor::Rgb, {}, {1, 2, 3, 4, 5, 6}};
+        return Json{{"index", squares.addTexture(squares.addImage(texels))}};
+    };
+    // Red as occlusion, green and blue as roughness and metal, and green as the thickness of a volume.
+    const Json materials[] = {
+        {{"occlusionTexture", texture()}},
+        {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", texture()}}}},
+        {{"extensions",
+          {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+           {"KHR_materials_volume", {{"thicknessFactor", 1}, {"thicknessTexture", texture()}}}}}}};
+    for (const Json& material : materials) {
+        squares.add(squares.builder.append("materials", material), 0.0F, 1.0F);
+    }
+    const gltf::Scene scene = squares.read();
+    ASSERT_EQ(scene.images.size(), 3U);
+    EXPECT_EQ(scene.images[1].sameAs, 0);
+    EXPECT_EQ(scene.images[2].sameAs, -1);
+    const std::vector<gltf::ImageUse> uses = imageUses(scene);
+    EXPECT_EQ(uses[0].channels, 7U);
+    EXPECT_EQ(uses[0].roughness, 2U);
+    EXPECT_EQ(uses[2].roughness, 0U);
 }
 
 // Values that an animation sets would lose the product.

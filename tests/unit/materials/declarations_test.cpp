@@ -141,6 +141,19 @@ TEST(Declarations, SayWhatIsWrongAndWhere) {
             "parameters": [{"name": "wetness", "type": "color", "default": [0, 0, 0], "range": [0, 1]}],
             "textures": [{"name": "wetTexture", "scales": ["wetness.bga"]}]})")
                     .ok());
+    const auto withRoughness = [&](const std::string& members) {
+        return refusal(R"({"name": "wet", "stage": "surface", "textures": [{"name": "wetTexture", )" +
+                       members + "}]}");
+    };
+    EXPECT_NE(withRoughness(R"("roughness": "rg")").find("\"rg\" is neither one of the channels"),
+              std::string::npos);
+    EXPECT_NE(withRoughness(R"("reads": "r", "roughness": "1 - a")").find("\"reads\" names"),
+              std::string::npos);
+    EXPECT_NE(withRoughness(R"("reads": "normal", "roughness": "g")").find("\"reads\" names"),
+              std::string::npos);
+    EXPECT_NE(
+        withRoughness(R"("color": true, "roughness": "g")").find("must be alpha in a texture of colours"),
+        std::string::npos);
     EXPECT_NE(withReason("texel(dampTexture).r == 1").find("there is no \"texel(dampTexture)\""),
               std::string::npos);
     EXPECT_NE(refusal(std::string(2000, '[')).find("nests too deep"), std::string::npos);

@@ -57,10 +57,6 @@ TexelChannels channelsOf(const ImageUse& use, TexelFormat format) {
     return channels;
 }
 
-LevelFilter filterOf(const ImageUse& use) {
-    return use.isNormals ? LevelFilter::Normals : use.isColor ? LevelFilter::Color : LevelFilter::Data;
-}
-
 // Packs a level of RGBA8. Blocks at the border repeat the last texels.
 void packLevel(TexelFormat format, const std::array<int, 2>& channels, std::span<const std::uint8_t> pixels,
                std::uint32_t width, std::uint32_t height, std::vector<std::uint8_t>& blocks) {
@@ -207,7 +203,7 @@ private:
         if (Status status = decode(); !status) {
             return status;
         }
-        completeLevels(*texels_, filterOf(use_));
+        completeLevels(*texels_, levelFiltersOf(use_));
         packLevels(*texels_, image_.levels, {0, 1}, fitted_);
         return okStatus();
     }
@@ -224,9 +220,9 @@ private:
                 return okStatus();
             }
         }
-        const bool blitsSuit = !use_.isNormals && isPowerOfTwo(image_.width) && isPowerOfTwo(image_.height);
-        if (options_.allLevels || !blitsSuit) {
-            completeLevels(*texels_, filterOf(use_));
+        const bool blits = blitsSuit(use_) && isPowerOfTwo(image_.width) && isPowerOfTwo(image_.height);
+        if (options_.allLevels || !blits) {
+            completeLevels(*texels_, levelFiltersOf(use_));
         }
         fitted_.format = texels_->format == PixelFormat::Rgba16 ? TexelFormat::Rgba16 : TexelFormat::Rgba8;
         fitted_.levels = texels_->levels;
@@ -240,7 +236,7 @@ private:
             texels_->bytes = narrowed(texels_->bytes);
             texels_->format = PixelFormat::Rgba8;
         }
-        completeLevels(*texels_, filterOf(use_));
+        completeLevels(*texels_, levelFiltersOf(use_));
         fitted_.format = format;
         fitted_.channels = channelsOf(use_, format);
         packLevels(*texels_, 0, heldChannels(use_, format), fitted_);

@@ -44,8 +44,8 @@ TexelFormat targetFormat(const ImageUse& use, bool hasAlpha, bool packs, const T
 // or unpacked. KTX2 and DDS in a block format stay as they are where the device has it for the image's use,
 // and are unpacked otherwise. Other images are unpacked, or compressed to targetFormat(). The levels are
 // those of the file. Further ones are made where a format can be packed, and for texels where the device's
-// blits would not be right: for vectors, for sides that are no powers of two, and with `allLevels`.
-// Error "image-decode".
+// blits would not be right: for vectors, for roughness, for sides that are no powers of two, and with
+// `allLevels`. Error "image-decode".
 Result<FittedImage> fitImage(const Scene& scene, const Image& image, const ImageUse& use,
                              const FitOptions& options);
 

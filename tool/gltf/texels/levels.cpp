@@ -28,21 +28,37 @@ double encodeSrgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
 
+// Returns the number whose mean is taken, for a number in [0, 1] that the image stores.
+double decoded(double value, LevelFilter filter) {
+    switch (filter) {
+        case LevelFilter::Color:
+            return decodeSrgb(value);
+        case LevelFilter::Normals:
+            return 2.0 * value - 1.0;
+        case LevelFilter::Roughness:
+            return value * value;
+        case LevelFilter::Glossiness:
+            return (1.0 - value) * (1.0 - value);
+        case LevelFilter::Data:
+            break;
+    }
+    return value;
+}
+
 // Translates between the codes of a channel and linear numbers.
 class Coding {
 public:
-    Coding(PixelFormat format, LevelFilter filter)
-        : most_(format == PixelFormat::Rgba16 ? 65535 : 255),
-          filter_(filter),
-          decode_(most_ + std::size_t{1}) {
-        for (std::size_t code = 0; code < decode_.size(); ++code) {
-            const double value = static_cast<double>(code) / most_;
-            decode_[code] = static_cast<float>(filter == LevelFilter::Color     ? decodeSrgb(value)
-                                               : filter == LevelFilter::Normals ? 2.0 * value - 1.0
-                                                                                : value);
+    Coding(PixelFormat format, const LevelFilters& filters)
+        : most_(format == PixelFormat::Rgba16 ? 65535 : 255), filters_(filters) {
+        for (std::size_t i = 0; i < 4; ++i) {
+            std::vector<float>& table = decode_[static_cast<std::size_t>(filters[i])];
+            for (std::size_t code = table.size(); code <= most_; ++code) {
+                table.push_back(static_cast<float>(decoded(static_cast<double>(code) / most_, filters[i])));
+            }
+            tables_[i] = table.data();
         }
         // The darkest step of 8 bits is twenty steps of this table.
-        if (filter == LevelFilter::Color && most_ == 255) {
+        if (filters[0] == LevelFilter::Color && most_ == 255) {
             encode_.resize(kTableSteps + std::size_t{1});
             for (std::size_t i = 0; i < encode_.size(); ++i) {
                 encode_[i] = static_cast<std::uint8_t>(
@@ -50,14 +66,15 @@ public:
             }
         }
     }
+    Coding(const Coding&) = delete;
+    Coding& operator=(const Coding&) = delete;
 
     Value decode(const std::array<std::uint32_t, 4>& codes) const {
-        return {decode_[codes[0]], decode_[codes[1]], decode_[codes[2]],
-                static_cast<float>(codes[3]) / static_cast<float>(most_)};
+        return {tables_[0][codes[0]], tables_[1][codes[1]], tables_[2][codes[2]], tables_[3][codes[3]]};
     }
 
     std::array<std::uint32_t, 4> encode(Value value) const {
-        if (filter_ == LevelFilter::Normals) {
+        if (filters_[0] == LevelFilter::Normals) {
             const float length = std::sqrt(value[0] * value[0] + value[1] * value[1] + value[2] * value[2]);
             for (std::size_t i = 0; i < 3; ++i) {
                 value[i] = length > 0.0F ? value[i] / length * 0.5F + 0.5F : value[i] * 0.5F + 0.5F;
@@ -65,7 +82,7 @@ public:
         }
         std::array<std::uint32_t, 4> codes{};
         for (std::size_t i = 0; i < 4; ++i) {
-            codes[i] = filter_ == LevelFilter::Color && i < 3 ? encodeColor(value[i]) : rounded(value[i]);
+            codes[i] = encode(value[i], filters_[i]);
         }
         return codes;
     }
@@ -73,6 +90,20 @@ public:
 private:
     static constexpr std::size_t kTableSteps = 65535;
 
+    std::uint32_t encode(float value, LevelFilter filter) const {
+        switch (filter) {
+            case LevelFilter::Color:
+                return encodeColor(value);
+            case LevelFilter::Roughness:
+                return rounded(std::sqrt(value));
+            case LevelFilter::Glossiness:
+                return rounded(1.0F - std::sqrt(value));
+            case LevelFilter::Data:
+            case LevelFilter::Normals:
+                break;
+        }
+        return rounded(value);
+    }
     std::uint32_t rounded(float value) const {
         return static_cast<std::uint32_t>(
             std::lround(std::clamp(value, 0.0F, 1.0F) * static_cast<float>(most_)));
@@ -86,8 +117,9 @@ private:
     }
 
     std::uint32_t most_;
-    LevelFilter filter_;
-    std::vector<float> decode_;         // by code
+    LevelFilters filters_;
+    std::array<std::vector<float>, 5> decode_;  // by LevelFilter, then by code
+    std::array<const float*, 4> tables_{};      // those of the channels
     std::vector<std::uint8_t> encode_;  // by kTableSteps times a linear number; empty if there is none
 };
 
@@ -152,12 +184,12 @@ void append(const LinearLevel& level, const Coding& coding, std::vector<std::uin
 }
 
 template <typename Code>
-void complete(Texels& texels, LevelFilter filter) {
+void complete(Texels& texels, const LevelFilters& filters) {
     const int most = fullLevels(texels.width, texels.height);
     if (texels.levels >= most) {
         return;
     }
-    const Coding coding(texels.format, filter);
+    const Coding coding(texels.format, filters);
     const auto sizeOf = [](int size, int level) { return std::max(size >> level, 1); };
     const int width = sizeOf(texels.width, texels.levels - 1);
     const int height = sizeOf(texels.height, texels.levels - 1);
@@ -191,11 +223,11 @@ int fullLevels(int width, int height) {
     return std::bit_width(static_cast<std::uint32_t>(std::max(width, height)));
 }
 
-void completeLevels(Texels& texels, LevelFilter filter) {
+void completeLevels(Texels& texels, const LevelFilters& filters) {
     if (texels.format == PixelFormat::Rgba16) {
-        complete<std::uint16_t>(texels, filter);
+        complete<std::uint16_t>(texels, filters);
     } else {
-        complete<std::uint8_t>(texels, filter);
+        complete<std::uint8_t>(texels, filters);
     }
 }
 

@@ -3,17 +3,32 @@
 
 #include "gltf/scene.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace glint::gltf {
 
-// How the numbers of an image are averaged.
+// How the numbers of a channel are averaged.
+//
+// Roughness r stands for a lobe with alpha = r². The variance of its facets' slopes adds over an area
+// (Toksvig 2005, "Mipmapping normal maps"; Olano and Baker 2010, "LEAN mapping"), but GGX has none that is
+// finite. The mean of its slopes is pi / 2 alpha, and adds as well, so the mean is that of r². Such means lie
+// between the least and the greatest of their numbers, as plain ones do. docs/textures.md compares powers.
 enum class LevelFilter : std::uint8_t {
-    Color,    // red, green and blue in linear light, though stored in sRGB; alpha as it is
-    Data,     // each channel as it is
-    Normals,  // red, green and blue are vectors; their mean is made a unit vector again
+    Data,        // as they are
+    Color,       // in linear light, though stored in sRGB
+    Normals,     // red, green and blue are vectors; their mean is made a unit vector again
+    Roughness,   // by their squares
+    Glossiness,  // 1 - roughness, averaged as roughness
 };
+
+using LevelFilters = std::array<LevelFilter, 4>;  // by channel
+
+// Returns the filters of an image in which one of Data, Color and Normals is right for red, green and blue.
+constexpr LevelFilters filtersOf(LevelFilter filter) {
+    return {filter, filter, filter, LevelFilter::Data};
+}
 
 // An RGBA image with levels, the largest first.
 struct Texels {
@@ -30,6 +45,6 @@ int fullLevels(int width, int height);
 // Appends the levels that a full pyramid has more. A texel is the mean over the area that it covers of the
 // last level that is there, where a size is odd with shares of texels. Levels are not averaged from ones that
 // were rounded.
-void completeLevels(Texels& texels, LevelFilter filter);
+void completeLevels(Texels& texels, const LevelFilters& filters);
 
 }  // namespace glint::gltf

@@ -313,7 +313,7 @@ public:
 
     LevelsOf(Texels texels, const LevelRules& rules) : rules_(rules), given_(texels.levels) {
         if (rules.complete && !rules.isUnknown) {
-            completeLevels(texels, rules.filter);
+            completeLevels(texels, rules.filters);
         }
         const int count = rules.complete ? fullLevels(texels.width, texels.height) : texels.levels;
         const auto sizeOf = [](int size, int level) { return std::max(size >> level, 1); };
@@ -387,13 +387,13 @@ private:
         const bool blits = rules_.mayBlit && isPowerOfTwoSize(levels_.front().width()) &&
                            isPowerOfTwoSize(levels_.front().height());
         // Vectors become unit vectors again, which leaves the hull; devices do not make those levels.
-        if (rules_.filter == LevelFilter::Normals && !rules_.isUnknown) {
+        if (rules_.filters[0] == LevelFilter::Normals && !rules_.isUnknown) {
             levels_.emplace_back(width, height, std::move(values), std::vector<Texel>());
             return;
         }
         // One code for each level, of 8 bits, to which devices may round 16. Two where they translate sRGB,
         // in which llvmpipe is off by up to 0.7 % of linear light.
-        const int codes = rules_.filter == LevelFilter::Color ? 2 : 1;
+        const int codes = rules_.filters[0] == LevelFilter::Color ? 2 : 1;
         const int slack = rules_.isUnknown ? std::numeric_limits<Code>::max()
                           : blits          ? steps * codes * kStep
                                            : 0;
@@ -415,7 +415,8 @@ private:
                     const int value = values.empty() ? 0 : values[place][i];
                     const int low = std::max<int>(hull.least[i], value - slack);
                     const int high = std::min<int>(hull.greatest[i], value + slack);
-                    // Means of single precision can leave the hull by one code.
+                    // Means of single precision can leave the hull by one code. Means of powers, as roughness
+                    // has, are in the hull like others.
                     least[place][i] = static_cast<Code>(std::min(low, high));
                     greatest[place][i] = static_cast<Code>(std::max(low, high));
                 }
@@ -461,11 +462,9 @@ bool hasKnownTexels(const Image& image) {
 
 LevelRules levelRulesOf(const Image& image, const ImageUse& use) {
     LevelRules rules;
-    rules.filter = use.isNormals ? LevelFilter::Normals
-                   : use.isColor ? LevelFilter::Color
-                                 : LevelFilter::Data;
+    rules.filters = levelFiltersOf(use);
     rules.isUnknown = use.isColor && use.isData;
-    rules.mayBlit = !use.isNormals;
+    rules.mayBlit = blitsSuit(use);
     rules.mayStop = image.storage != Storage::Texels;
     rules.tolerance = image.storage == Storage::Texels ? 0 : 1;
     return rules;

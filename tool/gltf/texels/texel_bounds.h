@@ -12,7 +12,8 @@
 //                 Filtering": samples lie in a footprint of N * 2^lambda texels, and lambda < level + 1).
 //   made levels   Levels that Glint makes are known. Those that a device may make by blits instead are known
 //                 up to one code for each level (two for colours in sRGB), and never leave the hull of the
-//                 texels below them.
+//                 texels below them. That holds for roughness, too: the root of a mean of powers lies between
+//                 the least and the greatest of its numbers.
 #pragma once
 
 #include "gltf/scene.h"
@@ -70,8 +71,8 @@ struct LookupKind {
 
 // How the levels after those of the file are made.
 struct LevelRules {
-    LevelFilter filter = LevelFilter::Data;
-    bool complete = true;  // levels follow after those of the file, down to one texel
+    LevelFilters filters{};  // LevelFilter::Data
+    bool complete = true;    // levels follow after those of the file, down to one texel
     // Devices make the levels by blits where sides are powers of two, and round each of them.
     bool mayBlit = true;
     // Some devices have the levels of the file alone.

@@ -1,10 +1,32 @@
 #include "gltf/texels/texture_use.h"
 
+#include <array>
+#include <cstddef>
+
 namespace glint::gltf {
+
+LevelFilters levelFiltersOf(const ImageUse& use) {
+    LevelFilters filters = filtersOf(use.isNormals ? LevelFilter::Normals
+                                     : use.isColor ? LevelFilter::Color
+                                                   : LevelFilter::Data);
+    for (std::size_t i = 0; i < filters.size(); ++i) {
+        const std::uint32_t channel = 1U << i;
+        filters[i] = (use.roughness & channel) != 0    ? LevelFilter::Roughness
+                     : (use.glossiness & channel) != 0 ? LevelFilter::Glossiness
+                                                       : filters[i];
+    }
+    return filters;
+}
+
+bool blitsSuit(const ImageUse& use) {
+    return !use.isNormals && (use.roughness | use.glossiness) == 0;
+}
 
 std::vector<ImageUse> imageUses(const Scene& scene) {
     std::vector<ImageUse> uses(scene.images.size());
     std::vector<bool> isUsed(scene.images.size(), false);
+    // Channels that some texture reads as no roughness, and as no glossiness.
+    std::vector<std::array<std::uint32_t, 2>> others(scene.images.size());
     for (const materials::Material& material : scene.materials) {
         const int emission = material.model().findTexture("emissiveTexture");
         for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
@@ -21,7 +43,15 @@ std::vector<ImageUse> imageUses(const Scene& scene) {
             (material.isColor(texture) ? use.isColor : use.isData) = true;
             use.isEmission = use.isEmission || texture == emission;
             use.channels |= reads.channels;
+            use.roughness |= reads.roughness;
+            use.glossiness |= reads.glossiness;
+            others[image][0] |= reads.channels & ~reads.roughness;
+            others[image][1] |= reads.channels & ~reads.glossiness;
         }
+    }
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        uses[i].roughness &= ~others[i][0];
+        uses[i].glossiness &= ~others[i][1];
     }
     return uses;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf/scene.h"
+#include "gltf/texels/levels.h"
 
 #include <cstdint>
 #include <vector>
@@ -14,9 +15,18 @@ struct ImageUse {
     bool isNormals = false;      // all of them read vectors
     bool isEmission = false;     // some material emits what it shows
     std::uint32_t channels = 0;  // that are read: bit 0 for red, to bit 3 for alpha
+    // Those of them that all textures read as the roughness of a lobe, and as 1 - roughness.
+    std::uint32_t roughness = 0;
+    std::uint32_t glossiness = 0;
 
     bool operator==(const ImageUse&) const = default;
 };
+
+// Returns how the levels of such an image are made.
+LevelFilters levelFiltersOf(const ImageUse& use);
+
+// Returns whether a device's blits would make those levels, for sides that are powers of two.
+bool blitsSuit(const ImageUse& use);
 
 // Returns the use of each of Scene::images. Materials that no primitive has count.
 std::vector<ImageUse> imageUses(const Scene& scene);
