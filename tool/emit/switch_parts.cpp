@@ -54,8 +54,8 @@ Result<std::shared_ptr<const ModuleSource>> SwitchParts::partOf(const Case& shad
     insertPartDefines(*text, settings_.precision);
     const std::shared_ptr<ModuleSource> part = makePart(function + ".part", {function});
     if (settings_.emissiveLights == EmissiveLights::On) {
-        // It shades the point on the emissive triangle, whatever the case. Inlined, it would be most of each case;
-        // apart, it is equal in all parts, and the joined shader has it once.
+        // It shades a point on an emissive triangle, whatever the case. Inlined, it would be a quarter of
+        // each case; apart, it is equal in all parts, and the joined shader has it once.
         part->functionsApart.emplace_back("sampleEmitter");
     }
     drafts_.add(part, part->name, std::move(*text), **code);
