@@ -2,13 +2,14 @@
 """Measures the strategies by the number of bounces.
 
     benchmarks/measure_paths.py SCENE [--glint FILE] [--bounces 1,2,4,8] [--strategies LIST] [--size WxH] [--rounds N]
-                                [--tracer NAME] [--merge POLICY]
+                                [--tracer NAME] [--merge POLICY] [--emissive-lights on|off|auto]
 
 Renders everything once, all at the same time, to fill the driver's cache, and says on stderr how long each took. Then
 all strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
-package that has those bounces. The sky is no light (--sky-light off). Prints Markdown: the device time of all passes of
-a sample, as the median with its least and greatest value, and the ratio of each strategy to uber in the same round. If
-it is stopped by SIGTERM, as timeout(1) does, it prints what it has measured until then.
+package that has those bounces. The sky is no light (--sky-light off), and neither are emissive triangles without
+--emissive-lights on. Prints Markdown: the device time of all passes of a sample, as the median with its least and
+greatest value, and the ratio of each strategy to uber in the same round. If it is stopped by SIGTERM, as timeout(1)
+does, it prints what it has measured until then.
 
 SCENE is a file, or box:K for a closed box that is made here: its walls are squares of materials over K keys, as in
 benchmarks/make_synthetic_scene.py, so that no path leaves it.
@@ -63,8 +64,8 @@ def compile_packages(arguments, folder):
     for bounces in arguments.bounces:
         subprocess.run([arguments.glint, "compile", arguments.scene, "-o", folder / str(bounces), "--bounces",
                         str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", tracer, "--effects",
-                        "shadow,reflection", "--max-roughness", "1", "--sky-light", "off", "--merge",
-                        arguments.merge],
+                        "shadow,reflection", "--max-roughness", "1", "--sky-light", "off", "--emissive-lights",
+                        arguments.emissive_lights, "--merge", arguments.merge],
                        check=True, capture_output=True)
 
 
@@ -145,6 +146,7 @@ def main():
     parser.add_argument("--rounds", type=int, default=5, help="default 5")
     parser.add_argument("--tracer", default="auto", help="auto, ray-query or ray-pipeline; default auto")
     parser.add_argument("--merge", default="none", help="merge policy; default none")
+    parser.add_argument("--emissive-lights", default="off", help="on, off or auto; default off")
     arguments = parser.parse_args()
     arguments.bounces = [int(count) for count in arguments.bounces.split(",")]
     arguments.strategies = arguments.strategies.split(",")

@@ -405,7 +405,8 @@ TEST(EmissiveLights, TheNoiseIsLess) {
     EXPECT_GT(slope, -0.75);
 }
 
-// `--lights auto` takes more samples of more triangles, and does not count a few lights that are apart from them.
+// `--lights auto` takes more samples of more triangles, and does not count a few lights that are apart from
+// them.
 TEST(EmissiveLights, AutoTakesAFewSamples) {
     const auto samplesOf = [](int quads, int points) {
         gltf::Scene scene = emptyScene();
