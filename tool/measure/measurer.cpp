@@ -143,6 +143,7 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
         keep(all, round);
     }
     std::vector<const LinearImage*> means;
+    means.reserve(all.size());
     for (const Entry* const entry : all) {
         means.push_back(&entry->mean);
     }
