@@ -124,7 +124,7 @@ Result<prove::Program> compileClaim(std::string_view statements) {
 bool isProvedQuickly(const Proof& proof) {
     static constexpr std::string_view kNames[] = {
         "OctahedralDecode",    "TransformPoint",
-        "TransformNormal",     "SampleCone",
+        "TransformNormal",     "SampleLightArea",
         "RandomUnit",          "IncludeSample",
         "AddProduct",          "DifferenceOfProducts",
         "AccurateDot",         "SchlickWeight",

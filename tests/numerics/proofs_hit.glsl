@@ -69,8 +69,10 @@ PROOF(SampleLight) {
     WRITE3(2, light.direction);
 }
 
-PROOF(SampleCone) {
-    vec3 l = sampleCone(vec3(0.0, 0.0, 1.0), i[0], vec2(i[1], i[2]));
+PROOF(SampleLightArea) {
+    LightRecord sun = LightRecord(vec3(0.0), kLightDirectional, vec3(0.0, 0.0, -1.0), 0.0, vec3(1.0), 0.0, 0.0, i[0]);
+    LightSample centre = LightSample(vec3(0.0, 0.0, 1.0), 1.0, vec3(1.0), 0u);
+    vec3 l = sampleLightArea(sun, centre, vec2(i[1], i[2])).direction;
     WRITE3(0, l);
     o[3] = dot(l, l);
 }
