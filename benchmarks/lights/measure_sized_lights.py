@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the error of light samples of a light with a size, by the roughness of the surface.
 
-    benchmarks/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
+    benchmarks/lights/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
                                        [--truth N] [--size WxH]
 
 A metal floor is lit by a spherical lamp of radius 0.25 m alone. The truth is that of glint_oracle, which also lets the
@@ -15,8 +15,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "examples"))
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "examples")]
 from measure_shadows import camera, point_lights, quad  # noqa: E402
 from scene_parts import Buffer, write_scene  # noqa: E402
 
