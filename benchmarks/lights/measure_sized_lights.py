@@ -2,7 +2,7 @@
 """Measures the error of light samples of a light with a size, by the roughness of the surface.
 
     benchmarks/lights/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
-                                       [--truth N] [--size WxH]
+                                              [--truth N] [--size WxH]
 
 A metal floor is lit by a spherical lamp of radius 0.25 m alone. The truth is that of glint_oracle, which also lets the
 rays of lobes find the lamp. Prints Markdown: the RMSE of glint render, and what the RMSE of the oracle would be with
