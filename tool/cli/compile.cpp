@@ -381,8 +381,8 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
     }
     console.progress("compiling " + base::join(arguments.scenes));
     Result<compiler::CompiledPackage> package =
-        compilePackage(*scenes, settingsOf(arguments, std::move(plan->options)), cache.modules(),
-                       std::move(made), watched != nullptr ? &watched->warm : nullptr,
+        compilePackage(*scenes, settingsOf(arguments, plan->options), cache.modules(), std::move(made),
+                       watched != nullptr ? &watched->warm : nullptr,
                        watched != nullptr && watched->showing ? &*watched->showing : nullptr);
     if (!package) {
         if (watched != nullptr && package.error().id == "outdated") {

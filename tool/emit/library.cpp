@@ -100,7 +100,7 @@ Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, con
                              const std::string& name) {
     const Result<std::string> rendered = renderTemplate(sources, kTemplate, context);
     if (!rendered) {
-        return rendered;
+        return rendered.error();
     }
     const auto lookup = [&](std::string_view file) -> std::optional<std::string_view> {
         if (file == kHostFile) {

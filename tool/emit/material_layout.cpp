@@ -135,11 +135,15 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     const materials::MaterialFacts facts(plain, primitive, options, key,
                                          materials::MaterialFacts::Textures::Ignored);
     for (const RecordField& field : layout.fields) {
+        const float* const values =
+            field.parameter < 0
+                ? nullptr
+                : &plain.values[static_cast<std::size_t>(
+                      layout.model->parameters[static_cast<std::size_t>(field.parameter)].first)];
         for (int i = 0; i < field.channels; ++i) {
             const float value =
-                field.parameter >= 0
-                    ? plain.values[static_cast<std::size_t>(
-                          layout.model->parameters[static_cast<std::size_t>(field.parameter)].first + i)]
+                values != nullptr
+                    ? values[i]
                     : static_cast<float>(derivedValue(
                           facts, layout.model->derived[static_cast<std::size_t>(field.derived)], i));
             std::memcpy(&record[field.offset + kFloatBytes * static_cast<std::size_t>(i)], &value,

@@ -346,6 +346,7 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
                                            std::make_move_iterator(plan.end()));
     plan.erase(later, plan.end());
     std::vector<PipelineJob> jobs;
+    jobs.reserve(plan.size());
     for (const PlannedPipeline& planned : plan) {
         jobs.push_back(planned.job);
     }
