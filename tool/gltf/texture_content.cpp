@@ -160,8 +160,7 @@ public:
         if (!packsChangeCoordinates(model_)) {
             forEachSeen(
                 [&](Primitive& /*primitive*/, int /*slot*/, int image, Lookup lookup, std::string key) {
-                    works_[static_cast<std::size_t>(image)].lookups.try_emplace(std::move(key),
-                                                                                std::move(lookup));
+                    works_[static_cast<std::size_t>(image)].lookups.try_emplace(std::move(key), lookup);
                 });
         }
         base::runParallel(works_.size(), 0, [&](std::size_t i) {
@@ -219,8 +218,7 @@ private:
                                   info.transform, scene_.samplers[static_cast<std::size_t>(texture.sampler)],
                                   channels,       {}};
                     std::string key = keyOf(lookup, *hash);
-                    visit(primitive, static_cast<int>(slot), texture.image, std::move(lookup),
-                          std::move(key));
+                    visit(primitive, static_cast<int>(slot), texture.image, lookup, std::move(key));
                 }
             }
         }

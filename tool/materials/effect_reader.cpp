@@ -42,7 +42,7 @@ std::string readWord(const Members& members, std::string_view name, std::span<co
     if (!members.has(name)) {
         return {};
     }
-    const std::string word = members.text(name);
+    std::string word = members.text(name);
     if (kind != EffectKind::Rays) {
         failAt(members.at(name), "only an effect of the kind rays can have it");
     }

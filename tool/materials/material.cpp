@@ -31,7 +31,7 @@ Material::Material(const MaterialModel& model)
       model_(&model) {
     for (const Parameter& parameter : model.parameters) {
         for (int i = 0; parameter.aliasOf < 0 && i < parameter.channels; ++i) {
-            values[static_cast<std::size_t>(parameter.first + i)] =
+            values[static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i)] =
                 parameter.fallback[static_cast<std::size_t>(i)];
         }
     }
@@ -153,7 +153,7 @@ Channels MaterialFacts::number(int symbol) const {
                         isReadable(material_, primitive_, parameter.scaledBy);
     number.count = parameter.channels;
     for (int i = 0; i < parameter.channels; ++i) {
-        const auto place = static_cast<std::size_t>(parameter.first + i);
+        const auto place = static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i);
         ValueInterval& target = number.of[static_cast<std::size_t>(i)];
         target = material_.ranges.empty() ? ValueInterval{material_.values[place], material_.values[place]}
                                           : material_.ranges[place];
