@@ -104,6 +104,36 @@ TEST(Proofs, HoldForEarlierCounterexamples) {
     }
 }
 
+// The condition of a branch that the box does not take has no value. It does not decide about that of another
+// branch.
+TEST(Intervals, ConditionsOfBranchesThatAreNotTakenDecideNothing) {
+    using prove::Format;
+    using prove::Op;
+    prove::Program program;
+    program.inputCount = 1;
+    const auto add = [&](prove::Node node) {
+        program.nodes.push_back(node);
+        return static_cast<prove::NodeId>(program.nodes.size() - 1);
+    };
+    const auto truth = [&](double value) {
+        return add({.op = Op::Constant, .format = Format::Integer, .value = value});
+    };
+    const prove::NodeId x = add({.op = Op::Input});
+    const prove::NodeId zero = add({.op = Op::Constant});
+    const prove::NodeId below = add({.op = Op::Refine, .relation = prove::Relation::Less, .a = x, .b = zero});
+    const prove::NodeId isBelow = add({.op = Op::Less, .format = Format::Integer, .a = below, .b = zero});
+    const prove::NodeId no = truth(0.0);
+    const prove::NodeId yes = truth(1.0);
+    const prove::NodeId either = add({.op = Op::Or, .format = Format::Integer, .a = isBelow, .b = no});
+    const prove::NodeId both = add({.op = Op::And, .format = Format::Integer, .a = isBelow, .b = yes});
+    prove::BoxEvaluator boxes(program);
+    const std::vector<Interval> box = {{0.5, 1.0}};
+    boxes.run(box, false);
+    ASSERT_TRUE(boxes.value(isBelow).isEmpty());
+    EXPECT_TRUE(boxes.value(either).contains(0.0));
+    EXPECT_TRUE(boxes.value(both).contains(1.0));
+}
+
 // For random boxes: whatever any operation gives at a point of the box lies in its interval, with and without
 // forms.
 TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {

@@ -354,17 +354,14 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::LessEqual:
         case Op::Equal:
             return compared(node);
+        // An operand without a value belongs to a branch that is not taken. It decides nothing: the other one
+        // may be the condition of that branch, and then it says the same, or that of another branch.
         case Op::And:
-            // An operand without a value belongs to a branch that is not taken.
-            if (a.isEmpty() || b.isEmpty()) {
-                return kFalse;
-            }
-            return {std::min(a.low, b.low), std::min(a.high, b.high)};
+            return {a.isEmpty() || b.isEmpty() ? 0.0 : std::min(a.low, b.low),
+                    std::min(a.isEmpty() ? 1.0 : a.high, b.isEmpty() ? 1.0 : b.high)};
         case Op::Or:
-            if (a.isEmpty() || b.isEmpty()) {
-                return kTrue;
-            }
-            return {std::max(a.low, b.low), std::max(a.high, b.high)};
+            return {std::max(a.isEmpty() ? 0.0 : a.low, b.isEmpty() ? 0.0 : b.low),
+                    a.isEmpty() || b.isEmpty() ? 1.0 : std::max(a.high, b.high)};
         case Op::Not:
             return notOf(a);
         case Op::Select:

@@ -164,7 +164,7 @@ Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, c
     const Result<std::vector<std::uint32_t>> optimized =
         optimizeSpirv(*translated, source.name, apart, true, options.halvesAll);
     if (!optimized) {
-        return optimized;
+        return optimized.error();
     }
     Result<std::vector<std::uint32_t>> linkable =
         makeLinkable(*optimized, names, source.name, options.debugInfo);
@@ -197,7 +197,7 @@ Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const
     const Result<std::vector<std::uint32_t>> optimized =
         optimizePart(*translated, source.name, apart, options.halvesAll);
     if (!optimized) {
-        return optimized;
+        return optimized.error();
     }
     return makeLinkable(*optimized, names, source.name, true);
 }

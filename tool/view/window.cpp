@@ -369,7 +369,7 @@ Status Window::install(std::size_t index, Build build) {
         report(note);
     }
     if (!installed) {
-        return installed;
+        return installed.error();
     }
     one.history.clear();
     if (index == 0) {
