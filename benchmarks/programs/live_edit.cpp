@@ -145,7 +145,7 @@ double numberAfter(const std::string& line, const std::string& word) {
 
 constexpr std::array kParts{"notice", "read", "plan", "early", "compile", "write", "load", "replace",
                             "pipelines", "first frame", "sum",
-                            // Of the first frame, on the device.
+                            // These two are of the first frame, on the device.
                             "lighting", "cases",
                             // Processor time since the edit: of the compiler, and of this program.
                             "compiler", "renderer"};
