@@ -63,7 +63,7 @@ Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const Compile
 // Returns the samples that `--lights auto` takes of a scene's lights, or 0 for all of them.
 std::uint32_t samplesFor(const gltf::Scene& scene, const CompileSettings& settings) {
     const std::size_t punctual = scene.lights.size() + (settings.addsLight ? 1 : 0);
-    const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
+    const std::size_t emitters = countLights(scene, settings) - punctual;
     if (emitters == 0) {
         return punctual > kFewLights ? kSamplesOfManyLights : 0;
     }
