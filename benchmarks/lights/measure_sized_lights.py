@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Measures the error of light samples of a light with a size, by the roughness of the surface.
+"""Measures the error of the light of a light with a size, by the roughness of the surface.
 
     benchmarks/lights/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
-                                              [--truth N] [--size WxH]
+                                              [--sized-lights off,on] [--truth N] [--size WxH]
 
 A metal floor is lit by a spherical lamp of radius 0.25 m alone. The truth is that of glint_oracle, which also lets the
-rays of lobes find the lamp. Prints Markdown: the RMSE of glint render, and what the RMSE of the oracle would be with
-the same number of samples. DIR holds both programs (build/release/bin).
+rays of lobes find the lamp. Prints Markdown: the RMSE of glint render with light samples alone and with rays of lobes
+(--sized-lights), and what the RMSE of the oracle would be with the same number of samples. DIR holds both programs
+(build/release/bin).
 """
 import argparse
 import json
@@ -40,24 +41,26 @@ def main():
     parser.add_argument("--roughness", default="0.05,0.1,0.2,0.4")
     parser.add_argument("--spp", type=int, default=64)
     parser.add_argument("--shadow-spp", default="1,16")
+    parser.add_argument("--sized-lights", default="off,on")
     parser.add_argument("--truth", type=int, default=2048, help="samples of the truth")
     parser.add_argument("--size", default="32x18")
     arguments = parser.parse_args()
-    points = arguments.shadow_spp.split(",")
-    print("| roughness | mean |" + "".join(f" --shadow-spp {n} |" for n in points) + " with rays of lobes |")
-    print("|--:|--:|" + "--:|" * (len(points) + 1))
+    columns = [(sized, n) for sized in arguments.sized_lights.split(",") for n in arguments.shadow_spp.split(",")]
+    print("| roughness | mean |" + "".join(f" `{sized}`, {n} |" for sized, n in columns) + " oracle |")
+    print("|--:|--:|" + "--:|" * (len(columns) + 1))
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for roughness in arguments.roughness.split(","):
             scene = folder / "floor.gltf"
             write_floor(scene, float(roughness))
             row = []
-            for n in points:
+            for sized, n in columns:
                 picture = folder / "floor.exr"
                 options = ["--size", arguments.size, "--light-radius", RADIUS]
                 subprocess.run([arguments.bin / "glint", "render", scene, *options, "--sky", "0", "--spp",
                                 str(arguments.spp), "--shadow-spp", n, "--strategy", "uber", "--merge", "all",
-                                "--effects", "shadow", "--quiet", "-o", picture], check=True)
+                                "--effects", "shadow,reflection", "--max-roughness", "1", "--sized-lights", sized,
+                                "--quiet", "-o", picture], check=True)
                 subprocess.run([arguments.bin / "glint_oracle", scene, *options, "--bounces", "0", "--no-sky",
                                 "--samples", str(arguments.truth), "--against", picture, "--device-spp",
                                 str(arguments.spp), "--json", folder / "floor.json"], check=True,

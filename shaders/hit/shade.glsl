@@ -5,6 +5,7 @@
 #include "light/shared.glsl"
 #include "hit/material.glsl"
 #include "light/receiver.glsl"
+#include "light/sized.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"
 #if GLINT_PATHS
@@ -149,10 +150,73 @@ LightSample aimAtLight(Hit hit, Features features, HostLight light, inout Surfac
     return aim;
 }
 
+#if GLINT_SIZED_LIGHTS && GLINT_PATHS
+
+// Returns whether samples alone bring the light from a side of the surface: with --shadow-through glass, what passes
+// glass, which the surface that sent the ray has sampled (aimAtLight()).
+bool isSampledAlone(Hit hit, Features features, bool passes) {
+#if GLINT_SHADOW_GLASS
+    return hasLobe(features, GLINT_TRANSMISSION) && (passes || isWithinGlass(hit, features));
+#else
+    return false;
+#endif
+}
+
+#endif
+
+#if GLINT_SIZED_LIGHTS
+
+// The part of its light that the sample of a light counts for, on the lobes that `lit` keeps. The direction of the path
+// brings the rest, and the walk of a refracted ray has found what passes the surface at which it ended.
+float partOfSample(Hit hit, Surface surface, Features features, HostLight light, vec3 direction, SkyShares sky,
+                   inout Surface lit) {
+    float density = lobesFind(light) ? lightPointDensity(light, hostSampleLight(light, hit.position)) : 0.0;
+    if (density <= 0.0) {
+        return 1.0;
+    }
+    lit.bsdf.transmitted *= sky.transmitted;
+#if GLINT_PATHS
+    if (!isSampledAlone(hit, features, dot(direction, hit.geometricNormal) < 0.0)) {
+        surface.bsdf.transmitted *= sky.transmitted;
+        return density / (density + bsdfPdf(surface.bsdf, features, toSurface(surface, direction)));
+    }
+#endif
+    return 1.0;
+}
+
+#endif
+
+#if GLINT_SIZED_LIGHTS && GLINT_PATHS
+
+// How many lights to look for in the direction of the path. A direction that the triangle's plane turns is none of the
+// lobe's.
+uint lightsInDirection(Hit hit, Surface surface, Features features, BsdfSample drawn) {
+    bool passes = drawn.direction.z < 0.0 && transmits(features);
+    float height = dot(toWorld(surface, drawn.direction), hit.geometricNormal) * (passes ? -1.0 : 1.0);
+    bool looks = drawn.pdf > 0.0 && height > 0.0 && !isSampledAlone(hit, features, passes);
+    return looks ? lightsToFind() : 0u;
+}
+
+// The point of a light that the direction meets, with the light that it brings to the viewer; black if it meets none.
+LightSample foundOnPath(Hit hit, Surface surface, BsdfSample drawn, uint number) {
+    HostLight light = lightToFind(number);
+    LightSample centre = hostSampleLight(light, hit.position);
+    LightSample point = lightAlong(light, centre, toWorld(surface, drawn.direction));
+    float part = lobesFind(light) ? drawn.pdf / (drawn.pdf + lightPointDensity(light, centre)) : 0.0;
+    point.irradiance *= drawn.weight * part;
+    return point;
+}
+
+#endif
+
 // Direct light from one light. The light is chosen in one pass, with probability proportional to the luminance that it
 // would bring without shadows (weighted reservoir sampling, Chao 1982). The result is unbiased, and exact if one light
 // dominates.
-void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadeResult result) {
+void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
+#if GLINT_SIZED_LIGHTS && GLINT_PATHS
+                 BsdfSample drawn,
+#endif
+                 inout ShadeResult result) {
     float random = hostRandom(hit.target, shadingDimension(kDimensionLight));
     uint lights = hostLightCount(hit.position);
     float total = 0.0;
@@ -171,6 +235,9 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
         } else {
             aim = aimAtLight(hit, features, light, lit);
             direction = aim.direction;
+#if GLINT_SIZED_LIGHTS
+            aim.irradiance *= partOfSample(hit, surface, features, light, direction, sky, lit);
+#endif
         }
         vec3 contribution = vec3(0.0);
         if (aim.irradiance != vec3(0.0)) {
@@ -199,6 +266,28 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
             random = (random - probability) / (1.0 - probability);
         }
     }
+#if GLINT_SIZED_LIGHTS && GLINT_PATHS
+    uint toFind = lightsInDirection(hit, surface, features, drawn);
+    for (uint i = 0u; i < toFind; ++i) {
+        LightSample point = foundOnPath(hit, surface, drawn, i);
+        float weight = luminance(point.irradiance);
+        if (!(weight > 0.0)) {
+            continue;
+        }
+        total += weight;
+        float probability = weight / total;
+        if (random < probability) {
+            random /= probability;
+            chosen = point.irradiance;
+            chosenWeight = weight;
+            result.shadowDirection = point.direction;
+            result.shadowDistance = point.distance;
+            result.shadowSees = kShadowOfLight;
+        } else {
+            random = (random - probability) / (1.0 - probability);
+        }
+    }
+#endif
     result.direct = chosen * (total / chosenWeight);
 #if GLINT_EFFECT_SHADOW
     // Nothing is between the surface and a light around it.
@@ -228,6 +317,19 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
         changeSkyOfHit(hit, features, sky);
     }
     result.radiance = countedEmission(hit, surface);
+#if GLINT_SIZED_LIGHTS
+    // An effect that has traced the transmitted light itself leaves none. The last bounce has a direction, too, which
+    // meets lights alone.
+    Surface followed = surface;
+    followed.bsdf.transmitted *= sky.transmitted;
+    BsdfSample drawn = drawDirection(hit, followed, features);
+    chooseLight(hit, surface, features, sky, drawn, result);
+    if (pathGoesOn()) {
+        result.path = nextStep(hit, followed, features, drawn, arrivingShare(hit.arrival, hit.position));
+    } else {
+        result.radiance += ambientLight(surface, features, hit.view, ambientOfHit(hit, sky));
+    }
+#else
     chooseLight(hit, surface, features, sky, result);
     if (pathGoesOn()) {
         // An effect that has traced the transmitted light itself leaves none.
@@ -236,6 +338,7 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     } else {
         result.radiance += ambientLight(surface, features, hit.view, ambientOfHit(hit, sky));
     }
+#endif
     return result;
 }
 

@@ -13,7 +13,8 @@
 struct SceneLight {
     LightRecord punctual;
     uint emitter;  // or an emissive triangle (light/emitter.glsl), or kSkyEmitter
-    float chance;  // of a triangle: how often one of the surface's samples is expected to fall on it
+    float chance;  // of a triangle: how often one of the surface's samples is expected to fall on it; with
+                   // --sized-lights, of a punctual light: 1 if every surface takes it, otherwise 0
 };
 #define HostLight SceneLight
 #define GLINT_PUNCTUAL(light) (light).punctual
@@ -43,7 +44,9 @@ uint hostLightCount(vec3 position) {
 
 // A light of the scene by its number.
 HostLight lightOfScene(uint number) {
-#if GLINT_SHARED_LIGHTS
+#if GLINT_SIZED_LIGHTS
+    return SceneLight(GLINT_FRAME.lights.data[number], kNoEmitter, 1.0);
+#elif GLINT_SHARED_LIGHTS
     return SceneLight(GLINT_FRAME.lights.data[number], kNoEmitter, 0.0);
 #else
     return GLINT_FRAME.lights.data[number];
@@ -95,6 +98,12 @@ float emitterChance(LightReceiver receiver, uint emitter) {
 
 #if GLINT_LIGHT_SAMPLES > 0
 
+// A light that every surface takes beside the hierarchy.
+HostLight lightApart(uint number) {
+    uint leaf = GLINT_FRAME.lightTreeNodes + number;
+    return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
+}
+
 // The hierarchy knows the surface that asks. `random` is uniform in [0, 1)³. The same arguments give the same light.
 HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
 #if GLINT_SKY_LIGHT
@@ -103,8 +112,7 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
     }
 #endif
     if (index < GLINT_FRAME.lightsApart) {
-        uint leaf = GLINT_FRAME.lightTreeNodes + index;
-        return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
+        return lightApart(index);
     }
     // The samples of a surface divide the first random number among them, which spreads them over the tree.
     precise float stratum = (float(index - GLINT_FRAME.lightsApart) + random.x) / float(GLINT_LIGHT_SAMPLES);
@@ -119,6 +127,9 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
 #endif
     HostLight light = lightOfScene(chosen);
     GLINT_PUNCTUAL(light).intensity *= probability > 0.0 ? 1.0 / chance : 0.0;
+#if GLINT_SIZED_LIGHTS
+    light.chance = 0.0;
+#endif
     return light;
 }
 

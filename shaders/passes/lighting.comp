@@ -9,6 +9,7 @@
 #include "hit/primary.glsl"
 #include "hit/shade.glsl"
 #include "hit/stage.glsl"
+#include "light/sized.glsl"
 #include "passes/primary_surface.glsl"
 #if GLINT_SURFACE_LAYERS
 #include "generated/surface_layers.glsl"
@@ -53,6 +54,34 @@ vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light,
 
 #endif
 
+#if GLINT_SIZED_LIGHTS
+
+// The density, by solid angle, of the samples of a light that rays of lobes find, too; 0 for other lights.
+float densityOfPoints(HostLight light, LightSample centre, uint points) {
+    return lobesFind(light) ? float(points) * lightPointDensity(light, centre) : 0.0;
+}
+
+// Leaves the shares of the lobes that samples of a light with a size bring, in a direction.
+void keepSampledPart(Features features, vec3 direction, float density, SkyShares sky, inout Surface surface) {
+    SkyShares shares = sky;
+    shareWithEffects(surface, features, toSurface(surface, direction), density, shares);
+    keepShares(shares, surface);
+}
+
+// What the ray of an effect finds of the light: its point, with the light that it brings to the viewer.
+LightSample foundPoint(HostLight light, LightSample centre, uint slot, float density) {
+#if GLINT_RAY_EFFECTS > 0
+    FindingRay ray = findingRays[slot];
+    LightSample point = lightAlong(light, centre, ray.direction);
+    point.irradiance *= ray.weight * (ray.density > 0.0 ? ray.density / (ray.density + density) : 1.0);
+    return point;
+#else
+    return centre;
+#endif
+}
+
+#endif
+
 vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
     vec3 sum = vec3(0.0);
     uint lights = hostLightCount(hit.position);
@@ -73,11 +102,35 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
             continue;
         }
         uint points = lightPointCount(light);
+#if GLINT_SIZED_LIGHTS
+        float density = densityOfPoints(light, centre, points);
+        uint all = density > 0.0 ? points + GLINT_RAY_EFFECTS : points;
+        for (uint j = 0u; j < all; ++j) {
+            LightSample point;
+            vec3 contribution;
+            if (j < points) {
+                point = lightPoint(hit, light, centre, i, j);
+                Surface lit = surface;
+                if (density > 0.0) {
+                    keepSampledPart(features, point.direction, density, sky, lit);
+                }
+                contribution = unshadowedLight(hit, lit, features, point) / float(points);
+            } else {
+                point = foundPoint(light, centre, j - points, density);
+                contribution = point.irradiance;
+                if (contribution == vec3(0.0)) {
+                    continue;
+                }
+            }
+            sum += visibleLight(hit, point, contribution, counts);
+        }
+#else
         centre.irradiance /= float(points);
         for (uint j = 0u; j < points; ++j) {
             LightSample point = lightPoint(hit, light, centre, i, j);
             sum += visibleLight(hit, point, unshadowedLight(hit, surface, features, point), counts);
         }
+#endif
 #else
         vec3 contribution = unshadowedLight(hit, surface, features, centre);
         sum += luminance(contribution) > 0.0 ? contribution : vec3(0.0);

@@ -228,6 +228,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"lights", package.lightSamples() == 0 ? base::Json("all") : base::Json(package.lightSamples())},
           {"emissiveLights", package.emission() != nullptr},
           {"skyLight", package.skyLight()},
+          {"sizedLights", package.sizedLights()},
           {"energyCompensation", manifest.energyCompensation},
           {"trustTextures", manifest.trustTextures},
           {"textureLod", manifest.textureLod},

@@ -246,6 +246,11 @@ Result<CompileSettings> completed(std::span<const gltf::Scene> scenes, CompileSe
         return sky.error();
     }
     settings.skyLight = *sky;
+    Result<SizedLights> sized = sizedLightsOf(scenes, settings);
+    if (!sized) {
+        return sized.error();
+    }
+    settings.sizedLights = *sized;
     Result<std::uint32_t> lights = lightSamplesOf(scenes, settings);
     if (!lights) {
         return lights.error();

@@ -81,6 +81,7 @@ void addEffect(mustache::data& context, const materials::MaterialModel& model,
     context.set("bit", fmt::format("kEffect{}", effect.function()));
     context.set("main", effect.main());
     context.set("sharesLights", mustache::data(effect.sharesLights));
+    context.set("walk", mustache::data((effects.walks & infoOf(effect, number).effect) != 0));
     context.set("compose", file(effect.compose));
     context.set("hit", file(effect.hit));
     context.set("start", effect.start.empty() ? "effects/plain_start.glsl" : effect.start);

@@ -38,6 +38,7 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     settings.answer = package::HitAnswer::Radiance;
     settings.emissiveLights = EmissiveLights::Off;
     settings.skyLight = SkyLight::Off;
+    settings.sizedLights = SizedLights::Off;
     Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
     if (!sources) {
         return sources;

@@ -15,10 +15,11 @@ namespace glint::compiler {
 
 namespace {
 
-// The files of a host that decide where emissive triangles and their materials are, and those that decide
-// what the sky is and who samples it.
+// The files of a host that decide where emissive triangles and their materials are, those that decide what
+// the sky is and who samples it, and that of punctual lights.
 constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "geometry.glsl", "material.glsl"};
 constexpr std::string_view kSkyFiles[] = {"lights.glsl", "sky.glsl"};
+constexpr std::string_view kLightFiles[] = {"lights.glsl"};
 
 // The effects of a package with a light.
 package::EffectSet effectsOfLit(const gltf::SceneList& scenes, CompileSettings settings) {
@@ -146,6 +147,24 @@ Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSe
                          "add the effect shadow, or leave out --sky-light");
     }
     return why->empty() ? SkyLight::On : SkyLight::Off;
+}
+
+Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
+    const bool isOn = settings.sizedLights == SizedLights::On;
+    if (settings.sizedLights == SizedLights::Off ||
+        (!isOn && (settings.maxBounces == 1 || !settings.sizesLights))) {
+        return SizedLights::Off;
+    }
+    const Result<std::string> why = hindrance(scenes, settings, kLightFiles, "the lights");
+    if (!why) {
+        return why.error();
+    }
+    if (isOn && !why->empty()) {
+        return makeError("sized-lights", "",
+                         fmt::format("--sized-lights on needs shadow rays of Glint's own: {}", *why),
+                         "add the effect shadow, or leave out --sized-lights");
+    }
+    return why->empty() ? SizedLights::On : SizedLights::Off;
 }
 
 EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan) {

@@ -45,6 +45,10 @@ Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes, con
 // with a sky or lights of its own, or a package without shadow rays, can't have.
 Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
 
+// Returns SizedLights::On or Off for a package of `scenes`. Error "sized-lights" if the settings demand what
+// a host with lights of its own, or a package without shadow rays, can't have.
+Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
+
 // Returns the features that decide what the triangles emit: those that all of them have, and those that some
 // have. If a layer covers the emission of one, they are all features.
 struct EmitterFeatures {

@@ -133,8 +133,10 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_EMISSIVE_LIGHTS {}\n", flag(emissive));
     const bool sky = settings.skyLight == SkyLight::On;
     text += fmt::format("#define GLINT_SKY_LIGHT {}\n", flag(sky));
+    const bool sized = settings.sizedLights == SizedLights::On;
+    text += fmt::format("#define GLINT_SIZED_LIGHTS {}\n", flag(sized));
     text += "// Some lights are found by rays of lobes, too.\n";
-    text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky));
+    text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky || sized));
     if (emissive) {
         text += emitterDefines(scenes, plan);
     }

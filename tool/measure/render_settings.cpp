@@ -79,6 +79,8 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     facts.lightsMayEmit = compiler::emissiveLightsOf({&scene, 1}, emissive).ok();
     emissive.skyLight = compiler::SkyLight::On;
     facts.skyMayLight = compiler::skyLightOf({&scene, 1}, emissive).ok();
+    emissive.sizedLights = compiler::SizedLights::On;
+    facts.sizedMayShow = compiler::sizedLightsOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
     facts.punctualLights = !data.lights.empty();
     compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
@@ -158,6 +160,7 @@ compiler::CompileSettings compileSettings(const compiler::Settings& settings,
         settings.renderer.tracer.value_or(queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
     compile.environmentMap = !settings.environment.empty();
     compile.addsLight = addsSun(settings, scene);
+    compile.sizesLights = settings.lightRadius > 0.0 || settings.sunAngle > 0.0;
     return compile;
 }
 

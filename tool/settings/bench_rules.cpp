@@ -62,6 +62,14 @@ std::string withoutSkyLight(std::string_view value, const BenchFacts& facts, con
     return value == "on" && !facts.skyMayLight ? "the default has no shadow rays" : "";
 }
 
+std::string withoutSizedLights(std::string_view value, const BenchFacts& facts,
+                               const Configuration& /*base*/) {
+    if (!facts.sizedLights) {
+        return "no light has a size (--light-radius, --sun-angle)";
+    }
+    return value == "on" && !facts.sizedMayShow ? "the default has no shadow rays" : "";
+}
+
 std::vector<std::string> strategiesToTry(const BenchFacts& /*facts*/, const std::string& /*base*/,
                                          bool /*quick*/) {
     std::vector<std::string> names;

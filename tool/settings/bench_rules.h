@@ -17,6 +17,7 @@ std::string withoutOrder(std::string_view value, const BenchFacts& facts, const 
 std::string withoutChoice(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutEmission(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutSkyLight(std::string_view value, const BenchFacts& facts, const Configuration& base);
+std::string withoutSizedLights(std::string_view value, const BenchFacts& facts, const Configuration& base);
 
 // The values to try, for rows that have no fixed list. `base` is the value of the default.
 std::vector<std::string> strategiesToTry(const BenchFacts& facts, const std::string& base, bool quick);

@@ -52,6 +52,18 @@ constexpr std::span<const Named<SkyLight>> namesOf(SkyLight /*type*/) {
     return kSkyLightNames;
 }
 
+// Whether rays of lobes find punctual lights that have a size.
+enum class SizedLights : std::uint8_t { Auto, Off, On };
+inline constexpr Named<SizedLights> kSizedLightsNames[] = {
+    {SizedLights::Auto, "auto",
+     "in packages for several bounces with the effect shadow, if --light-radius or --sun-angle is given"},
+    {SizedLights::Off, "off", "light samples alone find them, and mirrors do not show them"},
+    {SizedLights::On, "on", "rays of lobes find them, too, with multiple importance sampling"},
+};
+constexpr std::span<const Named<SizedLights>> namesOf(SizedLights /*type*/) {
+    return kSizedLightsNames;
+}
+
 struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -70,11 +82,14 @@ struct CompileSettings {
     EffectRequest effects{false, builtinEffects({"shadow", "reflection"})};
     // The renderer adds a light to those of the scenes, which --effects auto takes into account.
     bool addsLight = false;
+    // The renderer gives lights a size, which --sized-lights auto takes into account.
+    bool sizesLights = false;
     // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
     // lights (emit/lights.h).
     std::optional<std::uint32_t> lightSamples{};
     EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
     SkyLight skyLight = SkyLight::Auto;                    // so it does here
+    SizedLights sizedLights = SizedLights::Auto;           // and here
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures). Packages with a

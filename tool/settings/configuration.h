@@ -22,6 +22,7 @@ struct BenchFacts {
     bool emits = false;          // some triangles emit light
     bool lightsMayEmit = false;  // and packages with the default's effects can have them as lights
     bool skyMayLight = false;    // packages with the default's effects can have the sky as a light
+    bool sizedMayShow = false;   // rays of packages with the default's effects can find lights with a size
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool packsTextures = true;    // the device reads BC formats, and this program packs them

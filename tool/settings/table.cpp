@@ -245,6 +245,23 @@ constexpr Descriptor kRows[] = {
                    [](const BenchFacts& facts) { return std::string(facts.skyMayLight ? "on" : ""); }},
      .document = "lights.md#the-sky",
      .recorded = true},
+    {.name = "sized-lights",
+     .commands = kMakers,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "whether rays of lobes find punctual lights with a size, with multiple importance sampling",
+     .values = enumerator<&Settings::compile, &CompileSettings::sizedLights>(),
+     .bench = {.use = BenchUse::Swept,
+               .exact = "on",
+               .isTransport = true,
+               .tried = "off on",
+               .against = withoutSizedLights,
+               .exactFor =
+                   [](const BenchFacts& facts) {
+                       return std::string(facts.sizedLights && facts.sizedMayShow ? "on" : "");
+                   }},
+     .document = "lights.md#lights-with-a-size",
+     .recorded = true},
     {.name = "energy-compensation",
      .commands = kMakers,
      .stage = SettingStage::Package,

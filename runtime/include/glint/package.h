@@ -98,6 +98,9 @@ public:
     std::uint32_t lightSamples() const;
     // Whether surfaces sample the sky as a light. An environment map then needs EnvironmentOptions::sampled.
     bool skyLight() const;
+    // Whether rays of lobes find punctual lights that have a size (LightView::size), as samples of these
+    // lights do.
+    bool sizedLights() const;
     // Returns where records of materials say what they emit, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
     // Returns what says where alpha is in records, or null for packages that do not test it, or by code that

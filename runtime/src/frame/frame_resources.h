@@ -120,6 +120,7 @@ struct FrameSize {
     bool paths = false;  // the package's shaders keep the state of paths
     bool emissiveLights = false;
     bool skyLight = false;
+    bool sizedLights = false;   // walks write into the image of light that leaves primary surfaces
     std::uint32_t bounces = 1;  // the most of a path
 
     std::vector<package::PackageLayer> layers{};  // images beside the picture

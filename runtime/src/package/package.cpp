@@ -114,6 +114,10 @@ bool Package::skyLight() const {
     return state_->header.skyLight != 0;
 }
 
+bool Package::sizedLights() const {
+    return state_->header.sizedLights != 0;
+}
+
 const package::EmissionEntry* Package::emission() const {
     return state_->emission.empty() ? nullptr : state_->emission.data();
 }

@@ -141,6 +141,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.skyLight > 1) {
         return outside("the kind of the sky's light", header.skyLight);
     }
+    if (header.sizedLights > 1) {
+        return outside("the kind of lights with a size", header.sizedLights);
+    }
     if (header.environmentMap > 1) {
         return outside("the kind of sky", header.environmentMap);
     }

@@ -256,6 +256,10 @@ private:
         const std::uint32_t number = package::effectNumber(info.effect);
         const auto& passes = state_.pipelines.effectPasses;
         if ((state_.size.effects.walks & info.effect) != 0) {
+            if (state_.size.sizedLights) {
+                // The marches of other effects read the image into which the walk adds such lights.
+                passes_.barrier(dependencies().passToPass);
+            }
             passes_.dispatchPixels({info.name + " walk", Pass::EffectWalk},
                                    passes.at({ModuleRole::EffectWalk, number}));
             passes_.barrier(dependencies().passToPass);

@@ -197,6 +197,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.paths = package::hasPaths(package.shape());
     size.emissiveLights = package.emission() != nullptr;
     size.skyLight = package.skyLight();
+    size.sizedLights = package.sizedLights();
     size.bounces = size.paths ? choice.bounces : 1;
     size.ordered = size.sampleCount > 0 && (choice.strategy & package::orderedStrategies()) != 0;
     size.checksOrder = size.ordered && choice.checksOrder;

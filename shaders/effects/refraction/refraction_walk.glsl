@@ -16,6 +16,7 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 #include "hit/primary.glsl"
 #include "host/random.glsl"
 #include "hit/trace.glsl"
+#include "light/sized.glsl"
 #include "materials/volume/volume.glsl"
 #if GLINT_LAYER_RAYS
 #include "layers/ray_hits.glsl"
@@ -206,6 +207,28 @@ void passInterface(Hit hit, Features features, uint place, inout Media media) {
     }
 }
 
+#if GLINT_SIZED_LIGHTS
+// The light of lights with a size that the ray meets before the distance at which it ends, as the viewer sees it. No
+// samples of lights bring light to the surfaces of a walk.
+vec3 lightsOnWay(Walker walker, float end) {
+    vec3 sum = vec3(0.0);
+    uint lights = lightsToFind();
+    for (uint i = 0u; i < lights; ++i) {
+        HostLight light = lightToFind(i);
+        LightSample point = lightAlong(light, hostSampleLight(light, walker.origin), walker.direction);
+        if (lobesFind(light) && point.irradiance != vec3(0.0) && point.distance < end) {
+            vec3 arriving = walker.weight * point.irradiance;
+            if (walker.media.count > 0u) {
+                uint medium = walker.media.material[walker.media.count - 1u];
+                arriving *= volumeTransmittance(GLINT_RECORD_ABSORPTION(hostMaterials().data[medium]), point.distance);
+            }
+            sum += arriving;
+        }
+    }
+    return sum;
+}
+#endif
+
 // Returns the number of rays traced.
 uint walk(uvec2 pixel, uint target) {
     uvec2 surfaceId = imageLoad(surfaceImage, ivec2(pixel)).xy;
@@ -263,6 +286,13 @@ uint walk(uvec2 pixel, uint target) {
         bool within = walker.media.count > 0u;
         TracedHit record = traceRay(ray, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
         segments += 1u;
+#if GLINT_SIZED_LIGHTS
+        vec3 met = lightsOnWay(walker, record.geometry == kMissGeometry ? 2.0 * kFarDistance : record.distance);
+        if (met != vec3(0.0)) {
+            vec4 seen = imageLoad(radianceImage, ivec2(pixel));
+            imageStore(radianceImage, ivec2(pixel), vec4(seen.rgb + met, seen.a));
+        }
+#endif
         if (record.geometry == kMissGeometry) {
 #if GLINT_LAYER_RAYS
             storeRayMiss(target, walker.direction);

@@ -80,6 +80,7 @@ TEST(CompilePackage, DraftsLeaveOutLightsThatRaysFind) {
     settings.plan.fallback = true;
     settings.emissiveLights = compiler::EmissiveLights::On;
     settings.skyLight = compiler::SkyLight::On;
+    settings.sizedLights = compiler::SizedLights::On;
     EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::LightingDraft], 1);
 }
 

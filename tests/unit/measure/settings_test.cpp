@@ -28,6 +28,7 @@ compiler::Configuration usual() {
             {"shadow-through", "alpha"},
             {"emissive-lights", "off"},
             {"sky-light", "off"},
+            {"sized-lights", "off"},
             {"precision", "32"},
             {"hit-record", "full"},
             {"strategy", "visibility"},
@@ -45,7 +46,7 @@ compiler::Configuration usual() {
 compiler::BenchFacts rich() {
     compiler::BenchFacts facts;
     facts.masks = facts.furtherLobes = facts.textures = facts.manyLights = facts.sizedLights = true;
-    facts.passesLight = facts.emits = facts.lightsMayEmit = facts.skyMayLight = true;
+    facts.passesLight = facts.emits = facts.lightsMayEmit = facts.skyMayLight = facts.sizedMayShow = true;
     facts.rayPipeline = facts.positionFetch = facts.float16 = facts.packsTextures = true;
     facts.effects = {"shadow", "reflection", "refraction", "ambient-occlusion"};
     facts.effectsOfAnyRoughness = facts.effects;

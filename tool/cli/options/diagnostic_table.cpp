@@ -322,6 +322,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-textures", kError, "The scene has more textures than the device takes."},
     {"settings-file", kError,
      "The file of `--settings` is not a settings file, or has an unknown setting or value."},
+    {"sized-lights", kError,
+     "`--sized-lights on` in a package that has no shadow rays, or whose lights are a host's own."},
     {"skin-attribute", kError, "A primitive has joints without weights, or weights without joints."},
     {"skin-influences", kWarning, "A primitive has more sets of joints than Glint reads."},
     {"skin-joint-outside", kWarning, "A joint of a skin is not in the scene; the skin is left out."},

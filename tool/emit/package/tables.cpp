@@ -340,6 +340,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.positionFetch = settings.positionFetch ? 1 : 0;
     header.lightSamples = settings.lightSamples.value_or(0);
     header.skyLight = settings.skyLight == SkyLight::On ? 1 : 0;
+    header.sizedLights = settings.sizedLights == SizedLights::On ? 1 : 0;
     header.precision = settings.precision;
     header.passes = settings.passes;
     header.answer = settings.answer;
