@@ -28,6 +28,7 @@ LinearImage renderEffect(const gltf::Scene& scene, const EffectOptions& options,
     compiler::CompileSettings settings;
     settings.effects = {false, options.effects, options.maxRoughness};
     settings.energyCompensation = options.energyCompensation;
+    settings.sizedLights = options.findsLights ? compiler::SizedLights::On : compiler::SizedLights::Off;
     const testing::LoadedScene loaded(scene, settings, [&](scene_view::SceneViewData& data) {
         for (LightView& light : data.lights) {
             const bool sun = light.type == LightView::Type::Directional;

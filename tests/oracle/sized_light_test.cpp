@@ -7,6 +7,8 @@
 #include "render/ways.h"
 #include "support/effect_bits.h"
 
+#include <algorithm>
+
 namespace {
 
 using namespace glint;
@@ -126,6 +128,59 @@ TEST(SizedLights, LightSurfacesAndWhatAMirrorShows) {
                  20.0, 2e-4});
         }
     }
+}
+
+// Returns the light of all lights that a ray meets before a surface.
+Vec3 lightsAlong(const gltf::Scene& scene, const World& world, const Ray& ray) {
+    Vec3 sum(0.0);
+    for (const gltf::Light& light : scene.lights) {
+        const LightCap cap = lightCap(light, kSizes, ray.origin);
+        const bool meets = glm::dot(cap.direction, ray.direction) > std::cos(cap.halfAngle);
+        if (meets && world.visible(ray, cap.distanceAlong(ray.direction))) {
+            const double sine = std::sin(cap.halfAngle);
+            sum += irradianceFrom(light, ray.origin) / (kPi * sine * sine);
+        }
+    }
+    return sum;
+}
+
+// Rays of lobes find a lamp, a spot and a sun, which a block hides in part.
+TEST(SizedLights, AreSeenInAMirror) {
+    SceneFile file;
+    file.addMaterial({{"pbrMetallicRoughness", {{"metallicFactor", 1.0}, {"roughnessFactor", 0.0}}}});
+    file.addMaterial(unlitMaterial(Vec3(0.0)));
+    file.addQuad(0, {-4, -2, -1.5}, {8, 0, 0}, {0, 4, 0});
+    file.addQuad(1, {0.0, -0.3, -0.3}, {0.3, 0, 0}, {0, 1.0, 0});
+    file.addQuad(1, {0.3, -0.3, -0.3}, {-0.3, 0, 0}, {0, 1.0, 0});
+    file.addCamera({0.2, 0.4, 1.2}, {0, 0.1, -1.5}, 60);
+    file.addLight({{"type", "point"}, {"intensity", 1.0}, {"range", 4.0}}, {0.1, 0.12, 0.1}, {0, 0, 0});
+    file.addLight({{"type", "spot"},
+                   {"intensity", 2.0},
+                   {"color", {1.0, 0.5, 0.25}},
+                   {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.6}}}},
+                  {-0.6, 0.3, 0.3}, {-0.6, 0.3, -1.5});
+    file.addLight({{"type", "directional"}, {"intensity", 3.0}}, {1.0, 0.6, 3.0}, {0, 0, 0});
+    const gltf::Scene scene = file.import();
+    const World world(scene);
+    EffectOptions options;
+    options.effects = package::kEffectShadow | package::kEffectReflection;
+    options.lights = kSizes;
+    options.findsLights = true;
+    RenderSetup setup = setupOf(scene, kSizedWidth, kSizedHeight, 1, {});
+    setup.samples = 1;
+    const auto truths =
+        centreTruths(View(scene.cameras.at(0), kSizedWidth, kSizedHeight), [&](const Ray& ray) {
+            const auto hit = world.closest(ray, Faces::Culled);
+            return hit && hit->material == 0
+                       ? lightsAlong(scene, world, {hit->position, glm::reflect(ray.direction, hit->normal)})
+                       : Vec3(0.0);
+        });
+    EXPECT_GT(truths.size(), std::size_t{kSizedWidth} * kSizedHeight * 8 / 10);
+    EXPECT_GT(std::ranges::count_if(truths, [](const PixelTruth& truth) { return truth.light.mean.x > 0.1; }),
+              60);
+    expectAgrees(
+        renderEffect(scene, options, setup), truths,
+        {"shadow, reflection", "a lamp, a spot and a sun in a mirror", "closed form", 3, 1, 1e-9, 1e-4});
 }
 
 TEST(SizedLights, LookTheSameWithEveryStrategy) {
