@@ -31,12 +31,12 @@ STRATEGIES = ("uber", "visibility", "sorted-uber", "hit-shaders")
 # What `glint render` is told of the light, by kind.
 KINDS = {
     "points": ["--sky", "0"],
-    "sizes": ["--sky", "0", "--light-radius", "0.25", "--sun-angle", "11"],
+    "sizes": ["--sky", "0", "--light-radius", "0.25", "--sun-angle", "11", "--sized-lights", "off"],
     "map": ["--environment", "map.hdr"],
     "sky": ["--sky", "1"],
     "emissive": ["--sky", "0"],
     "textured": ["--sky", "0"],
-    "mixed": ["--sky", "1", "--light-radius", "0.25", "--sun-angle", "11"],
+    "mixed": ["--sky", "1", "--light-radius", "0.25", "--sun-angle", "11", "--sized-lights", "off"],
 }
 
 
