@@ -89,6 +89,13 @@ PathStep nextStep(Hit hit, Surface surface, Features features,
     step.medium = mediumBeyond(hit, features, passes);
 #if GLINT_EMISSIVE_LIGHTS
     step.receiver = receiverNormal(hit, features);
+#if GLINT_SHADOW_GLASS
+    if (seesSkyFromBefore(hit, features, passes)) {
+        // A ray whose place no sample could have taken brings all that is behind the glass.
+        float before = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)].density;
+        step.density = before > 0.0 ? -1.0 : before;
+    }
+#endif
 #endif
 #if GLINT_SKY_LIGHT
     step.skyShare = drawn.pdf / (drawn.pdf + hostSkyDensity(step.direction));

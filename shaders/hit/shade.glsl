@@ -72,20 +72,25 @@ void keepSampledLobes(Hit hit, Features features, HostLight light, SkyShares sky
 #endif
     }
 #endif
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    surface.bsdf.transmitted = vec3(0.0);
+#endif
 }
 
 // A sample of a shared light at the hit of a ray: the shadow ray and the irradiance without a shadow, which comes from
-// `direction` and which the lobes that `lit` keeps scatter. Where no ray follows, this sample counts alone.
+// `direction` and which the lobes that `lit` keeps scatter. Where no ray follows, this sample counts alone. `part` is what
+// of its light it counts for.
 LightSample aimAtSharedFromHit(Hit hit, Features features, HostLight light, uint index, SkyShares sky,
-                               inout Surface lit, out vec3 direction) {
+                               inout Surface lit, out vec3 direction, out float part) {
     SharedSample drawn = sampleShared(hit, light, index, shadingDimension(0u));
     direction = drawn.direction;
+    part = 1.0;
     LightSample aim = LightSample(vec3(0.0), 0.0, vec3(0.0), kRaySent);
     if (drawn.density <= 0.0) {
         return aim;
     }
-#if GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
-    if (light.emitter == kSkyEmitter && isWithinGlass(hit, features)) {
+#if GLINT_SHADOW_GLASS
+    if ((light.emitter == kSkyEmitter || GLINT_EMISSIVE_LIGHTS != 0) && isWithinGlass(hit, features)) {
         return aim;
     }
 #endif
@@ -98,17 +103,20 @@ LightSample aimAtSharedFromHit(Hit hit, Features features, HostLight light, uint
         density += bsdfPdf(whole.bsdf, features, toSurface(lit, drawn.direction));
     }
 #endif
+    part = drawn.density / density;
     keepSampledLobes(hit, features, light, sky, lit);
     aim.irradiance = aim.distance > 0.0 ? drawn.radiance / density : vec3(0.0);
     return aim;
 }
 
 // What its shadow ray sees: as much as a ray of the path, or what rays to other lights see.
-uint seenTowardsShared(Hit hit, Features features, HostLight light, vec3 direction) {
+uint seenTowardsShared(Hit hit, Features features, HostLight light, vec3 direction, float part) {
     if (passesAsLight(light)) {
         return kShadowOfLight;
     }
-#if GLINT_PATHS
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    return (floatBitsToUint(1.0 / part) & ~kShadowKind) | kShadowPastGlass;
+#elif GLINT_PATHS
     bool passes = dot(direction, hit.geometricNormal) < 0.0;
     return mediumBeyond(hit, features, passes) == 0u ? kShadowOfShared : kShadowOfSharedWithin;
 #else
@@ -229,9 +237,10 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
         // Both kinds of lights share one evaluation of the BSDF, which is most of the code.
         bool shares = isShared(light);
         vec3 direction;
+        float part;
         LightSample aim;
         if (shares) {
-            aim = aimAtSharedFromHit(hit, features, light, i, sky, lit, direction);
+            aim = aimAtSharedFromHit(hit, features, light, i, sky, lit, direction, part);
         } else {
             aim = aimAtLight(hit, features, light, lit);
             direction = aim.direction;
@@ -260,7 +269,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
             result.shadowDirection = aim.direction;
             result.shadowDistance = aim.distance;
 #if GLINT_SHARED_LIGHTS
-            result.shadowSees = shares ? seenTowardsShared(hit, features, light, aim.direction) : kShadowOfLight;
+            result.shadowSees = shares ? seenTowardsShared(hit, features, light, aim.direction, part) : kShadowOfLight;
 #endif
         } else {
             random = (random - probability) / (1.0 - probability);

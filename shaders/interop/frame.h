@@ -113,6 +113,9 @@ struct ShadowRecord {
 GLINT_CONSTANT(kShadowOfLight, 0u);     // either side of every surface
 GLINT_CONSTANT(kShadowOfShared, 1u);   // what stops a ray of a lobe that finds the light by chance
 GLINT_CONSTANT(kShadowOfSharedWithin, 2u);  // the same within a volume
+// As kShadowOfLight. If the light has passed glass, it is multiplied by the float in the other bits.
+GLINT_CONSTANT(kShadowPastGlass, 3u);
+GLINT_CONSTANT(kShadowKind, 3u);  // the bits of these numbers
 
 // A hit as a surface, for a host that lights it. 112 bytes. Vectors are in the world.
 struct SurfaceRecord {

@@ -49,7 +49,8 @@ struct EmitterRecord {
 
 // How an effect or a path has chosen a ray, for what it finds on emissive triangles. 8 bytes.
 struct LobeRay {
-    float density;  // by solid angle; 0 if no sample of a light could have taken its place
+    float density;  // by solid angle; 0 if no sample of a light could have taken its place; negative if samples bring
+                    // all of the light, behind glass that shadow rays pass
     uint normal;    // of the surface that sent it: LightReceiver::packed
 };
 

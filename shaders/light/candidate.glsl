@@ -20,12 +20,21 @@ struct PassageCandidate {
 
 #if GLINT_SHADOW_GLASS
 
+#if GLINT_EMISSIVE_LIGHTS
+bool passedGlass(LightPassage passage) {
+    return passage.share.x + passage.share.y + passage.share.z < 0.0;
+}
+#define GLINT_SHARE_OF(passage) abs(passage.share)
+#else
+#define GLINT_SHARE_OF(passage) passage.share
+#endif
+
 // The light that arrives over a distance. A volume that is left but was never entered holds the surface, and one that
 // is entered but never left holds the light. A light that is infinitely far away is in none: such a volume is no closed
 // mesh, and absorbs nothing.
 vec3 lightAfter(LightPassage passage, float distance) {
     vec3 behind = distance < kFarDistance ? max(passage.open, vec3(0.0)) * distance : vec3(0.0);
-    return passage.share * exp(-max(passage.depth + behind, vec3(0.0)));
+    return GLINT_SHARE_OF(passage) * exp(-max(passage.depth + behind, vec3(0.0)));
 }
 
 // The surface's colour with its coverage: base colour, texture and vertices.
@@ -104,7 +113,9 @@ bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
     vec4 color = pointColor(geometry, point, candidate, features);
     float coverage = coverageOf(geometry, point, features, color.a);
     vec3 share = vec3(1.0 - coverage);
-    if (coverage > 0.0 && (geometry.flags & kGeometryPassesLight) != 0u && lobeOfKey(features, GLINT_TRANSMISSION)) {
+    bool passes = coverage > 0.0 && (geometry.flags & kGeometryPassesLight) != 0u &&
+                  lobeOfKey(features, GLINT_TRANSMISSION);
+    if (passes) {
         vec3 corner = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive));
         vec3 edge1 = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive + 1u)) - corner;
         vec3 edge2 = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive + 2u)) - corner;
@@ -119,8 +130,15 @@ bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
             passage.open += entered;
         }
     }
+#if GLINT_EMISSIVE_LIGHTS
+    bool glass = passes || passedGlass(passage);
+    vec3 left = abs(passage.share) * share;
+    passage.share = glass ? -left : left;
+    return !(left.x + left.y + left.z > 0.0);
+#else
     passage.share *= share;
     return !(passage.share.x + passage.share.y + passage.share.z > 0.0);
+#endif
 }
 
 #elif GLINT_SHADOW_OPAQUE

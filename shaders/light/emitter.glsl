@@ -214,6 +214,11 @@ float emitterDensity(LightReceiver receiver, Hit hit) {
 // The share of the emission of a hit that its ray brings. The lights of the surface that sent it bring the rest.
 float emissionOfRay(Hit hit) {
     LobeRay ray = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)];
+#if GLINT_SHADOW_GLASS
+    if (ray.density < 0.0) {
+        return 0.0;
+    }
+#endif
     if (ray.density <= 0.0) {
         return 1.0;
     }

@@ -2,7 +2,8 @@
 
 // It does not depend on the order in which surfaces are met.
 struct LightPassage {
-    vec3 share;  // the product over the surfaces so far
+    vec3 share;  // the product over the surfaces so far; where emissive lights pass glass, negative once it has passed
+                 // glass
     vec3 depth;  // the optical depth of volumes: their absorption times the metres at which they end, less those at
                  // which they begin
     vec3 open;   // absorption of the volumes that were entered, less that of those that were left

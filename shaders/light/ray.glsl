@@ -14,7 +14,17 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
     return isVisible(origin, direction, distance);
 }
 
-#elif GLINT_TRACER == 1
+#else
+
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+// Whether the light of the last ray to a light has passed glass.
+bool lightPassedGlass = false;
+#define GLINT_NOTE_GLASS(passage) lightPassedGlass = passedGlass(passage);
+#else
+#define GLINT_NOTE_GLASS(passage)
+#endif
+
+#if GLINT_TRACER == 1
 
 bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
     GLINT_TALLY_RAYS(1u);
@@ -34,6 +44,7 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
             rayQueryConfirmIntersectionEXT(query);
         }
     }
+    GLINT_NOTE_GLASS(passage)
     light *= lightAfter(passage, distance);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;
 }
@@ -51,6 +62,7 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
     shaded.shadowOrigin = vec3(0.0);
     shaded.shadowDistance = 0.0;
     traceRayEXT(GLINT_TLAS, kFlags, GLINT_RAY_MASK, 0u, 0u, 0u, origin, 0.0, direction, distance, 0);
+    GLINT_NOTE_GLASS(LightPassage(shaded.radiance, shaded.direct, shaded.shadowOrigin))
     light *= lightAfter(LightPassage(shaded.radiance, shaded.direct, shaded.shadowOrigin), distance);
     return shaded.shadowDistance < 0.0;
 #else
@@ -58,6 +70,7 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
     traced.passage = wholePassage();
     traceRayEXT(GLINT_TLAS, kFlags, GLINT_RAY_MASK, 0u, 0u, GLINT_TRACE_LOCATION, origin, 0.0, direction, distance,
                 GLINT_TRACE_LOCATION);
+    GLINT_NOTE_GLASS(traced.passage)
     light *= lightAfter(traced.passage, distance);
     return traced.geometry == kMissGeometry;
 #endif
@@ -65,14 +78,23 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 
 #endif
 
+#endif
+
 #if GLINT_TRACER == 1 || GLINT_RAY_GENERATION
-// The same for what `sees` other surfaces (kShadow*): rays to emissive triangles take glass for opaque, because rays of
-// lobes bring the light that passes it.
+// The same for what `sees` other surfaces (kShadow*). Where shadow rays do not pass glass, rays of lobes bring the light
+// of emissive triangles that passes it. Where they do, these rays leave it out, so the sample counts whole.
 bool lightArrivesTo(uint sees, vec3 origin, vec3 direction, float distance, inout vec3 light) {
 #if GLINT_SHARED_LIGHTS
 #if GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE
     if (sees == kShadowOfLight) {
         return lightArrives(origin, direction, distance, light);
+    }
+#endif
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    if ((sees & kShadowKind) == kShadowPastGlass) {
+        bool arrives = lightArrives(origin, direction, distance, light);
+        light *= lightPassedGlass ? uintBitsToFloat(sees & ~kShadowKind) : 1.0;
+        return arrives;
     }
 #endif
     return isVisibleTo(sees, origin, direction, distance);

@@ -19,10 +19,15 @@ GLINT_PIXEL_WORKGROUP
 
 #if GLINT_SHARED_LIGHTS
 
+// A density of samples beside which no ray counts.
+const float kWholeDensity = 1e30;
+
 // The light of a shared light, without its shadow, for the shares of the lobes that rays of effects don't bring.
-vec3 lightOfShared(Hit hit, Surface surface, Features features, HostLight light, SharedSample drawn, SkyShares sky) {
+// `density` is that of samples, for the choice of these shares.
+vec3 lightOfShared(Hit hit, Surface surface, Features features, HostLight light, SharedSample drawn, float density,
+                   SkyShares sky) {
     SkyShares shares = sky;
-    shareWithEffects(surface, features, toSurface(surface, drawn.direction), drawn.density, shares);
+    shareWithEffects(surface, features, toSurface(surface, drawn.direction), density, shares);
 #if GLINT_SKY_LIGHT
     if (light.emitter == kSkyEmitter) {
         shares = sampledShares(surface, features, shares, sky);
@@ -39,14 +44,24 @@ vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light,
     if (drawn.density <= 0.0) {
         return vec3(0.0);
     }
-    vec3 contribution = lightOfShared(hit, surface, features, light, drawn, sky);
+    vec3 contribution = lightOfShared(hit, surface, features, light, drawn, drawn.density, sky);
     LightSample aim = aimAtShared(hit, light, drawn);
     if (luminance(contribution) <= 0.0 || aim.distance <= 0.0) {
         counts.facing += 1u;
         return vec3(0.0);
     }
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    vec3 arriving = vec3(1.0);
+    bool visible = lightArrives(rayOrigin(hit, aim.direction), aim.direction, aim.distance, arriving);
+    if (visible && lightPassedGlass && light.emitter != kSkyEmitter) {
+        // Rays of effects bring none of the light of emissive triangles behind glass.
+        contribution = lightOfShared(hit, surface, features, light, drawn, kWholeDensity, sky);
+    }
+    contribution *= arriving;
+#else
     uint sees = passesAsLight(light) ? kShadowOfLight : kShadowOfShared;
     bool visible = lightArrivesTo(sees, rayOrigin(hit, aim.direction), aim.direction, aim.distance, contribution);
+#endif
     counts.rays += 1u;
     counts.misses += visible ? 1u : 0u;
     return visible ? contribution : vec3(0.0);

@@ -33,12 +33,14 @@ struct Ways {
     bool traces = true;  // effects send rays, which find emissive surfaces by chance
     std::uint32_t strategies = package::kStrategyUber;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
+    package::ShadowThrough through = package::ShadowThrough::Alpha;
 };
 
 compiler::CompileSettings settingsOf(const Ways& ways) {
     compiler::CompileSettings settings;
     settings.strategies = ways.strategies;
     settings.shadows = ways.shadows;
+    settings.shadowThrough = ways.through;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.effects = {false, compiler::builtinEffects({"shadow"})};
     settings.effects.named |= ways.traces ? compiler::builtinEffects({"reflection", "indirect-diffuse"}) : 0;
@@ -207,6 +209,126 @@ TEST(EmissiveLights, AQuadLightsAWallByItsFormFactor) {
             EXPECT_NEAR(sum, expected, 4e-3 * expected);
             EXPECT_LT(worst, 0.05);
         }
+    }
+}
+
+// Thin glass that reflects nothing.
+constexpr std::array<double, 3> kTint{0.25, 0.5, 0.75};
+
+materials::Material tintedGlass() {
+    materials::Material glass = matte(1.0F);
+    glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
+    glass["roughnessFactor"] = 0.0F;
+    glass["transmissionFactor"] = 1.0F;
+    glass.doubleSided = true;
+    return glass;
+}
+
+// A pane between the lamp and the wall takes its tint from the light, whether paths pass the pane or not:
+// what shadow rays bring through it, paths leave out.
+TEST(EmissiveLights, LightPassesAPaneOnce) {
+    constexpr double kAlbedo = 0.5;
+    constexpr double kRadiance = 3.0;
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+                         gltf::Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    };
+    add(matte(kAlbedo), {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    const std::vector<Double3> corners{{-1, 0.5, -3.8}, {1, 0.5, -3.8}, {1, 0.5, -2.6}, {-1, 0.5, -2.6}};
+    add(lamp({1, 1, 1}, kRadiance), {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F});
+    add(tintedGlass(), {-4, 0.4F, -4}, {8, 0, 0}, {0, 0, 2.5F});
+    double expected = 0.0;
+    for (int y = 36; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            const Double3 point{4.0 * ((x + 0.5) / 32.0 - 1.0), 4.0 * (1.0 - (y + 0.5) / 32.0), -4.0};
+            expected +=
+                polygonIrradiance(point, {0, 0, 1}, corners) * kRadiance * kAlbedo / std::numbers::pi / 16.0;
+        }
+    }
+    for (const std::uint32_t bounces : {1U, 3U}) {
+        for (const std::uint32_t lights : {0U, 1U}) {
+            Ways ways{EmissiveLights::On, lights, bounces};
+            ways.through = package::ShadowThrough::Glass;
+            const LoadedScene loaded = load(scene, ways);
+            ASSERT_TRUE(loaded.ok());
+            EXPECT_EQ(loaded.package().shadowThrough(), ways.through);
+            const LinearImage image = render(loaded, setupOf(scene, lights == 0 ? 128 : 256, 3, 16), ways);
+            ASSERT_FALSE(image.pixels.empty());
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                double sum = 0.0;
+                for (std::size_t i = std::size_t{9} * 16; i < image.pixels.size(); ++i) {
+                    sum += image.pixels[i][channel];
+                }
+                std::printf("%u bounces, lights %u, channel %zu: off by %.5f\n", bounces, lights, channel,
+                            sum / (kTint[channel] * expected) - 1.0);
+                EXPECT_NEAR(sum, kTint[channel] * expected, 0.01 * kTint[channel] * expected);
+            }
+        }
+    }
+}
+
+// The lower half of a picture.
+double lowerMean(const LinearImage& image) {
+    double sum = 0.0;
+    for (std::size_t i = image.pixels.size() / 2; i < image.pixels.size(); ++i) {
+        sum += image.pixels[i][0] + image.pixels[i][1] + image.pixels[i][2];
+    }
+    return sum / (1.5 * static_cast<double>(image.pixels.size()));
+}
+
+// Where a pane hides a part of a lamp, light that passes it counts whole in samples, and samples and rays
+// share the rest. Paths by chance pass the pane themselves.
+TEST(EmissiveLights, HalfAPaneHasTheMeanOfChance) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+                         gltf::Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    };
+    materials::Material glossy = mirrorMaterial();
+    glossy["roughnessFactor"] = 0.5F;
+    add(glossy, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    add(lamp({1, 1, 1}, 3.0F), {-2, 0.7F, -3.9F}, {4, 0, 0}, {0, 0, 2.5F});
+    add(tintedGlass(), {-8, 0.4F, -4}, {8, 0, 0}, {0, 0, 4});
+    Ways ways{EmissiveLights::On, 1, 2};
+    ways.through = package::ShadowThrough::Glass;
+    const Ways chance{EmissiveLights::Off, 0, 3};
+    const LoadedScene sampled = load(scene, ways);
+    const LoadedScene byChance = load(scene, chance);
+    ASSERT_TRUE(sampled.ok() && byChance.ok());
+    const double mean = lowerMean(render(sampled, setupOf(scene, 512, 5, 16), ways));
+    const double expected = lowerMean(render(byChance, setupOf(scene, 2048, 6, 16), chance));
+    std::printf("half a pane: %.5f, by chance %.5f\n", mean, expected);
+    EXPECT_GT(expected, 0.01);
+    EXPECT_NEAR(mean, expected, 0.01 * expected);
+}
+
+// A mirror takes no samples of lights, so its rays bring all that is behind a pane.
+TEST(EmissiveLights, AMirrorShowsALampBehindAPane) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+                         gltf::Float3 up) {
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    };
+    add(mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
+    add(tintedGlass(), {50, -50, 0.5F}, {-100, 0, 0}, {0, 100, 0});
+    add(lamp({1, 1, 1}, 2.0F), {2, -2, 1}, {-4, 0, 0}, {0, 4, 0});
+    Ways ways{EmissiveLights::On, 0, 2};
+    ways.through = package::ShadowThrough::Glass;
+    const LoadedScene loaded = load(scene, ways);
+    ASSERT_TRUE(loaded.ok());
+    const LinearImage image = render(loaded, setupOf(scene, 64, 1, 16), ways);
+    ASSERT_FALSE(image.pixels.empty());
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        double sum = 0.0;
+        for (const auto& pixel : image.pixels) {
+            sum += pixel[channel] / 256.0;
+        }
+        // 4 m at a distance of 5 m, of 10 m that the picture shows there.
+        EXPECT_NEAR(sum, 2.0 * kTint[channel] * 0.16, 0.02 * kTint[channel] * 0.32);
     }
 }
 

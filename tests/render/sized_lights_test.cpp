@@ -318,7 +318,7 @@ TEST(FoundLights, StrategiesAgree) {
         compiler::CompileSettings settings =
             settingsOf({SizedLights::On, 3,
                         others ? package::ShadowThrough::Glass : package::ShadowThrough::Alpha, true});
-        settings.shadows = others ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
+        settings.shadows = others ? package::ShadowPlacement::Inline : package::ShadowPlacement::Deferred;
         // Beside emissive triangles the hierarchy leaves a few lights apart.
         settings.emissiveLights = others ? compiler::EmissiveLights::On : compiler::EmissiveLights::Off;
         settings.skyLight = others ? compiler::SkyLight::On : compiler::SkyLight::Off;
