@@ -89,8 +89,12 @@ LightSample aimAtSharedFromHit(Hit hit, Features features, HostLight light, uint
     if (drawn.density <= 0.0) {
         return aim;
     }
-#if GLINT_SHADOW_GLASS
-    if ((light.emitter == kSkyEmitter || GLINT_EMISSIVE_LIGHTS != 0) && isWithinGlass(hit, features)) {
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    if (isWithinGlass(hit, features)) {
+        return aim;
+    }
+#elif GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
+    if (light.emitter == kSkyEmitter && isWithinGlass(hit, features)) {
         return aim;
     }
 #endif
