@@ -95,6 +95,12 @@ float emitterChance(LightReceiver receiver, uint emitter) {
 
 #if GLINT_LIGHT_SAMPLES > 0
 
+// One of the lights that every surface takes.
+HostLight lightApart(uint index) {
+    uint leaf = GLINT_FRAME.lightTreeNodes + index;
+    return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
+}
+
 // The hierarchy knows the surface that asks. `random` is uniform in [0, 1)³. The same arguments give the same light.
 HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
 #if GLINT_SKY_LIGHT
@@ -103,8 +109,7 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
     }
 #endif
     if (index < GLINT_FRAME.lightsApart) {
-        uint leaf = GLINT_FRAME.lightTreeNodes + index;
-        return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
+        return lightApart(index);
     }
     // The samples of a surface divide the first random number among them, which spreads them over the tree.
     precise float stratum = (float(index - GLINT_FRAME.lightsApart) + random.x) / float(GLINT_LIGHT_SAMPLES);

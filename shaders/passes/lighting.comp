@@ -44,7 +44,7 @@ vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light,
         counts.facing += 1u;
         return vec3(0.0);
     }
-    uint sees = passesAsLight(light) ? kShadowOfLight : kShadowOfShared;
+    uint sees = passesAsLight(light.emitter) ? kShadowOfLight : kShadowOfShared;
     bool visible = lightArrivesTo(sees, rayOrigin(hit, aim.direction), aim.direction, aim.distance, contribution);
     counts.rays += 1u;
     counts.misses += visible ? 1u : 0u;
