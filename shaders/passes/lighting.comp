@@ -18,8 +18,8 @@ GLINT_PIXEL_WORKGROUP
 
 #if GLINT_SHARED_LIGHTS
 
-// The light of a shared light, without its shadow, for the shares of the lobes that rays of effects don't bring.
-vec3 lightOfShared(Hit hit, Surface surface, Features features, HostLight light, SharedSample drawn, SkyShares sky) {
+// Leaves the lobes of which no ray of an effect brings the light of a sample, in parts.
+void keepLobesOfLight(Features features, HostLight light, SharedSample drawn, SkyShares sky, inout Surface surface) {
     SkyShares shares = sky;
     shareWithEffects(surface, features, toSurface(surface, drawn.direction), drawn.density, shares);
 #if GLINT_SKY_LIGHT
@@ -28,65 +28,99 @@ vec3 lightOfShared(Hit hit, Surface surface, Features features, HostLight light,
     }
 #endif
     keepShares(shares, surface);
-    return scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / drawn.density;
-}
-
-// The same with its shadow.
-vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares sky,
-                   inout ShadowCounts counts) {
-    SharedSample drawn = sampleShared(hit, light, index, 0u);
-    if (drawn.density <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 contribution = lightOfShared(hit, surface, features, light, drawn, sky);
-    LightSample aim = aimAtShared(hit, light, drawn);
-    if (luminance(contribution) <= 0.0 || aim.distance <= 0.0) {
-        counts.facing += 1u;
-        return vec3(0.0);
-    }
-    uint sees = passesAsLight(light.emitter) ? kShadowOfLight : kShadowOfShared;
-    bool visible = lightArrivesTo(sees, rayOrigin(hit, aim.direction), aim.direction, aim.distance, contribution);
-    counts.rays += 1u;
-    counts.misses += visible ? 1u : 0u;
-    return visible ? contribution : vec3(0.0);
 }
 
 #endif
 
-vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
+#if GLINT_EFFECT_SHADOW
+
+// The light of all lights as far as it is known. traceWaiting() returns the rest.
+vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadowCounts counts) {
     vec3 sum = vec3(0.0);
     uint lights = hostLightCount(hit.position);
-#if GLINT_EFFECT_SHADOW
-    ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
-#endif
     for (uint i = 0u; i < lights; ++i) {
         HostLight light = lightOfHost(hit, features, i);
+        LightSample centre;
+        uint points = 1u;
+        uint sees = kShadowOfLight;
 #if GLINT_SHARED_LIGHTS
-        if (isShared(light)) {
-            sum += visibleShared(hit, surface, features, light, i, sky, counts);
-            continue;
-        }
+        bool shares = isShared(light);
+        SharedSample drawn;
+        if (shares) {
+            drawn = sampleShared(hit, light, i, 0u);
+            if (drawn.density <= 0.0) {
+                continue;
+            }
+            centre = aimAtShared(hit, light, drawn);
+            centre.irradiance = centre.distance > 0.0 ? drawn.radiance / drawn.density : vec3(0.0);
+            sees = passesAsLight(light.emitter) ? kShadowOfLight : kShadowOfShared;
+        } else
 #endif
-        LightSample centre = hostSampleLight(light, hit.position);
-#if GLINT_EFFECT_SHADOW
-        if (!passesGate(centre, counts)) {
-            continue;
+        {
+            centre = hostSampleLight(light, hit.position);
+            if (!passesGate(centre, counts)) {
+                continue;
+            }
+            points = lightPointCount(light);
+            centre.irradiance /= float(points);
         }
-        uint points = lightPointCount(light);
-        centre.irradiance /= float(points);
         for (uint j = 0u; j < points; ++j) {
-            LightSample point = lightPoint(hit, light, centre, i, j);
-            sum += visibleLight(hit, point, unshadowedLight(hit, surface, features, point), counts);
-        }
+            // All kinds of lights share one evaluation of the BSDF, which is most of the code.
+#if GLINT_SHARED_LIGHTS
+            Surface lit = surface;
+            LightSample point = centre;
+            vec3 direction;
+            if (shares) {
+                keepLobesOfLight(features, light, drawn, sky, lit);
+                direction = drawn.direction;
+            } else {
+                point = lightPoint(hit, light, centre, i, j);
+                direction = point.direction;
+            }
+            vec3 scattered = scatteredLight(lit, features, hit.geometricNormal, direction) * point.irradiance;
 #else
-        vec3 contribution = unshadowedLight(hit, surface, features, centre);
-        sum += luminance(contribution) > 0.0 ? contribution : vec3(0.0);
+            LightSample point = lightPoint(hit, light, centre, i, j);
+            vec3 scattered = unshadowedLight(hit, surface, features, point);
 #endif
+            if (luminance(scattered) <= 0.0) {
+                counts.facing += 1u;
+            } else if (point.distance <= 0.0) {
+                sum += scattered;  // nothing is between the surface and a light around it
+            } else {
+                sum += sendShadow(hit, SurfaceShadow(point.direction, point.distance, scattered, sees), counts);
+            }
+        }
     }
-#if GLINT_EFFECT_SHADOW
-    reportShadows(counts);
-#endif
     return sum;
+}
+
+#else
+
+vec3 directLight(Hit hit, Surface surface, Features features) {
+    vec3 sum = vec3(0.0);
+    uint lights = hostLightCount(hit.position);
+    for (uint i = 0u; i < lights; ++i) {
+        LightSample light = hostSampleLight(lightOfHost(hit, features, i), hit.position);
+        vec3 scattered = unshadowedLight(hit, surface, features, light);
+        sum += luminance(scattered) > 0.0 ? scattered : vec3(0.0);
+    }
+    return sum;
+}
+
+#endif
+
+// The light that a lit surface scatters, without its emission. `sky` is what remains of the sky's light.
+vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
+#if GLINT_EFFECT_SHADOW
+    ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
+    vec3 direct = directLight(hit, surface, features, sky, counts);
+    vec3 ambient = ambientLight(surface, features, hit.view, sky);
+    direct += traceWaiting(hit, counts);
+    reportShadows(counts);
+    return direct + ambient;
+#else
+    return directLight(hit, surface, features) + ambientLight(surface, features, hit.view, sky);
+#endif
 }
 
 void main() {
@@ -127,12 +161,11 @@ void main() {
         } else {
             SkyShares sky = wholeSky();
             sampleEffects(hit, surface, features, sky);
+            vec3 emission = surface.emission;
+            vec3 scattered = scatteredBy(hit, surface, features, sky);
+            radianceDepth.rgb = emission + scattered;
 #if GLINT_SURFACE_LAYERS
-            direct = directLight(hit, surface, features, sky) + ambientLight(surface, features, hit.view, sky);
-            radianceDepth.rgb = surface.emission + direct;
-#else
-            radianceDepth.rgb = surface.emission + directLight(hit, surface, features, sky) +
-                                ambientLight(surface, features, hit.view, sky);
+            direct = scattered;
 #endif
         }
 #if GLINT_SURFACE_LAYERS
