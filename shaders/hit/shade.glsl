@@ -2,45 +2,12 @@
 #include "effects/ambient.glsl"
 #include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
-#include "light/shared.glsl"
+#include "hit/draw_light.glsl"
 #include "hit/material.glsl"
-#include "light/receiver.glsl"
 #include "light/sized.glsl"
-#include "host/lights.glsl"
-#include "host/random.glsl"
 #if GLINT_PATHS
 #include "hit/path_sample.glsl"
 #endif
-
-// The dimensions of the random numbers of a sample.
-const uint kDimensionLight = 0u;
-const uint kDimensionHostLight = 1u;  // and the next two; three more for each further light
-// The pairs of the sequence.
-const uint kPairLightArea = 5u;
-const uint kPairLightChoice = 0x10000u;  // and one more for each further light
-
-// The same dimension, of the bounce that is shaded.
-uint shadingDimension(uint dimension) {
-#if GLINT_PATHS
-    return dimensionOfBounce(dimension);
-#else
-    return dimension;
-#endif
-}
-
-// A light of the host's list.
-HostLight lightOfHost(Hit hit, Features features, uint index) {
-    uint dimension = shadingDimension(kDimensionHostLight + 3u * index);
-#if GLINT_LIGHT_SAMPLES > 0
-    // The first numbers, which decide most, are well distributed.
-    vec2 first = hostRandomPair(hit.target, shadingDimension(kPairLightChoice + index));
-    return hostLight(index, receiverOf(hit, features), vec3(first, hostRandom(hit.target, dimension)));
-#else
-    vec3 random = vec3(hostRandom(hit.target, dimension), hostRandom(hit.target, dimension + 1u),
-                       hostRandom(hit.target, dimension + 2u));
-    return hostLight(index, hit.position, random);
-#endif
-}
 
 // The light of one light on a surface, without its shadow.
 vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample light) {
@@ -59,11 +26,11 @@ bool sendsRay() {
 }
 
 // Leaves the lobes on which samples of the light bring its light. `sky` is what no ray of an effect brings.
-void keepSampledLobes(Hit hit, Features features, HostLight light, SkyShares sky, inout Surface surface) {
+void keepSampledLobes(Hit hit, Features features, uint emitter, SkyShares sky, inout Surface surface) {
     // An effect that follows the transmitted light finds shared lights itself.
     surface.bsdf.transmitted *= sky.transmitted;
 #if GLINT_SKY_LIGHT
-    if (light.emitter == kSkyEmitter) {
+    if (emitter == kSkyEmitter) {
         if (!sendsRay()) {
             keepShares(sampledShares(surface, features, wholeSky(), wholeSky()), surface);
         }
@@ -77,45 +44,39 @@ void keepSampledLobes(Hit hit, Features features, HostLight light, SkyShares sky
 #endif
 }
 
-// A sample of a shared light at the hit of a ray: the shadow ray and the irradiance without a shadow, which comes from
-// `direction` and which the lobes that `lit` keeps scatter. Where no ray follows, this sample counts alone. `part` is what
-// of its light it counts for.
-LightSample aimAtSharedFromHit(Hit hit, Features features, HostLight light, uint index, SkyShares sky,
-                               inout Surface lit, out vec3 direction, out float part) {
-    SharedSample drawn = sampleShared(hit, light, index, shadingDimension(0u));
-    direction = drawn.direction;
+// The irradiance of a sample of a shared light at the hit of a ray, without its shadow, on the lobes that `lit` keeps.
+// Where no ray follows, this sample counts alone. `part` is what of its light it counts for.
+vec3 irradianceOfShared(Hit hit, Features features, DrawnLight light, SkyShares sky, inout Surface lit,
+                        out float part) {
     part = 1.0;
-    LightSample aim = LightSample(vec3(0.0), 0.0, vec3(0.0), kRaySent);
-    if (drawn.density <= 0.0) {
-        return aim;
+    if (light.density <= 0.0) {
+        return vec3(0.0);
     }
 #if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
     if (isWithinGlass(hit, features)) {
-        return aim;
+        return vec3(0.0);
     }
 #elif GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
     if (light.emitter == kSkyEmitter && isWithinGlass(hit, features)) {
-        return aim;
+        return vec3(0.0);
     }
 #endif
-    aim = aimAtShared(hit, light, drawn);
-    float density = drawn.density;
+    float density = light.density;
 #if GLINT_PATHS
     if (pathGoesOn()) {
         Surface whole = lit;
         whole.bsdf.transmitted *= sky.transmitted;
-        density += bsdfPdf(whole.bsdf, features, toSurface(lit, drawn.direction));
+        density += bsdfPdf(whole.bsdf, features, toSurface(lit, light.direction));
     }
 #endif
-    part = drawn.density / density;
-    keepSampledLobes(hit, features, light, sky, lit);
-    aim.irradiance = aim.distance > 0.0 ? drawn.radiance / density : vec3(0.0);
-    return aim;
+    part = light.density / density;
+    keepSampledLobes(hit, features, light.emitter, sky, lit);
+    return light.aim.distance > 0.0 ? light.aim.irradiance / density : vec3(0.0);
 }
 
 // What its shadow ray sees: as much as a ray of the path, or what rays to other lights see.
-uint seenTowardsShared(Hit hit, Features features, HostLight light, vec3 direction, float part) {
-    if (passesAsLight(light)) {
+uint seenTowardsShared(Hit hit, Features features, uint emitter, vec3 direction, float part) {
+    if (passesAsLight(emitter)) {
         return kShadowOfLight;
     }
 #if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
@@ -140,32 +101,24 @@ vec3 countedEmission(Hit hit, Surface surface) {
     return surface.emission;
 }
 
-// The same of a light that emits from no triangle, from its centre or from a point of a light that has a size. Where
-// shadow rays pass glass, the surface that sent the ray has had the light of such lights behind this glass on the
-// straight line, with all that happens within: it would count twice.
-LightSample aimAtLight(Hit hit, Features features, HostLight light, inout Surface lit) {
-    LightSample aim = hostSampleLight(light, hit.position);
-#if GLINT_EFFECT_SHADOW
-    // All lights may have the same numbers, because only one of them counts.
-    if (hostLightHasSize(light)) {
-        aim = hostSampleLightPoint(light, aim, hostRandomPair(hit.target, shadingDimension(kPairLightArea)));
-    }
-#endif
+// The irradiance of another light. Where shadow rays pass glass, the surface that sent the ray has had the light of such
+// lights behind this glass on the straight line, with all that happens within: it would count twice.
+vec3 irradianceOf(Hit hit, Features features, DrawnLight light, inout Surface lit) {
 #if GLINT_SHADOW_GLASS
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        if (isWithinGlass(hit, features)) {
-            aim.irradiance = vec3(0.0);
-        }
         lit.bsdf.transmitted = vec3(0.0);
+        if (isWithinGlass(hit, features)) {
+            return vec3(0.0);
+        }
     }
 #endif
-    return aim;
+    return light.aim.irradiance;
 }
 
 #if GLINT_SIZED_LIGHTS && GLINT_PATHS
 
 // Returns whether samples alone bring the light from a side of the surface: with --shadow-through glass, what passes
-// glass, which the surface that sent the ray has sampled (aimAtLight()).
+// glass, which the surface that sent the ray has sampled (irradianceOf()).
 bool isSampledAlone(Hit hit, Features features, bool passes) {
 #if GLINT_SHADOW_GLASS
     return hasLobe(features, GLINT_TRANSMISSION) && (passes || isWithinGlass(hit, features));
@@ -180,17 +133,16 @@ bool isSampledAlone(Hit hit, Features features, bool passes) {
 
 // The part of its light that the sample of a light counts for, on the lobes that `lit` keeps. The direction of the path
 // brings the rest, and the walk of a refracted ray has found what passes the surface at which it ended.
-float partOfSample(Hit hit, Surface surface, Features features, HostLight light, vec3 direction, SkyShares sky,
-                   inout Surface lit) {
-    float density = lobesFind(light) ? lightPointDensity(light, hostSampleLight(light, hit.position)) : 0.0;
-    if (density <= 0.0) {
+float partOfSample(Hit hit, Surface surface, Features features, DrawnLight light, SkyShares sky, inout Surface lit) {
+    if (light.density <= 0.0) {
         return 1.0;
     }
     lit.bsdf.transmitted *= sky.transmitted;
 #if GLINT_PATHS
-    if (!isSampledAlone(hit, features, dot(direction, hit.geometricNormal) < 0.0)) {
+    if (!isSampledAlone(hit, features, dot(light.direction, hit.geometricNormal) < 0.0)) {
         surface.bsdf.transmitted *= sky.transmitted;
-        return density / (density + bsdfPdf(surface.bsdf, features, toSurface(surface, direction)));
+        return light.density /
+               (light.density + bsdfPdf(surface.bsdf, features, toSurface(surface, light.direction)));
     }
 #endif
     return 1.0;
@@ -235,30 +187,26 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
     float chosenWeight = 1.0;
     vec3 chosen = vec3(0.0);
     for (uint i = 0u; i < lights; ++i) {
-        HostLight light = lightOfHost(hit, features, i);
+        DrawnLight light = lightOfSurface(hit, features, i);
         Surface lit = surface;
 #if GLINT_SHARED_LIGHTS
-        // Both kinds of lights share one evaluation of the BSDF, which is most of the code.
-        bool shares = isShared(light);
-        vec3 direction;
+        // All kinds of lights share one evaluation of the BSDF, which is most of the code.
+        bool shares = light.emitter != kNoEmitter;
         float part;
-        LightSample aim;
-        if (shares) {
-            aim = aimAtSharedFromHit(hit, features, light, i, sky, lit, direction, part);
-        } else {
-            aim = aimAtLight(hit, features, light, lit);
-            direction = aim.direction;
+        vec3 irradiance = shares ? irradianceOfShared(hit, features, light, sky, lit, part)
+                                 : irradianceOf(hit, features, light, lit);
 #if GLINT_SIZED_LIGHTS
-            aim.irradiance *= partOfSample(hit, surface, features, light, direction, sky, lit);
-#endif
+        if (!shares) {
+            irradiance *= partOfSample(hit, surface, features, light, sky, lit);
         }
+#endif
         vec3 contribution = vec3(0.0);
-        if (aim.irradiance != vec3(0.0)) {
-            contribution = scatteredLight(lit, features, hit.geometricNormal, direction) * aim.irradiance;
+        if (irradiance != vec3(0.0)) {
+            contribution = scatteredLight(lit, features, hit.geometricNormal, light.direction) * irradiance;
         }
 #else
-        LightSample aim = aimAtLight(hit, features, light, lit);
-        vec3 contribution = unshadowedLight(hit, lit, features, aim);
+        vec3 irradiance = irradianceOf(hit, features, light, lit);
+        vec3 contribution = scatteredLight(lit, features, hit.geometricNormal, light.aim.direction) * irradiance;
 #endif
         float weight = luminance(contribution);
         if (weight <= 0.0) {
@@ -270,10 +218,11 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
             random /= probability;
             chosen = contribution;
             chosenWeight = weight;
-            result.shadowDirection = aim.direction;
-            result.shadowDistance = aim.distance;
+            result.shadowDirection = light.aim.direction;
+            result.shadowDistance = light.aim.distance;
 #if GLINT_SHARED_LIGHTS
-            result.shadowSees = shares ? seenTowardsShared(hit, features, light, aim.direction, part) : kShadowOfLight;
+            result.shadowSees =
+                shares ? seenTowardsShared(hit, features, light.emitter, light.aim.direction, part) : kShadowOfLight;
 #endif
         } else {
             random = (random - probability) / (1.0 - probability);

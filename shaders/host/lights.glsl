@@ -98,9 +98,9 @@ float emitterChance(LightReceiver receiver, uint emitter) {
 
 #if GLINT_LIGHT_SAMPLES > 0
 
-// A light that every surface takes beside the hierarchy.
-HostLight lightApart(uint number) {
-    uint leaf = GLINT_FRAME.lightTreeNodes + number;
+// One of the lights that every surface takes.
+HostLight lightApart(uint index) {
+    uint leaf = GLINT_FRAME.lightTreeNodes + index;
     return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
 }
 

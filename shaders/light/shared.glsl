@@ -45,9 +45,9 @@ LightSample aimAtShared(Hit hit, HostLight light, SharedSample drawn) {
 
 // Whether the shadow ray meets what those to other lights meet, instead of what a ray of a lobe meets: with
 // --shadow-through opaque or glass, that to the sky.
-bool passesAsLight(HostLight light) {
+bool passesAsLight(uint emitter) {
 #if GLINT_SKY_LIGHT && (GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE)
-    return light.emitter == kSkyEmitter;
+    return emitter == kSkyEmitter;
 #else
     return false;
 #endif

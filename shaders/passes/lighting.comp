@@ -22,49 +22,17 @@ GLINT_PIXEL_WORKGROUP
 // A density of samples beside which no ray counts.
 const float kWholeDensity = 1e30;
 
-// The light of a shared light, without its shadow, for the shares of the lobes that rays of effects don't bring.
-// `density` is that of samples, for the choice of these shares.
-vec3 lightOfShared(Hit hit, Surface surface, Features features, HostLight light, SharedSample drawn, float density,
-                   SkyShares sky) {
+// Leaves the lobes of which no ray of an effect brings the light of a sample, in parts. `density` is that of samples.
+void keepLobesOfLight(Features features, HostLight light, vec3 direction, float density, SkyShares sky,
+                      inout Surface surface) {
     SkyShares shares = sky;
-    shareWithEffects(surface, features, toSurface(surface, drawn.direction), density, shares);
+    shareWithEffects(surface, features, toSurface(surface, direction), density, shares);
 #if GLINT_SKY_LIGHT
     if (light.emitter == kSkyEmitter) {
         shares = sampledShares(surface, features, shares, sky);
     }
 #endif
     keepShares(shares, surface);
-    return scatteredLight(surface, features, hit.geometricNormal, drawn.direction) * drawn.radiance / drawn.density;
-}
-
-// The same with its shadow.
-vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light, uint index, SkyShares sky,
-                   inout ShadowCounts counts) {
-    SharedSample drawn = sampleShared(hit, light, index, 0u);
-    if (drawn.density <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 contribution = lightOfShared(hit, surface, features, light, drawn, drawn.density, sky);
-    LightSample aim = aimAtShared(hit, light, drawn);
-    if (luminance(contribution) <= 0.0 || aim.distance <= 0.0) {
-        counts.facing += 1u;
-        return vec3(0.0);
-    }
-#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
-    vec3 arriving = vec3(1.0);
-    bool visible = lightArrives(rayOrigin(hit, aim.direction), aim.direction, aim.distance, arriving);
-    if (visible && lightPassedGlass && light.emitter != kSkyEmitter) {
-        // Rays of effects bring none of the light of emissive triangles behind glass.
-        contribution = lightOfShared(hit, surface, features, light, drawn, kWholeDensity, sky);
-    }
-    contribution *= arriving;
-#else
-    uint sees = passesAsLight(light) ? kShadowOfLight : kShadowOfShared;
-    bool visible = lightArrivesTo(sees, rayOrigin(hit, aim.direction), aim.direction, aim.distance, contribution);
-#endif
-    counts.rays += 1u;
-    counts.misses += visible ? 1u : 0u;
-    return visible ? contribution : vec3(0.0);
 }
 
 #endif
@@ -74,13 +42,6 @@ vec3 visibleShared(Hit hit, Surface surface, Features features, HostLight light,
 // The density, by solid angle, of the samples of a light that rays of lobes find, too; 0 for other lights.
 float densityOfPoints(HostLight light, LightSample centre, uint points) {
     return lobesFind(light) ? float(points) * lightPointDensity(light, centre) : 0.0;
-}
-
-// Leaves the shares of the lobes that samples of a light with a size bring, in a direction.
-void keepSampledPart(Features features, vec3 direction, float density, SkyShares sky, inout Surface surface) {
-    SkyShares shares = sky;
-    shareWithEffects(surface, features, toSurface(surface, direction), density, shares);
-    keepShares(shares, surface);
 }
 
 // What the ray of an effect finds of the light: its point, with the light that it brings to the viewer.
@@ -97,64 +58,121 @@ LightSample foundPoint(HostLight light, LightSample centre, uint slot, float den
 
 #endif
 
-vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky) {
+#if GLINT_EFFECT_SHADOW
+
+// The light of all lights as far as it is known. traceWaiting() returns the rest.
+vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadowCounts counts) {
     vec3 sum = vec3(0.0);
     uint lights = hostLightCount(hit.position);
-#if GLINT_EFFECT_SHADOW
-    ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
-#endif
     for (uint i = 0u; i < lights; ++i) {
         HostLight light = lightOfHost(hit, features, i);
+        LightSample centre;
+        uint points = 1u;
+        uint sees = kShadowOfLight;
 #if GLINT_SHARED_LIGHTS
-        if (isShared(light)) {
-            sum += visibleShared(hit, surface, features, light, i, sky, counts);
-            continue;
-        }
-#endif
-        LightSample centre = hostSampleLight(light, hit.position);
-#if GLINT_EFFECT_SHADOW
-        if (!passesGate(centre, counts)) {
-            continue;
-        }
-        uint points = lightPointCount(light);
-#if GLINT_SIZED_LIGHTS
-        float density = densityOfPoints(light, centre, points);
-        uint all = density > 0.0 ? points + GLINT_RAY_EFFECTS : points;
-        for (uint j = 0u; j < all; ++j) {
-            LightSample point;
-            vec3 contribution;
-            if (j < points) {
-                point = lightPoint(hit, light, centre, i, j);
-                Surface lit = surface;
-                if (density > 0.0) {
-                    keepSampledPart(features, point.direction, density, sky, lit);
-                }
-                contribution = unshadowedLight(hit, lit, features, point) / float(points);
-            } else {
-                point = foundPoint(light, centre, j - points, density);
-                contribution = point.irradiance;
-                if (contribution == vec3(0.0)) {
-                    continue;
-                }
+        bool shares = isShared(light);
+        SharedSample drawn;
+        if (shares) {
+            drawn = sampleShared(hit, light, i, 0u);
+            if (drawn.density <= 0.0) {
+                continue;
             }
-            sum += visibleLight(hit, point, contribution, counts);
+            centre = aimAtShared(hit, light, drawn);
+            centre.irradiance = centre.distance > 0.0 ? drawn.radiance / drawn.density : vec3(0.0);
+            sees = passesAsLight(light.emitter) ? kShadowOfLight : kShadowOfShared;
+        } else
+#endif
+        {
+            centre = hostSampleLight(light, hit.position);
+            if (!passesGate(centre, counts)) {
+                continue;
+            }
+            points = lightPointCount(light);
+            centre.irradiance /= float(points);
         }
-#else
-        centre.irradiance /= float(points);
+#if GLINT_SIZED_LIGHTS
+        float density = shares ? 0.0 : densityOfPoints(light, centre, points);
+        uint found = density > 0.0 ? GLINT_RAY_EFFECTS : 0u;
+        for (uint j = 0u; j < found; ++j) {
+            LightSample point = foundPoint(light, centre, j, density);
+            if (point.irradiance != vec3(0.0)) {
+                vec3 arriving = float(points) * point.irradiance;
+                sum += sendShadow(hit, surfaceShadow(point.direction, point.distance, arriving, sees), counts);
+            }
+        }
+#endif
         for (uint j = 0u; j < points; ++j) {
-            LightSample point = lightPoint(hit, light, centre, i, j);
-            sum += visibleLight(hit, point, unshadowedLight(hit, surface, features, point), counts);
-        }
+            // All kinds of lights share one evaluation of the BSDF, which is most of the code.
+#if GLINT_SHARED_LIGHTS
+            Surface lit = surface;
+            LightSample point = centre;
+            vec3 direction;
+            if (shares) {
+                keepLobesOfLight(features, light, drawn.direction, drawn.density, sky, lit);
+                direction = drawn.direction;
+            } else {
+                point = lightPoint(hit, light, centre, i, j);
+                direction = point.direction;
+#if GLINT_SIZED_LIGHTS
+                if (density > 0.0) {
+                    keepLobesOfLight(features, light, direction, density, sky, lit);
+                }
 #endif
+            }
+            vec3 scattered = scatteredLight(lit, features, hit.geometricNormal, direction) * point.irradiance;
 #else
-        vec3 contribution = unshadowedLight(hit, surface, features, centre);
-        sum += luminance(contribution) > 0.0 ? contribution : vec3(0.0);
+            LightSample point = lightPoint(hit, light, centre, i, j);
+            vec3 scattered = unshadowedLight(hit, surface, features, point);
 #endif
+            if (luminance(scattered) <= 0.0) {
+                counts.facing += 1u;
+            } else if (point.distance <= 0.0) {
+                sum += scattered;  // nothing is between the surface and a light around it
+            } else {
+                SurfaceShadow shadow = surfaceShadow(point.direction, point.distance, scattered, sees);
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+                if (shares && light.emitter != kSkyEmitter) {
+                    // Rays of effects bring none of the light of emissive triangles behind glass.
+                    Surface whole = surface;
+                    keepLobesOfLight(features, light, direction, kWholeDensity, sky, whole);
+                    shadow.pastGlass =
+                        scatteredLight(whole, features, hit.geometricNormal, direction) * point.irradiance;
+                }
+#endif
+                sum += sendShadow(hit, shadow, counts);
+            }
+        }
     }
-#if GLINT_EFFECT_SHADOW
-    reportShadows(counts);
-#endif
     return sum;
+}
+
+#else
+
+vec3 directLight(Hit hit, Surface surface, Features features) {
+    vec3 sum = vec3(0.0);
+    uint lights = hostLightCount(hit.position);
+    for (uint i = 0u; i < lights; ++i) {
+        LightSample light = hostSampleLight(lightOfHost(hit, features, i), hit.position);
+        vec3 scattered = unshadowedLight(hit, surface, features, light);
+        sum += luminance(scattered) > 0.0 ? scattered : vec3(0.0);
+    }
+    return sum;
+}
+
+#endif
+
+// The light that a lit surface scatters, without its emission. `sky` is what remains of the sky's light.
+vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
+#if GLINT_EFFECT_SHADOW
+    ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
+    vec3 direct = directLight(hit, surface, features, sky, counts);
+    vec3 ambient = ambientLight(surface, features, hit.view, sky);
+    direct += traceWaiting(hit, counts);
+    reportShadows(counts);
+    return direct + ambient;
+#else
+    return directLight(hit, surface, features) + ambientLight(surface, features, hit.view, sky);
+#endif
 }
 
 void main() {
@@ -195,12 +213,11 @@ void main() {
         } else {
             SkyShares sky = wholeSky();
             sampleEffects(hit, surface, features, sky);
+            vec3 emission = surface.emission;
+            vec3 scattered = scatteredBy(hit, surface, features, sky);
+            radianceDepth.rgb = emission + scattered;
 #if GLINT_SURFACE_LAYERS
-            direct = directLight(hit, surface, features, sky) + ambientLight(surface, features, hit.view, sky);
-            radianceDepth.rgb = surface.emission + direct;
-#else
-            radianceDepth.rgb = surface.emission + directLight(hit, surface, features, sky) +
-                                ambientLight(surface, features, hit.view, sky);
+            direct = scattered;
 #endif
         }
 #if GLINT_SURFACE_LAYERS

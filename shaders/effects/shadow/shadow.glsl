@@ -49,18 +49,73 @@ LightSample lightPoint(Hit hit, HostLight light, LightSample centre, uint index,
                                 sequencePair(hit.target, number, GLINT_FRAME.seed, kPairShadow + index));
 }
 
-// Returns how much of `light`, which a surface scatters from a point of a light, arrives. Within the light nothing
-// blocks it.
-vec3 visibleLight(Hit hit, LightSample point, vec3 light, inout ShadowCounts counts) {
-    if (luminance(light) <= 0.0) {
-        counts.facing += 1u;
-        return vec3(0.0);
-    }
-    if (point.distance <= 0.0) {
-        return light;
-    }
-    bool visible = lightArrives(rayOrigin(hit, point.direction), point.direction, point.distance, light);
+// A shadow ray of a surface.
+struct SurfaceShadow {
+    vec3 direction;  // unit vector
+    float distance;  // metres
+    vec3 light;      // that the surface scatters towards its viewer if nothing is in the way
+    uint sees;       // kShadow*
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    vec3 pastGlass;  // the same if the light has passed glass
+#endif
+};
+
+SurfaceShadow surfaceShadow(vec3 direction, float distance, vec3 light, uint sees) {
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    return SurfaceShadow(direction, distance, light, sees, light);
+#else
+    return SurfaceShadow(direction, distance, light, sees);
+#endif
+}
+
+// Returns the light that arrives.
+vec3 traceShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    vec3 arriving = vec3(1.0);
+    bool visible = lightArrives(rayOrigin(hit, ray.direction), ray.direction, ray.distance, arriving);
+    ray.light = (lightPassedGlass ? ray.pastGlass : ray.light) * arriving;
+#else
+    bool visible = lightArrivesTo(ray.sees, rayOrigin(hit, ray.direction), ray.direction, ray.distance, ray.light);
+#endif
     counts.rays += 1u;
     counts.misses += visible ? 1u : 0u;
-    return visible ? light : vec3(0.0);
+    return visible ? ray.light : vec3(0.0);
 }
+
+#if GLINT_RAY_GENERATION
+
+// With each ray that it sends, a ray generation shader saves all that it needs afterwards. So rays wait until the
+// material is no longer needed.
+const uint kMostWaiting = 16u;
+SurfaceShadow waitingShadows[kMostWaiting];
+uint waitingCount = 0u;
+
+// Returns the light of the rays that wait.
+vec3 traceWaiting(Hit hit, inout ShadowCounts counts) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0u; i < waitingCount; ++i) {
+        sum += traceShadow(hit, waitingShadows[i], counts);
+    }
+    waitingCount = 0u;
+    return sum;
+}
+
+// Returns light of this ray or of earlier ones. traceWaiting() returns the rest.
+vec3 sendShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
+    vec3 earlier = waitingCount == kMostWaiting ? traceWaiting(hit, counts) : vec3(0.0);
+    waitingShadows[waitingCount] = ray;
+    waitingCount += 1u;
+    return earlier;
+}
+
+#else
+
+vec3 traceWaiting(Hit hit, inout ShadowCounts counts) {
+    return vec3(0.0);
+}
+
+vec3 sendShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
+    return traceShadow(hit, ray, counts);
+}
+
+#endif

@@ -1,6 +1,7 @@
 #version 460
 // Shades the ordered hits in one dispatch. Buckets begin at multiples of a workgroup, so the switch over the cases is
 // uniform in each workgroup.
+#define GLINT_CHOOSES_CASES
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
@@ -42,6 +43,9 @@ void main() {
     uint shaderId = first == kMissGeometry ? kNoShader : hostShaderId(first);
     HostGeometry geometry = hostGeometry(record.geometry);
     Hit hit = loadHit(record, ray, geometry, GLINT_HIT_FEATURES(geometry));
+#if GLINT_DRAWS_FIRST
+    drawLightsFirst(hit, GLINT_HIT_FEATURES(geometry));
+#endif
     resolveHit(hit, shadeHit(shaderId, hit, geometry));
     GLINT_CLOCK_STOP
 }

@@ -1,5 +1,6 @@
 #version 460
 // Uber shader: traces each ray of the list and shades its hit, whichever of the scene's cases it belongs to.
+#define GLINT_CHOOSES_CASES
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
@@ -30,6 +31,9 @@ void main() {
     } else {
         HostGeometry geometry = hostGeometry(found.geometry);
         Hit hit = loadHit(recordOf(found), ray, geometry, GLINT_HIT_FEATURES(geometry));
+#if GLINT_DRAWS_FIRST
+        drawLightsFirst(hit, GLINT_HIT_FEATURES(geometry));
+#endif
         resolveHit(hit, shadeHit(geometry.shaderId, hit, geometry));
     }
     GLINT_CLOCK_STOP

@@ -249,5 +249,41 @@ TEST(Join, PartsWithGlobalVariablesAreNotJoinable) {
     EXPECT_TRUE(compiler::measureSpirv(shared));
 }
 
+// Unless the entry points use them, too: then all parts have one variable, which keeps its stores and loads.
+TEST(Join, VariablesThatEntryPointsUseAreShared) {
+    const std::string state = "float state[2];\n";
+    const Words part = compilePart(state +
+                                       "float first(Hit hit) { return state[hit.number]; }\n"
+                                       "void main() { Hit hit; state[0] = 0.0; first(hit); }\n",
+                                   {{"first"}, {}, false});
+    const Words head = compilePart(state +
+                                       "float first(Hit hit) { return state[0]; }\n"
+                                       "void main() {\n  Hit hit = Hit(vec3(0.0), pushed.number);\n"
+                                       "  state[pushed.number] = data.x[2];\n  data.x[1] = first(hit);\n}\n",
+                                   {{}, {"first"}, true});
+    ASSERT_TRUE(compiler::isJoinable(part));
+    const auto joined = join({head, part});
+    ASSERT_TRUE(joined) << toString(joined.error());
+    std::set<std::uint32_t> variables;
+    std::map<std::uint32_t, std::uint32_t> places;  // pointers into them
+    int stores = 0;
+    int loads = 0;
+    ASSERT_TRUE(compiler::visitSpirv(*joined, [&](const compiler::SpirvInstruction& instruction) {
+        const auto& words = instruction.operands;
+        if (instruction.opcode == spv::OpVariable && words[2] == spv::StorageClassPrivate) {
+            variables.insert(words[1]);
+        } else if (instruction.opcode == spv::OpAccessChain && variables.contains(words[2])) {
+            places[words[1]] = words[2];
+        } else if (instruction.opcode == spv::OpStore) {
+            stores += places.contains(words[0]) ? 1 : 0;
+        } else if (instruction.opcode == spv::OpLoad) {
+            loads += places.contains(words[2]) ? 1 : 0;
+        }
+    }));
+    EXPECT_EQ(variables.size(), 1U);
+    EXPECT_EQ(stores, 1);
+    EXPECT_EQ(loads, 1);
+}
+
 }  // namespace
 }  // namespace glint

@@ -131,25 +131,42 @@ Result<ParsedModule> parseModule(std::span<const std::uint32_t> words, const std
 
 bool sharesVariables(const ParsedModule& module) {
     std::vector<bool> shared(module.bound());
-    bool any = false;
+    std::uint32_t entryPoint = 0;
     for (const ParsedInstruction& global : module.globals) {
         if (global.opcode == spv::OpVariable) {
             const std::uint32_t storage = module.words[global.at + 3];
             shared[global.result] =
                 storage == spv::StorageClassPrivate || storage == spv::StorageClassWorkgroup;
-            any = any || shared[global.result];
+        } else if (global.opcode == spv::OpEntryPoint) {
+            entryPoint = module.words[global.at + 2];
         }
     }
-    return any && std::ranges::any_of(module.functions, [&](const ParsedFunction& function) {
-               return std::ranges::any_of(function.body, [&](const ParsedInstruction& instruction) {
-                   for (std::size_t i = instruction.at; i < instruction.at + instruction.length; ++i) {
-                       if (module.isId[i] && shared[module.words[i]]) {
-                           return true;
-                       }
-                   }
-                   return false;
-               });
-           });
+    const auto usedBy = [&](const ParsedFunction& function) {
+        std::vector<bool> used(module.bound());
+        for (const ParsedInstruction& instruction : function.body) {
+            for (std::size_t i = instruction.at; i < instruction.at + instruction.length; ++i) {
+                if (module.isId[i]) {
+                    used[module.words[i]] = shared[module.words[i]];
+                }
+            }
+        }
+        return used;
+    };
+    std::vector<bool> known(module.bound());
+    for (const ParsedFunction& function : module.functions) {
+        if (function.id == entryPoint) {
+            known = usedBy(function);
+        }
+    }
+    return std::ranges::any_of(module.functions, [&](const ParsedFunction& function) {
+        const std::vector<bool> used = usedBy(function);
+        for (std::size_t id = 0; id < used.size(); ++id) {
+            if (used[id] && !known[id]) {
+                return true;
+            }
+        }
+        return false;
+    });
 }
 
 }  // namespace glint::compiler

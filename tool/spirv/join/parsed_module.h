@@ -50,7 +50,9 @@ struct ParsedModule {
 Result<ParsedModule> parseModule(std::span<const std::uint32_t> words, const std::string& shader);
 
 // Returns whether a function of the module uses a variable that the functions of an invocation or of a
-// workgroup share (a global variable of GLSL).
+// workgroup share (a global variable of GLSL), and the entry point does not. An optimiser that sees one
+// function use such a variable makes it the function's own. One that the entry point uses as well stays, and
+// modules that are joined have it once, by its name.
 bool sharesVariables(const ParsedModule& module);
 
 }  // namespace glint::compiler
