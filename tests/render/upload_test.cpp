@@ -5,12 +5,14 @@
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
 
+#include <glint/engine_scene.h>
 #include <glint/environment.h>
 #include <glint/scene_view/pose.h>
 #include <glint/texture_stream.h>
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -310,6 +312,29 @@ TEST(RecordedUploadEdits, RemovedMeshesAreNotCompacted) {
         for (const MemoryItem& item : (*scene)->memory()) {
             EXPECT_NE(item.name, "bottom levels before compaction");
         }
+    }
+    EXPECT_EQ(watch.bytes, 0U);
+    expectNoValidationMessages();
+}
+
+TEST(RecordedEngineScene, NothingWaitsAndStagingMemoryReturns) {
+    Source& source = sourceOf(Kind::Moving);
+    ASSERT_TRUE(source.loaded->ok());
+    DeviceWatch watch;
+    TwoFrames frames(sharedContext());
+    {
+        const std::array<std::array<float, 12>, 1> instances{{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}};
+        EngineSceneView view;
+        view.instances = instances;
+        auto scene = EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(),
+                                         frames.frame());
+        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        EXPECT_EQ(watch.waits + watch.submissions, 0);
+        frames.submit();
+        const std::uint64_t most = watch.bytes;
+        frames.drain();
+        (*scene)->complete(frames.completed());
+        EXPECT_LT(watch.bytes, most);
     }
     EXPECT_EQ(watch.bytes, 0U);
     expectNoValidationMessages();

@@ -20,6 +20,9 @@ constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
 constexpr MemoryDependency kToShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+constexpr MemoryDependency kToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 
 }  // namespace
 
@@ -70,10 +73,7 @@ Status Uploader::finish() {
     queued_.clear();
     current_ = 0;
     used_ = 0;
-    recordDependency(
-        *context_, *commands,
-        {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
+    recordDependency(*context_, *commands, kToAll);
     return runner_->submitAndWait();
 }
 
@@ -262,6 +262,12 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
     addReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, last);
     addReadable(VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, last, target.mips - given);
     addReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, target.mips - 1, 1);
+}
+
+void StagedCopies::record(VkCommandBuffer commands, std::uint64_t frameNumber) {
+    frame = frameNumber;
+    staging = uploader->record(commands);
+    recordDependency(context, commands, kToAll);
 }
 
 }  // namespace glint

@@ -112,6 +112,21 @@ private:
     std::unique_ptr<CommandRunner> runner_;  // null until something is submitted
 };
 
+// Copies that are recorded into a host's command buffer, with their staging memory.
+struct StagedCopies {
+    explicit StagedCopies(Context::State& contextState)
+        : context(contextState), pool(contextState), uploader(Uploader::createDeferred(contextState, pool)) {}
+
+    // Records what the uploader has, and makes it visible to all later commands.
+    void record(VkCommandBuffer commands, std::uint64_t frameNumber);
+
+    Context::State& context;
+    MemoryPool pool;  // of the staging memory. Members are destroyed in reverse order.
+    std::unique_ptr<Uploader> uploader;
+    std::vector<Buffer> staging;
+    std::uint64_t frame = 0;  // that the commands belong to
+};
+
 // Returns the bytes of an array of plain structures.
 template <typename T>
 std::span<const std::uint8_t> bytesOf(std::span<const T> elements) {

@@ -1,9 +1,9 @@
-#include "scene/compaction.h"
-
+// Compaction: copies of the bottom levels, and the top level over them.
 #include "context/vulkan_error.h"
 #include "edit/editor_state.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/scene_upload.h"
 
 #include <map>
 #include <utility>

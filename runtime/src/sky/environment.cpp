@@ -1,7 +1,6 @@
 // Environment: the map and its levels of roughness on the device.
 #include "context/upload.h"
 #include "context/vulkan_error.h"
-#include "renderer/pass_dependencies.h"
 #include "scene/half_float.h"
 #include "sky/environment_state.h"
 #include "sky/map_filter.h"
@@ -151,26 +150,19 @@ Result<std::shared_ptr<Environment::State>> makeState(Context& context, const Li
 
 }  // namespace
 
-// The staging memory of a recorded upload.
-struct Environment::Upload {
-    explicit Upload(Context::State& context) : pool(context) {}
-    MemoryPool pool;  // of the buffers, which are destroyed before
-    std::vector<Buffer> staging;
-    std::uint64_t frame = 0;
+struct Environment::Upload : StagedCopies {
+    using StagedCopies::StagedCopies;
 };
 
 Result<std::unique_ptr<Environment>> Environment::record(Context& context, const LinearImage& image,
                                                          const EnvironmentOptions& options,
                                                          VkCommandBuffer commands, std::uint64_t frame) {
     auto upload = std::make_unique<Upload>(context.state());
-    upload->frame = frame;
-    const std::unique_ptr<Uploader> uploader = Uploader::createDeferred(context.state(), upload->pool);
-    Result<std::shared_ptr<State>> state = makeState(context, image, options, *uploader);
+    Result<std::shared_ptr<State>> state = makeState(context, image, options, *upload->uploader);
     if (!state) {
         return state.error();
     }
-    upload->staging = uploader->record(commands);
-    recordDependency(context.state(), commands, kAllToAll);
+    upload->record(commands, frame);
     std::unique_ptr<Environment> environment(new Environment(std::move(*state)));
     environment->upload_ = std::move(upload);
     return environment;
