@@ -194,6 +194,11 @@ TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
     // Another frame while the first one may be on its way. The sizes of compacted copies are not known yet.
     commands = frames.begin();
     scene->complete(frames.completed());
+    if (GetParam() == Kind::Moving) {
+        const Status moved = scene->update(commands, source_->data.motion());
+        ASSERT_FALSE(moved.ok());
+        EXPECT_EQ(moved.error().id, "scene-upload");
+    }
     const Result<bool> early = scene->recordCompaction(commands, frames.frame());
     ASSERT_TRUE(early.ok());
     EXPECT_FALSE(*early);

@@ -26,8 +26,9 @@ public:
     // GpuScene::record(). `image` holds radiance in the units of the lights: red, green and blue in linear
     // Rec. 709. Alpha is not read. The first row is up (+Y). The middle of the image faces +X, and +Z is a
     // quarter of the width to the right of it, as in the Khronos viewers. Any size and aspect ratio is
-    // allowed, since the whole image covers the whole sphere. Negative channels count as 0. Errors: "environment-size" for an image without pixels;
-    // "environment-radiance", with the pixel, for NaN, infinity and anything above 1e18.
+    // allowed, since the whole image covers the whole sphere. Negative channels count as 0. Errors:
+    // "environment-size" for an image without pixels; "environment-radiance", with the pixel, for NaN,
+    // infinity and anything above 1e18.
     static Result<std::unique_ptr<Environment>> record(Context& context, const LinearImage& image,
                                                        const EnvironmentOptions& options,
                                                        VkCommandBuffer commands, std::uint64_t frame);

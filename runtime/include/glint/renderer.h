@@ -55,8 +55,8 @@ public:
     // The spans of `scene` are not kept (but see SceneView::streamsTextures). The call may run on any thread,
     // beside recordings of other scenes. Staging memory takes as many bytes as the scene's vertices and
     // textures, until complete() says that the frame is done. The scene may not be destroyed while the device
-    // executes the commands; it may be if they were never submitted. The first pose of a scene with
-    // SceneView::moves counts as an update().
+    // executes the commands; it may be if they were never submitted. A scene with SceneView::moves can be
+    // updated when isUploaded() returns true.
     //
     // Errors: "scene-package" (the package has no such scene, or the attributes disagree with it),
     // "position-fetch" and "half-precision" (the device was created without what the package needs),
@@ -139,7 +139,7 @@ public:
     // The spans are read in this call and not kept. Poses are written to host-visible memory in this call, so
     // only one update may be in flight at a time. The recorded commands must be submitted before the next
     // call, which builds upon them. With an error nothing is recorded. Errors: "scene-still" (the scene was
-    // uploaded without `moves`), "scene-motion" (another number of instances, lights, joints or weights than
+    // uploaded without `moves`), "scene-upload" (isUploaded() returns false), "scene-motion" (another number of instances, lights, joints or weights than
     // at upload, another mesh, or a number that is not finite), "scene-light", "scene-material" (other
     // materials than at upload).
     Status update(VkCommandBuffer commands, const MotionView& motion);
