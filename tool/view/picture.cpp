@@ -178,7 +178,6 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     if (Status read = readEnvironment(build, notes); !read) {
         return read;
     }
-    const base::Clock::time_point start = base::Clock::now();
     const RendererOptions options = optionsOf(build.settings, *build.package, width, height);
     const Result<bool> replaced = loaded ? Result<bool>(false) : replace(build, options);
     if (!replaced) {
@@ -192,6 +191,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
         if (!*loaded) {
             return loaded->error();
         }
+        const base::Clock::time_point start = base::Clock::now();
         if (Status adopted = adopt(std::move(**loaded), options, frame); !adopted) {
             return adopted;
         }
@@ -200,7 +200,8 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
             moment_.reset();
         }
         poseIsNew_ = false;
-        lastChange_ = fmt::format("scene uploaded in {:.0f} ms", base::millisecondsSince(start));
+        lastChange_ = fmt::format("upload recorded in {:.0f} ms, renderer made in {:.0f} ms",
+                                  device_.loaded.milliseconds, base::millisecondsSince(start));
     }
     build_ = std::move(build);
     settings_ = build_.settings;

@@ -1,5 +1,6 @@
 #include "view/scene_load.h"
 
+#include "base/clock.h"
 #include "view/vulkan.h"
 
 #include <glint/measure/render_settings.h>
@@ -66,6 +67,7 @@ Status OneTimeCommands::submit(const Context& context) {
 }
 
 Result<LoadedScene> loadScene(Context& context, SceneSource source, const gltf::Scene* posed) {
+    const base::Clock::time_point start = base::Clock::now();
     const gltf::Scene& scene = posed != nullptr ? *posed : *source.scene;
     const Package& package = *source.package;
     LoadedScene made;
@@ -93,6 +95,7 @@ Result<LoadedScene> loadScene(Context& context, SceneSource source, const gltf::
     }
     made.scene = std::move(*recorded);
     made.source = std::move(source);
+    made.milliseconds = base::millisecondsSince(start);
     return made;
 }
 

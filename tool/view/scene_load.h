@@ -56,6 +56,7 @@ struct LoadedScene {
     std::unique_ptr<scene_view::SceneViewData> data;
     std::unique_ptr<GpuScene> scene;
     OneTimeCommands commands;
+    double milliseconds = 0.0;  // of wall clock, until the upload was recorded
 };
 
 // Makes a scene with the coarse levels of its textures, of which GpuScene::textureStream() brings the others.
