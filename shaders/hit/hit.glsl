@@ -123,6 +123,7 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
                                instance.normalToWorld);
 #if GLINT_PATHS
     hit.inset = edgeInset(weights, hit.edges[0], hit.edges[1], 2.0 * hit.clearance);
+    hit.arrival.media = uvec2(0u);
 #endif
 
     hit.normal = front;

@@ -6,7 +6,7 @@
 struct PathArrival {
     vec3 start;         // of the ray that found the hit
     vec3 throughput;    // at the start of that ray
-    uint medium;        // as in PathState
+    uvec2 media;        // as in PathState
     float coneWidth;    // at the hit, metres
     float coneSpread;
 };
@@ -17,7 +17,7 @@ struct PathStep {
     vec3 throughput;
     float density;
     float coneSpread;
-    uint medium;
+    uvec2 media;
 #if GLINT_EMISSIVE_LIGHTS
     uint receiver;      // LobeRay::normal
 #endif
@@ -32,7 +32,7 @@ PathStep endOfPath() {
     step.throughput = vec3(0.0);
     step.density = 0.0;
     step.coneSpread = 0.0;
-    step.medium = 0u;
+    step.media = uvec2(0u);
 #if GLINT_EMISSIVE_LIGHTS
     step.receiver = 0u;
 #endif
@@ -57,12 +57,12 @@ uint dimensionOfBounce(uint dimension) {
 // `place` is that of the sample (samplePlace()).
 PathArrival arrivalOf(uint place, vec3 start, float coneWidth, float coneSpread) {
     PathState path = GLINT_FRAME.paths.data[place];
-    return PathArrival(start, path.throughput, path.medium, coneWidth, coneSpread);
+    return PathArrival(start, path.throughput, uvec2(path.media[0], path.media[1]), coneWidth, coneSpread);
 }
 
 // The path of a sample before its first hit.
 void beginPath(uint place) {
-    GLINT_FRAME.paths.data[place] = PathState(vec3(1.0), 0u);
+    GLINT_FRAME.paths.data[place] = PathState(vec3(1.0), uint[2](0u, 0u));
 }
 
 void endPath(uint place) {

@@ -4,7 +4,7 @@
 // Rays see the front of single-sided surfaces, as the camera does. Within a volume they see its back, too.
 uint rayFlags(uint target) {
 #if GLINT_PATHS
-    if (GLINT_FRAME.bounce > 1u && GLINT_FRAME.paths.data[samplePlace(target)].medium != 0u) {
+    if (GLINT_FRAME.bounce > 1u && GLINT_FRAME.paths.data[samplePlace(target)].media[0] != 0u) {
         return 0u;
     }
 #endif

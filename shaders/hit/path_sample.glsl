@@ -9,6 +9,7 @@
 #include "host/random.glsl"
 #include "host/sky.glsl"
 #include "materials/volume/attenuation.glsl"
+#include "hit/media.glsl"
 
 // The pairs of dimensions of the sequence: a direction; a lobe, and whether the path survives.
 const uint kPairPathDirection = 6u;
@@ -22,21 +23,17 @@ const float kMostPathSpread = 0.125;
 vec3 arrivingShare(PathArrival arrival, vec3 position) {
     vec3 share = arrival.throughput;
 #ifdef GLINT_RECORD_ABSORPTION
-    if (arrival.medium != 0u && GLINT_FRAME.bounce > 1u) {
-        vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[arrival.medium - 1u]);
+    if (isWithin(arrival.media) && GLINT_FRAME.bounce > 1u) {
+        vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[innermostMaterial(arrival.media)]);
         share *= volumeTransmittance(absorption, distance(position, arrival.start));
     }
 #endif
     return share;
 }
 
-// The medium of a ray from the hit, as in PathState.
-uint mediumBeyond(Hit hit, Features features, bool passes) {
-    uint medium = hit.arrival.medium;
-    if (passes && hasLobe(features, GLINT_VOLUME)) {
-        medium = hit.frontFace ? hit.material + 1u : 0u;
-    }
-    return medium;
+// The volumes of a ray from the hit.
+Media mediaOfStep(Hit hit, Features features, bool passes) {
+    return passes && hasLobe(features, GLINT_VOLUME) ? mediaBeyond(hit, hit.arrival.media) : hit.arrival.media;
 }
 
 #if GLINT_SHADOW_GLASS
@@ -86,7 +83,7 @@ PathStep nextStep(Hit hit, Surface surface, Features features,
     // A sample stands for a solid angle of 1 / density. Its cone fills it, up to the width that keeps textures sharp
     // enough for the mean of many samples.
     step.coneSpread = max(hit.arrival.coneSpread, min(kMostPathSpread, inversesqrt(drawn.pdf)));
-    step.medium = mediumBeyond(hit, features, passes);
+    step.media = mediaOfStep(hit, features, passes);
 #if GLINT_EMISSIVE_LIGHTS
     step.receiver = receiverNormal(hit, features);
 #if GLINT_SHADOW_GLASS
@@ -114,7 +111,7 @@ PathStep straightStep(Hit hit, vec3 arriving) {
     step.direction = -hit.view;
     step.throughput = arriving;
     step.coneSpread = hit.arrival.coneSpread;
-    step.medium = hit.arrival.medium;
+    step.media = hit.arrival.media;
 #if GLINT_SKY_LIGHT
     step.skyShare = storedSkyShare(hit.target);
 #endif
@@ -131,7 +128,7 @@ void storePath(Hit hit, PathStep step) {
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(rayOrigin(hit, step.direction), kRaySent);
     GLINT_FRAME.sampleAims.data[place] = SampleAim(step.direction, hit.arrival.coneWidth);
     GLINT_FRAME.sampleWeights.data[place].coneSpread = step.coneSpread;
-    GLINT_FRAME.paths.data[place] = PathState(step.throughput, step.medium);
+    GLINT_FRAME.paths.data[place] = PathState(step.throughput, uint[2](step.media.x, step.media.y));
 #if GLINT_EMISSIVE_LIGHTS
     storeLobeRay(hit.target, step.density, step.receiver);
 #endif

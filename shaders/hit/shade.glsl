@@ -83,7 +83,7 @@ uint seenTowardsShared(Hit hit, Features features, uint emitter, vec3 direction,
     return (floatBitsToUint(1.0 / part) & ~kShadowKind) | kShadowPastGlass;
 #elif GLINT_PATHS
     bool passes = dot(direction, hit.geometricNormal) < 0.0;
-    return mediumBeyond(hit, features, passes) == 0u ? kShadowOfShared : kShadowOfSharedWithin;
+    return !isWithin(mediaOfStep(hit, features, passes)) ? kShadowOfShared : kShadowOfSharedWithin;
 #else
     return kShadowOfSharedWithin;
 #endif
@@ -334,7 +334,7 @@ ShadeResult shadeAlone(Hit hit, Features features) {
 // Returns what of that light arrives at the primary surface.
 ShadeResult shade(Hit hit, Features features) {
     vec3 arriving = arrivingShare(hit.arrival, hit.position);
-    if (hit.arrival.medium != 0u && !hit.frontFace && !showsBack(features)) {
+    if (isWithin(hit.arrival.media) && !hit.frontFace && !showsBack(features)) {
         // Only rays within a volume meet the back of a single-sided surface. It is not there.
         ShadeResult result = darkness();
         if (pathGoesOn()) {

@@ -77,10 +77,10 @@ struct RayRecord {
 };
 
 // How the path of a sample goes on. There is one for each sample, in packages with paths of several bounces. The next
-// ray takes the place of the last one in the sample's records. 16 bytes.
+// ray takes the place of the last one in the sample's records. 20 bytes.
 struct PathState {
     vec3 throughput;  // factor of the radiance that the ray finds, since the primary surface
-    uint medium;      // 1 + index of the material whose volume the ray is in; 0 for none
+    uint media[2];    // volumes that the ray is in (hit/media.glsl)
 };
 
 // What a ray hit. Its index is that of the ray in the list. 20 bytes.

@@ -54,7 +54,10 @@ struct LobeRay {
     uint normal;    // of the surface that sent it: LightReceiver::packed
 };
 
-// A node of the hierarchy of lights, and bounds of what is below it. 56 bytes.
+// The largest value of a share in a node.
+GLINT_CONSTANT(kLightShares, 1023u);
+
+// A node of the hierarchy of lights: bounds of what is below it, and where in them the light comes from. 64 bytes.
 struct LightNode {
     vec3 lower;         // box of the positions
     float intensity;    // sum of the luminance, candela
@@ -66,6 +69,10 @@ struct LightNode {
     float cosEmission;  // cosine of the most angle between the axis of a light and a direction in which it shines
     uint next;          // index of the second child, after which all its descendants come; the first child is the next
                         // node. Or kLightLeaf and a light
+    // The mean of the positions and their standard deviation, weighted by intensity: shares of the box and of half of it,
+    // 10 bits for each axis from the lowest on (kLightShares).
+    uint mean3x10;
+    uint deviation3x10;
 };
 
 GLINT_INTEROP_END

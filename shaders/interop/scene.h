@@ -63,7 +63,7 @@ GLINT_INTEROP_END
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer GeometryArray { GeometryRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer InstanceArray { InstanceRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LightArray { LightRecord data[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LightNodeArray { LightNode data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer LightNodeArray { LightNode data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EmitterArray { EmitterRecord data[]; };
 #endif
 #endif

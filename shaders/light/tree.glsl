@@ -7,6 +7,8 @@
 
 // The least factor for the angle under which a node is seen. It keeps lights at the edge of their cone reachable.
 const float kMinLightFacing = 0.05;
+// The least squared distance to a point that stands for lights, as a share of their variance.
+const float kLightSpread = 0.25;
 // What the cosines of bounds may lose to rounding.
 const float kLightCosineSlack = 1e-3;
 // The distance between random numbers. Each choice divides it by the probability of what was chosen.
@@ -52,6 +54,47 @@ vec3 unpackReceiver(uint packedNormal) {
     return packedNormal == kBothSides ? vec3(0.0) : normal;
 }
 
+vec3 sharesOf(uint packedShares) {
+    uvec3 shares = uvec3(packedShares, packedShares >> 10, packedShares >> 20) & kLightShares;
+    precise vec3 result = vec3(shares) * (1.0 / float(kLightShares));
+    return result;
+}
+
+// The mean of cos θ / d² over the lights of a node, from four points: a standard deviation from their mean along the two
+// axes on which they vary most. One point would bring far too little where the surface is close to some of them. `away`
+// is from that mean to the surface.
+float meanOfNode(vec3 away, vec3 deviation, vec3 normal) {
+    bool flatX = deviation.x <= deviation.y && deviation.x <= deviation.z;
+    bool flatY = !flatX && deviation.y <= deviation.z;
+    vec3 first = flatX ? vec3(0.0, deviation.y, 0.0) : vec3(deviation.x, 0.0, 0.0);
+    vec3 second = flatX || flatY ? vec3(0.0, 0.0, deviation.z) : vec3(0.0, deviation.y, 0.0);
+    const vec4 kFirst = vec4(1.0, 1.0, -1.0, -1.0);
+    const vec4 kSecond = vec4(1.0, -1.0, 1.0, -1.0);
+    precise vec4 squares = (dot(away, away) + dot(first, first) + dot(second, second)) -
+                           2.0 * (dot(away, first) * kFirst + dot(away, second) * kSecond);
+    // Around each point are the lights that it stands for.
+    precise float least = kLightSpread * dot(deviation, deviation);
+    squares = max(squares, max(least, kMinSquaredDistance));
+    precise vec4 inverse = inversesqrt(squares);
+    precise vec4 cosines = vec4(1.0);
+    if (normal != vec3(0.0)) {
+        precise vec4 heights = dot(normal, first) * kFirst + dot(normal, second) * kSecond - dot(normal, away);
+        cosines = max(heights * inverse, kMinLightFacing);
+    }
+    precise vec4 terms = cosines * (inverse * inverse);
+    precise float mean = 0.25 * (terms.x + terms.y + terms.z + terms.w);
+    return mean;
+}
+
+// Whether all of a node's box is below a surface. `away` is from the middle of the box to the surface, and `radius` is
+// half of the box.
+bool isBelow(vec3 normal, vec3 away, vec3 radius, float squared) {
+    precise float highest = dot(abs(normal), radius) - dot(normal, away);
+    // (|away| + |radius|)² is no more than twice the sum of the squares.
+    precise float slack2 = 2.0 * kLightCosineSlack * kLightCosineSlack * (squared + dot(radius, radius));
+    return highest < 0.0 && highest * highest > slack2;
+}
+
 // An estimate of the irradiance that the lights of a node bring to a surface, without shadows. It is 0 only if they
 // bring none.
 float lightImportance(LightNode node, LightReceiver receiver) {
@@ -61,16 +104,19 @@ float lightImportance(LightNode node, LightReceiver receiver) {
     if (gap > node.reach * node.reach) {
         return 0.0;
     }
-    precise vec3 radius = 0.5 * (node.upper - node.lower);
+    precise vec3 size = node.upper - node.lower;
+    precise vec3 radius = 0.5 * size;
     precise vec3 away = position - 0.5 * (node.lower + node.upper);
-    precise float radius2 = dot(radius, radius);
     precise float squared = dot(away, away);
+    if (isBelow(receiver.normal, away, radius, squared)) {
+        return 0.0;
+    }
+    precise float radius2 = dot(radius, radius);
     float facing = 1.0;
-    float incidence = 1.0;
-    if (squared > radius2) {
+    // With points among them the lights shine everywhere.
+    if (node.cosAxes > -1.0 && squared > radius2) {
         // The least angle between the axis of some light and its direction to the point.
-        precise float apart = sqrt(squared);
-        precise float cosine = clamp(dot(node.axis, away) / apart, -1.0, 1.0);
+        precise float cosine = clamp(dot(node.axis, away) / sqrt(squared), -1.0, 1.0);
 #if GLINT_EMISSIVE_LIGHTS
         cosine = node.reach < 0.0 ? abs(cosine) : cosine;
 #endif
@@ -81,18 +127,11 @@ float lightImportance(LightNode node, LightReceiver receiver) {
             return 0.0;
         }
         facing = max(least.x, kMinLightFacing);
-        if (receiver.normal != vec3(0.0)) {
-            // The least angle between the normal and the direction to some light.
-            precise float above = clamp(-dot(receiver.normal, away) / apart, -1.0, 1.0);
-            vec2 highest = angleBeyond(withSine(above), box);
-            if (highest.x < -kLightCosineSlack) {
-                return 0.0;
-            }
-            incidence = max(highest.x, kMinLightFacing);
-        }
     }
-    // Within its box a light may be anywhere.
-    precise float importance = node.intensity * facing * incidence / max(max(squared, radius2), kMinSquaredDistance);
+    precise vec3 mean = node.lower + size * sharesOf(node.mean3x10);
+    precise vec3 deviation = radius * sharesOf(node.deviation3x10);
+    precise float importance =
+        node.intensity * facing * meanOfNode(position - mean, deviation, receiver.normal);
     return importance;
 }
 

@@ -527,6 +527,48 @@ TEST_F(WindowTest, FollowsFilesThatChange) {
     EXPECT_GT(shareDiffering(first, image("later.png"), 0, kWidth, kHeight), 0.05);
 }
 
+// The first frames have the coarse levels of a texture. Those that follow make the picture of `glint render`,
+// but for the rounding of levels that the device makes there.
+TEST_F(WindowTest, FinerLevelsOfTexturesFollow) {
+    const fs::path scene = writeTinyScene(path(""));
+    constexpr std::uint32_t kTexels = 256;
+    image::DisplayImage noise{kTexels, kTexels, {}};
+    for (std::uint32_t i = 0; i < kTexels * kTexels; ++i) {
+        const auto value = static_cast<std::uint8_t>(i * 2654435761U >> 24U);
+        noise.pixels.push_back({value, static_cast<std::uint8_t>(255 - value), 90});
+    }
+    ASSERT_TRUE(image::writeImage(path("noise.png"), noise));
+    Json gltf = Json::parse(readText(scene));
+    // Texture coordinates of the wall are X and Y of its positions.
+    Json positions = gltf["bufferViews"][3];
+    positions["byteStride"] = 12;
+    gltf["bufferViews"].push_back(positions);
+    gltf["accessors"].push_back({{"bufferView", gltf["bufferViews"].size() - 1},
+                                 {"componentType", 5126},
+                                 {"count", 4},
+                                 {"type", "VEC2"}});
+    gltf["meshes"][1]["primitives"][0]["attributes"]["TEXCOORD_0"] = gltf["accessors"].size() - 1;
+    gltf["images"] = {{{"uri", "noise.png"}}};
+    gltf["textures"] = {{{"source", 0}}};
+    gltf["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+    writeText(scene, gltf.dump());
+    const Outcome outcome = view(R"(
+        wait complete
+        report done.json
+        key p
+        wait complete
+        quit
+    )",
+                                 {"--verbose"});
+    EXPECT_TRUE(has(outcome.out + outcome.err, "all levels of the textures")) << outcome.err;
+    EXPECT_EQ(report("done.json").at("missingLevels"), 0);
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    fs::rename(path("scene-001.png"), path("shot.png"));
+    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
+    ASSERT_EQ(again.exit, 0) << again.err;
+    EXPECT_LT(shareDiffering(image("shot.png"), image("scene-001.png")), 0.02);
+}
+
 TEST_F(WindowTest, RefusesWhatItCantDo) {
     writeTinyScene(path(""));
     writeText(path("script"), "wait complete\nfly to the moon\n");

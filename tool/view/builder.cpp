@@ -266,8 +266,9 @@ Status Builder::makePackage(Build& build) {
 }
 
 Status Builder::readTextures(Build& build) {
-    const scene_view::TextureOptions options =
+    scene_view::TextureOptions options =
         measure::textureOptions(build.settings, context_, *build.package, request_.store);
+    options.fit.allLevels = true;  // so that the coarse ones can be there first
     const std::string key = fmt::format("{} {}", options.fit.compress, options.fit.decodeEmission);
     if (!textures_ || key != texturesKey_) {
         say("reading textures");

@@ -8,10 +8,12 @@
 #include <glint/scene_view/package.h>
 #include <glint/scene_view/pose.h>
 #include <glint/scene_view/textures.h>
+#include <glint/texture_stream.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace glint::view {
@@ -82,44 +84,66 @@ Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& not
     return okStatus();
 }
 
-Result<Picture::Device> Picture::upload(const Build& build, const RendererOptions& options, bool moves) {
-    const gltf::Scene& scene = moves ? *posed_ : *build.scene;
+SceneSource Picture::sourceOf(const Build& build) {
+    return {build.settings, build.scene, build.package, build.textures};
+}
+
+// Whether the scene on the device can go on with the build's package.
+bool Picture::isSameScene(const Build& build) const {
+    // A scene that moves has its materials from the scene that it was read with.
+    return isReady() &&
+           (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
+           build.textures == build_.textures && uploadsAlike(build.settings, build_.settings);
+}
+
+bool Picture::load(const Build& build) {
+    const bool moves = posed_ && build.scene == build_.scene;
+    if (moves || isSameScene(build)) {
+        return false;
+    }
+    loading_ = std::async(std::launch::async, [&context = context_, source = sourceOf(build)]() mutable {
+        return loadScene(context, std::move(source), nullptr);
+    });
+    return true;
+}
+
+bool Picture::isLoading() const {
+    return loading_.valid() && loading_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+// Makes a renderer for the scene, and submits its upload. Frames in flight go on with the scene before.
+Status Picture::adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame) {
     Device made;
-    made.data = std::make_unique<scene_view::SceneViewData>(measure::sceneView(build.settings, scene));
-    made.data->packageScene = scene_view::sceneIn(*build.package, scene).value_or(0);
-    made.data->moves = moves;
-    scene_view::useLayoutOf(*build.package, scene, *made.data);
-    scene_view::useTextures(build.textures, *made.data);
-    if (moves) {
-        scene_view::poseSceneView(scene, *made.data);
-        measure::sizeLights(build.settings, *made.data);
-    }
-    Result<std::unique_ptr<GpuScene>> uploaded =
-        GpuScene::upload(context_, *build.package, made.data->view());
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    made.scene = std::move(*uploaded);
+    made.loaded = std::move(loaded);
+    // It waits for the queue, and the upload need not be in it yet.
     Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(context_, *build.package, *made.scene, options);
+        Renderer::create(context_, *made.loaded.source.package, *made.loaded.scene, options);
     if (!renderer) {
         return renderer.error();
     }
     made.renderer = std::move(*renderer);
-    return made;
+    if (Status submitted = made.loaded.commands.submit(context_); !submitted) {
+        return submitted;
+    }
+    made.uploadedIn = frame;
+    if (isReady()) {
+        // The frame may not be there yet that follows its upload.
+        retired_.push_back({frame, std::move(device_)});
+    }
+    device_ = std::move(made);
+    levelsIn_ = frame;
+    levelsAreNew_ = true;
+    recordedIn_ = 0;
+    inFlight_.clear();
+    return okStatus();
 }
 
 // Returns whether the scene on the device goes on with the new package.
 Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
-    // A scene that moves has its materials from the scene that it was read with.
-    const bool isSameScene =
-        renderer_ &&
-        (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
-        build.textures == build_.textures && uploadsAlike(build.settings, build_.settings);
-    if (!isSameScene) {
+    if (!isSameScene(build)) {
         return false;
     }
-    const Result<PackageReplacement> replaced = renderer_->replacePackage(build.package);
+    const Result<PackageReplacement> replaced = device_.renderer->replacePackage(build.package);
     if (!replaced) {
         return false;  // the scene is uploaded anew; if that fails, too, its error says why
     }
@@ -130,52 +154,59 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     }
     // The scene changes to the package with a sample of the renderer that it has. Then it can get another
     // one.
-    renderer_->waitForPipelines();
-    if (recordedIn_ == 0 || !renderer_->renderSamples(lastFrame_, 1)) {
+    device_.renderer->waitForPipelines();
+    if (recordedIn_ == 0 || !device_.renderer->renderSamples(lastFrame_, 1)) {
         return false;
     }
     Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(context_, *build.package, *gpuScene_, options);
+        Renderer::create(context_, *build.package, gpuScene(), options);
     if (!renderer) {
         return renderer.error();
     }
-    renderer_ = std::move(*renderer);
+    device_.renderer = std::move(*renderer);
     inFlight_.clear();
-    lastChange_ = fmt::format("{} pipelines made", renderer_->footprint().pipelines);
+    lastChange_ = fmt::format("{} pipelines made", device_.renderer->footprint().pipelines);
     return true;
 }
 
-Status Picture::install(Build build, std::uint32_t width, std::uint32_t height,
+Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
                         std::vector<Diagnostic>& notes) {
+    std::optional<Result<LoadedScene>> loaded;
+    if (loading_.valid()) {
+        loaded = loading_.get();
+    }
     if (Status read = readEnvironment(build, notes); !read) {
         return read;
     }
-    const base::Clock::time_point start = base::Clock::now();
     const RendererOptions options = optionsOf(build.settings, *build.package, width, height);
-    const Result<bool> replaced = replace(build, options);
+    const Result<bool> replaced = loaded ? Result<bool>(false) : replace(build, options);
     if (!replaced) {
         return replaced.error();
     }
     if (!*replaced) {
+        const bool keepsPose = posed_ && build.scene == build_.scene;
+        if (!loaded) {
+            loaded = loadScene(context_, sourceOf(build), keepsPose ? posed_.get() : nullptr);
+        }
+        if (!*loaded) {
+            return loaded->error();
+        }
+        const base::Clock::time_point start = base::Clock::now();
+        if (Status adopted = adopt(std::move(**loaded), options, frame); !adopted) {
+            return adopted;
+        }
         if (build.scene != build_.scene) {
             posed_.reset();
             moment_.reset();
         }
-        Result<Device> made = upload(build, options, posed_ != nullptr);
-        if (!made) {
-            return made.error();
-        }
-        renderer_ = std::move(made->renderer);
-        gpuScene_ = std::move(made->scene);
-        data_ = std::move(made->data);
-        uploaded_ = build.scene;
-        inFlight_.clear();
-        lastChange_ = fmt::format("scene uploaded in {:.0f} ms", base::millisecondsSince(start));
+        poseIsNew_ = false;
+        lastChange_ = fmt::format("upload recorded in {:.0f} ms, renderer made in {:.0f} ms",
+                                  device_.loaded.milliseconds, base::millisecondsSince(start));
     }
     build_ = std::move(build);
     settings_ = build_.settings;
     options_ = options;
-    sky_ = measure::chooseSky(settings_, scene(), *data_);
+    sky_ = measure::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
 }
@@ -184,43 +215,40 @@ Status Picture::change(const compiler::Settings& settings, std::uint32_t width, 
     const RendererOptions options = optionsOf(settings, *build_.package, width, height);
     if (!drawAlike(options, options_)) {
         Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(context_, *build_.package, *gpuScene_, options);
+            Renderer::create(context_, *build_.package, gpuScene(), options);
         if (!renderer) {
             return renderer.error();
         }
-        renderer_ = std::move(*renderer);
+        device_.renderer = std::move(*renderer);
         options_ = options;
         inFlight_.clear();
     }
     settings_ = settings;
-    sky_ = measure::chooseSky(settings_, scene(), *data_);
+    sky_ = measure::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
 }
 
-Status Picture::pose(const std::optional<Moment>& moment) {
+Status Picture::pose(const std::optional<Moment>& moment, std::uint64_t frame) {
     if (moment == moment_) {
         return okStatus();
     }
     if (!posed_) {
         auto copy = std::make_unique<gltf::Scene>(*build_.scene);
         std::swap(posed_, copy);
-        Result<Device> made = upload(build_, options_, true);
-        if (!made) {
+        Result<LoadedScene> loaded = loadScene(context_, sourceOf(build_), posed_.get());
+        const Status adopted = loaded ? adopt(std::move(*loaded), options_, frame) : Status(loaded.error());
+        if (!adopted) {
             posed_.reset();
-            return made.error();
+            return adopted;
         }
-        renderer_ = std::move(made->renderer);
-        gpuScene_ = std::move(made->scene);
-        data_ = std::move(made->data);
-        inFlight_.clear();
     }
     moment_ = moment;
     scene_view::applyPose(moment ? scene_view::poseAt(*posed_, moment->animations, moment->seconds)
                                  : scene_view::restPose(*posed_),
                           *posed_);
-    scene_view::poseSceneView(*posed_, *data_);
-    measure::sizeLights(settings_, *data_);
+    scene_view::poseSceneView(*posed_, *device_.loaded.data);
+    measure::sizeLights(settings_, *device_.loaded.data);
     poseIsNew_ = true;
     restart();
     return okStatus();
@@ -228,29 +256,44 @@ Status Picture::pose(const std::optional<Moment>& moment) {
 
 Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timing timing,
                        std::uint64_t number) {
-    if (poseIsNew_) {
-        if (Status moved = gpuScene_->update(commands, data_->motion()); !moved) {
+    if (const Result<bool> compacted = gpuScene().recordCompaction(commands, number); !compacted) {
+        return compacted.error();
+    }
+    // The upload has the memory of poses until the device is done with it.
+    if (poseIsNew_ && gpuScene().isUploaded()) {
+        if (Status moved = gpuScene().update(commands, data().motion()); !moved) {
             return moved;
         }
         poseIsNew_ = false;
+        restart();
     }
-    if (renderer_->replacementProgress().ready) {
+    if (missingLevels() > 0) {
+        const Result<std::uint32_t> levels = gpuScene().textureStream()->record(commands, number);
+        if (!levels) {
+            return levels.error();
+        }
+        levelsIn_ = number;
+        if (*levels > 0) {
+            restart();
+        }
+    }
+    if (device_.renderer->replacementProgress().ready) {
         restart();
     }
     FrameOptions frame = measure::frameOptions(settings_, camera, sky_, environment_.get());
     frame.timing = timing;
     frame.sampleIndex = samples_;
     frame.time = moment_ ? static_cast<float>(moment_->seconds) : 0.0F;
-    const bool wasDraft = renderer_->pipelineProgress().draft;
+    const bool wasDraft = device_.renderer->pipelineProgress().draft;
     lastFrame_ = frame;
     lastFrame_.sampleIndex = 0;
     lastFrame_.timing = Timing::Frame;
-    if (Status recorded = renderer_->record(commands, frame); !recorded) {
+    if (Status recorded = device_.renderer->record(commands, frame); !recorded) {
         return recorded;
     }
     samples_ = wasDraft ? 0 : samples_ + 1;
     recordedIn_ = number;
-    inFlight_.push_back({number, renderer_->recordings()});
+    inFlight_.push_back({number, device_.renderer->recordings()});
     return okStatus();
 }
 
@@ -261,8 +304,23 @@ void Picture::completed(std::uint64_t number) {
         return one.frame <= number;
     });
     if (recording > 0) {
-        renderer_->finished(recording);
+        device_.renderer->finished(recording);
     }
+    if (isReady() && device_.uploadedIn <= number) {
+        gpuScene().complete(number);
+        device_.loaded.commands = OneTimeCommands();
+    }
+    std::erase_if(retired_, [&](const RetiredDevice& one) { return one.frame <= number; });
+}
+
+std::uint32_t Picture::missingLevels() const {
+    return isReady() ? device_.loaded.scene->textureStream()->progress().textures : 0;
+}
+
+bool Picture::takeAllLevels(std::uint64_t completed) {
+    const bool has = levelsAreNew_ && missingLevels() == 0 && levelsIn_ <= completed;
+    levelsAreNew_ = levelsAreNew_ && !has;
+    return has;
 }
 
 }  // namespace glint::view

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "view/builder.h"
+#include "view/scene_load.h"
 
 #include <glint/environment.h>
 #include <glint/renderer.h>
@@ -9,6 +10,7 @@
 #include <glint/scene_view/sky.h>
 
 #include <cstdint>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,21 +41,36 @@ class Picture {
 public:
     explicit Picture(Context& context) : context_(context) {}
 
-    // Takes a build. Keeps scene, buffers and pipelines that it has in common with the one before; the device
-    // must be idle. An error leaves the picture as it was, except that an environment may be another one.
-    // `size` is in pixels. Errors are those of the runtime and of reading environment maps, and
-    // "half-precision" and "position-fetch" where the device lacks what the build needs.
-    Status install(Build build, std::uint32_t width, std::uint32_t height, std::vector<Diagnostic>& notes);
+    // Begins to record the upload of a build's scene on a thread, if install() will need it, and returns
+    // whether it has. The build can be installed when the
+    // thread is done.
+    bool load(const Build& build);
+    bool isLoading() const;
+    // Whether it has begun, and install() was not called since.
+    bool hasLoaded() const {
+        return loading_.valid();
+    }
+    // Forgets it. Waits for the thread.
+    void cancelLoad() {
+        loading_ = {};
+    }
+    // Takes a build. Keeps scene, buffers and pipelines that it has in common with the one before. The device
+    // must be idle unless load() has begun. `frame` is the number of the next frame, which is submitted after
+    // the upload. An error leaves the picture as it was, except that an environment may be another one.
+    // `width` and `height` are in pixels. Errors are those of the runtime and of reading environment maps,
+    // and "half-precision" and "position-fetch" where the device lacks what the build needs.
+    Status install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
+                   std::vector<Diagnostic>& notes);
     // Takes settings of stages after the package, or another size. The device must be idle unless
     // changeBetween() is Change::Frame.
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
 
-    // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move; the
-    // device must be idle.
-    Status pose(const std::optional<Moment>& moment);
+    // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move,
+    // before the frame `frame`. The device must be idle.
+    Status pose(const std::optional<Moment>& moment, std::uint64_t frame);
 
     bool isReady() const {
-        return renderer_ != nullptr;
+        return device_.renderer != nullptr;
     }
     // Begins the mean over samples anew.
     void restart() {
@@ -66,8 +83,12 @@ public:
     }
     // Also if it can't be drawn as its settings ask for.
     bool isComplete() const {
-        return samples_ >= settings_.samples || fails_;
+        return (samples_ >= settings_.samples && !poseIsNew_ && missingLevels() == 0) || fails_;
     }
+    // How many textures have levels that no frame has got yet.
+    std::uint32_t missingLevels() const;
+    // Returns once after each upload whether the device has all levels of the textures.
+    bool takeAllLevels(std::uint64_t completed);
     // Draws nothing until the settings or the camera change.
     void skip() {
         fails_ = true;
@@ -88,13 +109,13 @@ public:
         return posed_ ? *posed_ : *build_.scene;
     }
     const scene_view::SceneViewData& data() const {
-        return *data_;
+        return *device_.loaded.data;
     }
     Renderer& renderer() {
-        return *renderer_;
+        return *device_.renderer;
     }
     GpuScene& gpuScene() {
-        return *gpuScene_;
+        return *device_.loaded.scene;
     }
     const std::optional<Moment>& moment() const {
         return moment_;
@@ -109,12 +130,15 @@ public:
     }
 
 private:
+    // A scene on the device. Members are destroyed in reverse order.
     struct Device {
-        std::unique_ptr<scene_view::SceneViewData> data;
-        std::unique_ptr<GpuScene> scene;
+        LoadedScene loaded;
         std::unique_ptr<Renderer> renderer;
+        std::uint64_t uploadedIn = 0;  // frame that is done after the upload
     };
-    Result<Device> upload(const Build& build, const RendererOptions& options, bool moves);
+    static SceneSource sourceOf(const Build& build);
+    bool isSameScene(const Build& build) const;
+    Status adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame);
     Status readEnvironment(const Build& build, std::vector<Diagnostic>& notes);
     RendererOptions optionsOf(const compiler::Settings& settings, const Package& package, std::uint32_t width,
                               std::uint32_t height) const;
@@ -129,11 +153,17 @@ private:
     std::shared_ptr<Environment> environment_;
     std::string environmentKey_;
     scene_view::SkyChoice sky_;
-    // Destroyed in reverse order.
-    std::shared_ptr<const gltf::Scene> uploaded_;  // to which `data_` points, unless the scene moves
-    std::unique_ptr<scene_view::SceneViewData> data_;
-    std::unique_ptr<GpuScene> gpuScene_;
-    std::unique_ptr<Renderer> renderer_;
+    Device device_;
+    std::uint64_t levelsIn_ = 0;  // frame that has got the last levels of textures
+    bool levelsAreNew_ = false;   // takeAllLevels() has not told yet
+    // Those before, while frames may use them.
+    struct RetiredDevice {
+        std::uint64_t frame = 0;
+        Device device;
+    };
+    std::vector<RetiredDevice> retired_;
+    // By load(). Its destructor waits for the thread.
+    std::future<Result<LoadedScene>> loading_;
     RendererOptions options_;
     FrameOptions lastFrame_;  // as recorded last
     std::uint32_t samples_ = 0;

@@ -41,6 +41,11 @@ Window::Window(const Request& request) : request_(request), scene_(request.scene
 
 Window::~Window() {
     builder_.reset();
+    for (const std::unique_ptr<Side>& one : sides_) {
+        if (one) {
+            one->picture.cancelLoad();
+        }
+    }
     if (context_) {
         vkDeviceWaitIdle(context_->handles().device);
         request_.closing(*context_);
@@ -232,8 +237,8 @@ void Window::order(std::size_t index, bool reread) {
 
 bool Window::isComplete() const {
     for (std::size_t i = 0; i < kPictures; ++i) {
-        if (sides_[i] &&
-            (builder_->isBusy(i) || (sides_[i]->picture.isReady() && !sides_[i]->picture.isComplete()))) {
+        if (sides_[i] && (builder_->isBusy(i) || sides_[i]->loading != nullptr ||
+                          (sides_[i]->picture.isReady() && !sides_[i]->picture.isComplete()))) {
             return false;
         }
     }
@@ -328,9 +333,21 @@ Status Window::takeBuilds() {
         report(message);
     }
     for (std::size_t i = 0; i < kPictures; ++i) {
-        std::optional<Result<Build>> done = builder_->poll(i);
-        if (!done || !sides_[i]) {
+        if (sides_[i] && sides_[i]->loading != nullptr && sides_[i]->picture.isLoading()) {
             continue;
+        }
+        std::optional<Result<Build>> done;
+        if (sides_[i] && sides_[i]->loading != nullptr) {
+            done = std::move(*std::exchange(sides_[i]->loading, nullptr));
+        } else {
+            done = builder_->poll(i);
+            if (!done || !sides_[i]) {
+                continue;
+            }
+            if (*done && sides_[i]->picture.load(**done)) {
+                sides_[i]->loading = std::make_unique<Build>(std::move(**done));
+                continue;
+            }
         }
         Status installed = *done ? install(i, std::move(**done)) : Status((*done).error());
         sides_[i]->buildFailed = !installed;
@@ -351,8 +368,10 @@ Status Window::takeBuilds() {
 
 Status Window::install(std::size_t index, Build build) {
     Side& one = *sides_[index];
-    if (Status waited = presenter_->waitForFrames(); !waited) {
-        return waited;
+    if (!one.picture.hasLoaded()) {
+        if (Status waited = presenter_->waitForFrames(); !waited) {
+            return waited;
+        }
     }
     finishSamples();
     const bool isOtherScene =
@@ -364,7 +383,8 @@ Status Window::install(std::size_t index, Build build) {
     std::vector<Diagnostic> notes;
     const auto width = std::max(static_cast<std::uint32_t>(area_.width / divisor_), kLeastSize);
     const auto height = std::max(static_cast<std::uint32_t>(area_.height / divisor_), kLeastSize);
-    const Status installed = one.picture.install(std::move(build), width, height, notes);
+    const Status installed =
+        one.picture.install(std::move(build), width, height, presenter_->submitted() + 1, notes);
     for (const Diagnostic& note : notes) {
         report(note);
     }
@@ -578,7 +598,7 @@ Status Window::applyPose() {
             return waited;
         }
         finishSamples();
-        if (Status posed = one->picture.pose(moment); !posed) {
+        if (Status posed = one->picture.pose(moment, presenter_->submitted() + 1); !posed) {
             report(posed.error());
             plays_ = false;
             poses_ = false;
@@ -601,6 +621,10 @@ void Window::finishSamples() {
             continue;
         }
         one->picture.completed(presenter_->completed());
+        if (one->picture.takeAllLevels(presenter_->completed())) {
+            request_.observer->detail(fmt::format("all levels of the textures {:.0f} ms after the start",
+                                                  base::millisecondsSince(start_)));
+        }
         const std::uint64_t recorded = one->picture.recordedIn();
         if (recorded == 0 || recorded == one->timedFrame || recorded > presenter_->completed()) {
             continue;

@@ -62,8 +62,9 @@ private:
         explicit Side(Context& context) : picture(context) {}
 
         Picture picture;
-        compiler::Settings wanted;   // as the panel shows it
-        compiler::Settings ordered;  // of the last build that was ordered
+        std::unique_ptr<Build> loading;  // whose scene is on its way to the device; null: none
+        compiler::Settings wanted;       // as the panel shows it
+        compiler::Settings ordered;      // of the last build that was ordered
         PassHistory history;
         FrameCounters counters;
         std::uint64_t timedFrame = 0;  // of the last times that were read

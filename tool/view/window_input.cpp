@@ -118,6 +118,8 @@ void Window::keepScene() {
     for (std::size_t i = 0; i < kPictures; ++i) {
         if (sides_[i] && wanted != opening_->wanted.end()) {
             builder_->cancel(i);
+            sides_[i]->loading.reset();
+            sides_[i]->picture.cancelLoad();
             sides_[i]->buildFailed = false;
             sides_[i]->wanted = *wanted;
             sides_[i]->ordered = *wanted++;
@@ -543,6 +545,7 @@ Status Window::writeReport(const std::string& file) {
         {"width", isReady ? one.picture.settings().renderer.width : 0},
         {"height", isReady ? one.picture.settings().renderer.height : 0},
         {"samples", isReady ? one.picture.samples() : 0},
+        {"missingLevels", one.picture.missingLevels()},
         {"strategy", isReady ? std::string(package::nameOf(*one.picture.settings().strategy)) : ""},
         {"lastChange", one.picture.lastChange()},
         {"time", poses_ ? base::Json(time_) : base::Json(nullptr)},

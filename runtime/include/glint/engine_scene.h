@@ -78,9 +78,17 @@ struct EngineSceneView {
 // light. The Context must outlive it; the host keeps what it points to alive.
 class EngineScene {
 public:
-    // Makes the records and waits for the queue. The spans are not kept. Errors: "scene-package" (the package
-    // has no such scene or primitive), "engine-scene" (a number is out of range, an attribute that a key
-    // needs is missing, or a transform is not finite), "scene-light", and those of memory and Vulkan's calls.
+    // Makes the records, and records their upload. Nothing waits for the device. The requirements of
+    // `commands` and `frame`, and when the scene may be used and destroyed, are as in GpuScene::record(). The
+    // spans are not kept. Errors: "scene-package" (the package has no such scene or primitive),
+    // "engine-scene" (a number is out of range, an attribute that a key needs is missing, or a transform is
+    // not finite), "scene-light", and those of memory and Vulkan's calls.
+    static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
+                                                       const EngineSceneView& scene, VkCommandBuffer commands,
+                                                       std::uint64_t frame);
+    // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
+    void complete(std::uint64_t frame);
+    // Records the same into a command buffer of its own, submits it and waits for the device.
     static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
                                                        const EngineSceneView& scene);
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene

@@ -21,12 +21,20 @@ struct EnvironmentOptions {
 // before they are. The Context must outlive it.
 class Environment {
 public:
-    // Filters the image on the host, uploads the result and waits for the queue. `image` holds radiance in
-    // the units of the lights: red, green and blue in linear Rec. 709. Alpha is not read. The first row is up
-    // (+Y). The middle of the image faces +X, and +Z is a quarter of the width to the right of it, as in the
-    // Khronos viewers. Any size and aspect ratio is allowed, since the whole image covers the whole sphere.
-    // Negative channels count as 0. Errors: "environment-size" for an image without pixels;
-    // "environment-radiance", with the pixel, for NaN, infinity and anything above 1e18.
+    // Filters the image on the host, and records the upload of the result. Nothing waits for the device. The
+    // requirements of `commands` and `frame`, and when the environment may be used and destroyed, are as in
+    // GpuScene::record(). `image` holds radiance in the units of the lights: red, green and blue in linear
+    // Rec. 709. Alpha is not read. The first row is up (+Y). The middle of the image faces +X, and +Z is a
+    // quarter of the width to the right of it, as in the Khronos viewers. Any size and aspect ratio is
+    // allowed, since the whole image covers the whole sphere. Negative channels count as 0. Errors:
+    // "environment-size" for an image without pixels; "environment-radiance", with the pixel, for NaN,
+    // infinity and anything above 1e18.
+    static Result<std::unique_ptr<Environment>> record(Context& context, const LinearImage& image,
+                                                       const EnvironmentOptions& options,
+                                                       VkCommandBuffer commands, std::uint64_t frame);
+    // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
+    void complete(std::uint64_t frame);
+    // Records the same into a command buffer of its own, submits it and waits for the device.
     static Result<std::unique_ptr<Environment>> create(Context& context, const LinearImage& image,
                                                        const EnvironmentOptions& options = {});
     ~Environment();
@@ -55,6 +63,8 @@ public:
 private:
     explicit Environment(std::shared_ptr<const State> state);
     std::shared_ptr<const State> state_;
+    struct Upload;
+    std::unique_ptr<Upload> upload_;  // null when the device has completed it
 };
 
 }  // namespace glint

@@ -46,13 +46,41 @@ struct MotionStatistics {
 // must outlive it.
 class GpuScene {
 public:
-    // Uploads the scene, builds its BLASes (for fast tracing, compacted), then the TLAS, and waits for the
-    // queue. The spans of `scene` are not kept. Errors: "scene-package" (the package has no such scene, or
-    // the attributes disagree with it), "position-fetch" and "half-precision" (the device was created without
-    // what the package needs), "scene-geometries" (more than 2^24 geometry records), other "scene-" errors
-    // for a scene that is not well formed, "tlas-limit", and those of memory and Vulkan's calls.
+    // Makes the scene and records its upload: copies from staging memory, mips, the builds of the BLASes (for
+    // fast tracing), and that of the TLAS. Nothing waits for the device. `commands` is a command buffer of
+    // the caller's, in the recording state and outside a render pass. Commands that use the scene may follow
+    // in the same command buffer, or be submitted after it to the same queue; those of another queue need a
+    // semaphore. `frame` is the caller's number of the frame that the commands belong to.
+    //
+    // The spans of `scene` are not kept (but see SceneView::streamsTextures). The call may run on any thread,
+    // beside recordings of other scenes. Staging memory takes as many bytes as the scene's vertices and
+    // textures, until complete() says that the frame is done. The scene may not be destroyed while the device
+    // executes the commands; it may be if they were never submitted. A scene with SceneView::moves can be
+    // updated when isUploaded() returns true.
+    //
+    // Errors: "scene-package" (the package has no such scene, or the attributes disagree with it),
+    // "position-fetch" and "half-precision" (the device was created without what the package needs),
+    // "scene-geometries" (more than 2^24 geometry records), other "scene-" errors for a scene that is not
+    // well formed, "tlas-limit", and those of memory and Vulkan's calls. Nothing is recorded then.
+    static Result<std::unique_ptr<GpuScene>> record(Context& context, const Package& package,
+                                                    const SceneView& scene, VkCommandBuffer commands,
+                                                    std::uint64_t frame);
+    // Records the same into a command buffer of its own, submits it, waits for the device, and does the same
+    // with the compaction. It has at most 64 MiB of staging memory: it submits and waits each time that they
+    // are full. This is for tools, tests, and programs that may stand still while they load.
     static Result<std::unique_ptr<GpuScene>> upload(Context& context, const Package& package,
                                                     const SceneView& scene);
+    // Says that the device has completed all commands of frames up to `frame`, and frees what only those
+    // used. It calls complete() of the editor and the texture stream, too.
+    void complete(std::uint64_t frame);
+    // Whether complete() was called for the frame of the upload.
+    bool isUploaded() const;
+    // Records the replacement of the BLASes by their compacted copies, and a build of the TLAS, if the upload
+    // is complete and this was not done before; otherwise it records nothing. Returns whether it has.
+    // Pictures stay the same. The requirements of `commands` and `frame` are those of record(), and
+    // complete() frees the larger structures. In a scene that is edited it also records the edits that wait,
+    // as SceneEditor::record() does. Errors: those of memory and Vulkan's calls; another call tries again.
+    Result<bool> recordCompaction(VkCommandBuffer commands, std::uint64_t frame);
     ~GpuScene();
     GpuScene(const GpuScene&) = delete;
     GpuScene& operator=(const GpuScene&) = delete;
@@ -62,7 +90,7 @@ public:
         std::uint32_t geometries = 0;
         std::uint32_t instances = 0;
         std::uint32_t blasCount = 0;
-        std::uint64_t blasBytes = 0;  // after compaction
+        std::uint64_t blasBytes = 0;  // of the present ones: compacted after recordCompaction()
         std::uint64_t blasUncompactedBytes = 0;
         // How many 16-bit images are stored with 8 bits, because this device can't filter or blit
         // R16G16B16A16_UNORM.
@@ -76,7 +104,7 @@ public:
         std::uint64_t micromapBytes = 0;
         double opacityMs = 0.0;    // wall clock of proving them
         double orderMs = 0.0;      // wall clock of SceneView::traversalOrder; 0: not ordered
-        double blasBuildMs = 0.0;  // device time
+        double blasBuildMs = 0.0;  // device time; 0 until complete() is called for the upload
         double tlasBuildMs = 0.0;
     };
     const Statistics& statistics() const;
@@ -111,7 +139,7 @@ public:
     // The spans are read in this call and not kept. Poses are written to host-visible memory in this call, so
     // only one update may be in flight at a time. The recorded commands must be submitted before the next
     // call, which builds upon them. With an error nothing is recorded. Errors: "scene-still" (the scene was
-    // uploaded without `moves`), "scene-motion" (another number of instances, lights, joints or weights than
+    // uploaded without `moves`), "scene-upload" (isUploaded() returns false), "scene-motion" (another number of instances, lights, joints or weights than
     // at upload, another mesh, or a number that is not finite), "scene-light", "scene-material" (other
     // materials than at upload).
     Status update(VkCommandBuffer commands, const MotionView& motion);

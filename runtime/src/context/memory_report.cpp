@@ -151,6 +151,16 @@ std::vector<MemoryItem> GpuScene::memory() const {
     if (state_->motion != nullptr) {
         addMotion(items, *state_->motion);
     }
+    if (state_->upload != nullptr) {
+        for (const Buffer& buffer : state_->upload->kept) {
+            addTo(items, "upload on its way", buffer);
+        }
+    }
+    if (state_->compaction != nullptr) {
+        for (const AccelerationStructure& blas : state_->compaction->replaced) {
+            addTo(items, "bottom levels before compaction", blas.buffer);
+        }
+    }
     if (state_->editor != nullptr) {
         addEditor(items, state_->editor->state());
     }
@@ -161,6 +171,8 @@ std::uint64_t GpuScene::allocatedBytes() const {
     const SceneMotion* const motion = state_->motion.get();
     std::uint64_t bytes = state_->pool.bytes();
     bytes += state_->package.pool != nullptr ? state_->package.pool->bytes() : 0;
+    bytes += state_->upload != nullptr ? state_->upload->pool.bytes() : 0;
+    bytes += state_->compaction != nullptr ? state_->compaction->pool.bytes() : 0;
     if (motion != nullptr) {
         bytes +=
             motion->pool.bytes() + (motion->deformer != nullptr ? motion->deformer->allocatedBytes() : 0);

@@ -7,30 +7,27 @@
 namespace glint {
 namespace {
 
-// The staging buffer is large enough that submissions cost little time, and small enough for every
-// host-visible heap. It holds 32 rows of the largest image that a device may have (65536 pixels of 8 bytes).
+// The largest staging buffer. It is small enough for every host-visible heap, and holds 32 rows of the
+// largest image that a device may have (65536 pixels of 8 bytes).
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
 // Copies start at multiples of a texel, and of the alignment that devices prefer.
 constexpr VkDeviceSize kStagingAlignment = 256;
-// The least that a deferred uploader allocates at a time.
-constexpr VkDeviceSize kDeferredStagingBytes = VkDeviceSize{64} << 10;
+// The smallest one. The next ones are as large as all before them together.
+constexpr VkDeviceSize kFirstStagingBytes = VkDeviceSize{64} << 10;
 
 constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;
 constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
 constexpr MemoryDependency kToShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
+constexpr MemoryDependency kToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 
 }  // namespace
 
 Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
-    std::unique_ptr<Uploader> uploader(new Uploader(context));
-    Result<Buffer> staging = createBuffer(context, uploader->pool_, kStagingBytes,
-                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
-    if (!staging) {
-        return staging.error();
-    }
-    uploader->staging_.push_back(std::move(*staging));
+    std::unique_ptr<Uploader> uploader(new Uploader(context, nullptr, kStagingBytes));
     Result<CommandRunner> runner = CommandRunner::create(context);
     if (!runner) {
         return runner.error();
@@ -39,30 +36,9 @@ Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
     return uploader;
 }
 
-std::unique_ptr<Uploader> Uploader::createDeferred(Context::State& context, MemoryPool& pool) {
-    std::unique_ptr<Uploader> uploader(new Uploader(context));
-    uploader->deferredPool_ = &pool;
-    return uploader;
-}
-
-void Uploader::run(Command command) {
-    if (deferredPool_ != nullptr) {
-        queued_.push_back(std::move(command));
-        return;
-    }
-    command(commands_);
-}
-
-Status Uploader::addStaging(VkDeviceSize bytes) {
-    Result<Buffer> staging =
-        createBuffer(*context_, *deferredPool_, std::clamp(bytes, kDeferredStagingBytes, kStagingBytes),
-                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
-    if (!staging) {
-        return staging.error();
-    }
-    staging_.push_back(std::move(*staging));
-    used_ = 0;
-    return okStatus();
+std::unique_ptr<Uploader> Uploader::createDeferred(Context::State& context, MemoryPool& pool,
+                                                   VkDeviceSize mostStaged) {
+    return std::unique_ptr<Uploader>(new Uploader(context, &pool, mostStaged));
 }
 
 std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
@@ -70,51 +46,73 @@ std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
         command(commands);
     }
     queued_.clear();
+    current_ = 0;
     used_ = 0;
+    staged_ = 0;
     return std::exchange(staging_, {});
 }
 
-Status Uploader::start() {
-    if (deferredPool_ == nullptr && commands_ == VK_NULL_HANDLE) {
-        Result<VkCommandBuffer> commands = runner_->begin();
-        if (!commands) {
-            return commands.error();
-        }
-        commands_ = *commands;
-    }
-    return okStatus();
-}
-
 Status Uploader::finish() {
-    if (commands_ == VK_NULL_HANDLE) {
+    if (queued_.empty()) {
         return okStatus();
     }
-    recordDependency(
-        *context_, commands_,
-        {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-         VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT});
-    commands_ = VK_NULL_HANDLE;
+    if (!runner_) {
+        Result<CommandRunner> runner = CommandRunner::create(*context_);
+        if (!runner) {
+            return runner.error();
+        }
+        runner_ = std::make_unique<CommandRunner>(std::move(*runner));
+    }
+    const Result<VkCommandBuffer> commands = runner_->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    for (const Command& command : queued_) {
+        command(*commands);
+    }
+    queued_.clear();
+    current_ = 0;
     used_ = 0;
+    recordDependency(*context_, *commands, kToAll);
     return runner_->submitAndWait();
+}
+
+Status Uploader::nextStaging(VkDeviceSize wanted, VkDeviceSize unit) {
+    used_ = 0;
+    const auto fits = [&](const Buffer& staging) { return staging.bytes >= unit; };
+    // After a submission the buffers that are there are filled again.
+    const std::size_t filled = std::min(current_ + 1, staging_.size());
+    auto next = std::find_if(staging_.begin() + static_cast<std::ptrdiff_t>(filled), staging_.end(), fits);
+    const VkDeviceSize size = std::clamp(std::max(wanted, staged_), kFirstStagingBytes, kStagingBytes);
+    if (next == staging_.end() && !queued_.empty() && staged_ + size > mostStaged_) {
+        if (Status status = finish(); !status) {
+            return status;
+        }
+        next = std::ranges::find_if(staging_, fits);
+    }
+    if (next != staging_.end()) {
+        current_ = static_cast<std::size_t>(next - staging_.begin());
+        return okStatus();
+    }
+    Result<Buffer> staging =
+        createBuffer(*context_, *pool_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
+    if (!staging) {
+        return staging.error();
+    }
+    staged_ += size;
+    staging_.push_back(std::move(*staging));
+    current_ = staging_.size() - 1;
+    return okStatus();
 }
 
 Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
     used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
-    if (deferredPool_ != nullptr) {
-        if (staging_.empty() || used_ + unit > staging_.back().bytes) {
-            if (Status status = addStaging(std::max(wanted, unit)); !status) {
-                return status.error();
-            }
-        }
-    } else if (used_ + unit > kStagingBytes) {
-        if (Status status = finish(); !status) {
+    if (staging_.empty() || used_ + unit > staging_[current_].bytes) {
+        if (Status status = nextStaging(wanted, unit); !status) {
             return status.error();
         }
     }
-    if (Status status = start(); !status) {
-        return status.error();
-    }
-    const VkDeviceSize room = (staging_.back().bytes - used_) / unit * unit;
+    const VkDeviceSize room = (staging_[current_].bytes - used_) / unit * unit;
     return std::min(wanted, room);
 }
 
@@ -125,9 +123,9 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
         if (!room) {
             return room.error();
         }
-        std::memcpy(staging_.back().mapped + used_, bytes.data(), *room);
-        run([&vk = context_->vk, region = VkBufferCopy{used_, offset, *room},
-             from = staging_.back().handle.get(), to = target.handle.get()](VkCommandBuffer commands) {
+        std::memcpy(staging_[current_].mapped + used_, bytes.data(), *room);
+        add([&vk = context_->vk, region = VkBufferCopy{used_, offset, *room},
+             from = staging_[current_].handle.get(), to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBuffer(commands, from, to, 1, &region);
         });
         used_ += *room;
@@ -138,20 +136,16 @@ Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer&
 }
 
 void Uploader::transition(const ImageTransition& transition) {
-    run([context = context_, transition](VkCommandBuffer commands) {
+    add([context = context_, transition](VkCommandBuffer commands) {
         recordTransition(*context, commands, transition);
     });
 }
 
-Status Uploader::startImage(const DeviceImage& target) {
-    if (Status status = start(); !status) {
-        return status;
-    }
+void Uploader::startImage(const DeviceImage& target) {
     transition({target.handle.get(),
                 VK_IMAGE_LAYOUT_UNDEFINED,
                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                 {VK_PIPELINE_STAGE_2_NONE, 0, kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
-    return okStatus();
 }
 
 namespace {
@@ -182,14 +176,14 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
             return room.error();
         }
         const auto count = static_cast<std::uint32_t>(*room / rowBytes);
-        std::memcpy(staging_.back().mapped + used_, rows.texels.data() + first * rowBytes, *room);
+        std::memcpy(staging_[current_].mapped + used_, rows.texels.data() + first * rowBytes, *room);
         const std::uint32_t top = first * rows.block.height;
         VkBufferImageCopy region{};
         region.bufferOffset = used_;
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1};
         region.imageOffset = {0, static_cast<std::int32_t>(top), 0};
         region.imageExtent = {width, std::min(count * rows.block.height, height - top), 1};
-        run([&vk = context_->vk, region, from = staging_.back().handle.get(),
+        add([&vk = context_->vk, region, from = staging_[current_].handle.get(),
              to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBufferToImage(commands, from, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         });
@@ -201,23 +195,18 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
 
 Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips, const TexelBlock& block,
                              const DeviceImage& target) {
-    if (Status status = startImage(target); !status) {
-        return status;
-    }
+    startImage(target);
     for (std::uint32_t mip = 0; mip < mips.size(); ++mip) {
         const MipRows rows{&target, mip, 0, mips[mip], block};
         if (Status status = copyRows(rows, 0, rowSizeOf(rows).rows); !status) {
             return status;
         }
     }
-    recordMips(target, static_cast<std::uint32_t>(mips.size()));
+    addMips(target, static_cast<std::uint32_t>(mips.size()));
     return okStatus();
 }
 
 Result<std::uint32_t> Uploader::copyMipRows(const MipRows& rows, VkDeviceSize mostBytes) {
-    if (Status status = start(); !status) {
-        return status.error();
-    }
     const RowSize size = rowSizeOf(rows);
     const auto room = static_cast<std::uint32_t>(
         std::clamp<VkDeviceSize>(mostBytes / size.bytes, 1, size.rows - rows.firstRow));
@@ -239,7 +228,7 @@ Result<std::uint32_t> Uploader::copyMipRows(const MipRows& rows, VkDeviceSize mo
     return room;
 }
 
-void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
+void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
     const VkImage image = target.handle.get();
     const std::uint32_t last = given - 1;
     auto width = static_cast<std::int32_t>(std::max(target.extent.width >> last, 1U));
@@ -259,20 +248,26 @@ void Uploader::recordMips(const DeviceImage& target, std::uint32_t given) {
         height = std::max(height / 2, 1);
         region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
         region.dstOffsets[1] = {width, height, 1};
-        run([&vk = context_->vk, image, region](VkCommandBuffer commands) {
+        add([&vk = context_->vk, image, region](VkCommandBuffer commands) {
             vk.CmdBlitImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);
         });
     }
-    const auto recordReadable = [&](VkImageLayout layout, std::uint32_t first, std::uint32_t count) {
+    const auto addReadable = [&](VkImageLayout layout, std::uint32_t first, std::uint32_t count) {
         if (count > 0) {
             transition({image, layout, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, first, count});
         }
     };
     // The mips that were blitted from have the source layout, and the others the target layout.
-    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, last);
-    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, last, target.mips - given);
-    recordReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, target.mips - 1, 1);
+    addReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 0, last);
+    addReadable(VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, last, target.mips - given);
+    addReadable(VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, target.mips - 1, 1);
+}
+
+void StagedCopies::record(VkCommandBuffer commands, std::uint64_t frameNumber) {
+    frame = frameNumber;
+    staging = uploader->record(commands);
+    recordDependency(context, commands, kToAll);
 }
 
 }  // namespace glint

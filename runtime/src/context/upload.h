@@ -1,4 +1,4 @@
-// Copies host data into device buffers and images, through a staging buffer of bounded size.
+// Copies host data into device buffers and images, through staging memory.
 #pragma once
 
 #include "context/commands.h"
@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -26,13 +27,25 @@ inline TexelBlock blockOf(TexelFormat format) {
     return {info.blockWidth, info.blockHeight, info.blockBytes};
 }
 
+// Keeps copies and other commands in their order until they are recorded. The data is copied into staging
+// memory at once.
 class Uploader {
 public:
-    static Result<std::unique_ptr<Uploader>> create(Context::State& context);
-    // Returns one that submits nothing: its copies wait for record(). The data is copied into staging memory
-    // of `pool` at once. `pool` must outlive it.
-    static std::unique_ptr<Uploader> createDeferred(Context::State& context, MemoryPool& pool);
+    using Command = std::function<void(VkCommandBuffer)>;
 
+    // Returns one that submits its commands itself: in finish(), and before that whenever it would have more
+    // than 16 MiB of staging memory.
+    static Result<std::unique_ptr<Uploader>> create(Context::State& context);
+    // Returns one whose commands wait for record(). Its staging memory is from `pool`, which must outlive it.
+    // If it would have more than `mostStaged` bytes of it, it submits what waits and waits for the device.
+    static std::unique_ptr<Uploader> createDeferred(Context::State& context, MemoryPool& pool,
+                                                    VkDeviceSize mostStaged = kUnlimited);
+    static constexpr VkDeviceSize kUnlimited = ~VkDeviceSize{0};
+
+    // Queues a command. What it refers to must stay until it is recorded.
+    void add(Command command) {
+        queued_.push_back(std::move(command));
+    }
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
     // Fills the first mips of an undefined image with texels or blocks. Blits each remaining mip from the one
@@ -52,11 +65,11 @@ public:
         TexelBlock block{};
     };
     Result<std::uint32_t> copyMipRows(const MipRows& rows, VkDeviceSize mostBytes);
-    // Waits until all data is on the device and visible to all commands that are submitted later. A deferred
-    // one has nothing to finish.
+    // Submits what waits, with a dependency that makes it visible to all commands that are submitted later,
+    // and waits for the device.
     Status finish();
 
-    // These are for a deferred uploader. Returns how many commands wait.
+    // Returns how many commands wait.
     std::size_t waiting() const {
         return queued_.size();
     }
@@ -73,32 +86,45 @@ public:
     }
 
 private:
-    using Command = std::function<void(VkCommandBuffer)>;
-    explicit Uploader(Context::State& context) : context_(&context), pool_(context) {}
-    // Records the command now, or keeps it if the uploader is deferred.
-    void run(Command command);
-    // Makes staging memory for at least `bytes` the current one of a deferred uploader.
-    Status addStaging(VkDeviceSize bytes);
-    // Returns room for at least `unit` and at most `wanted` bytes. If there is too little, it submits the
-    // pending copies to make room.
+    Uploader(Context::State& context, MemoryPool* pool, VkDeviceSize mostStaged)
+        : context_(&context), own_(context), pool_(pool != nullptr ? pool : &own_), mostStaged_(mostStaged) {}
+    // Makes a staging buffer with room for at least `unit` bytes the current one.
+    Status nextStaging(VkDeviceSize wanted, VkDeviceSize unit);
+    // Returns room for at least `unit` and at most `wanted` bytes in the current staging buffer.
     Result<VkDeviceSize> reserve(VkDeviceSize wanted, VkDeviceSize unit);
-    Status start();
     void transition(const ImageTransition& transition);
     // Moves all mips to TRANSFER_DST_OPTIMAL.
-    Status startImage(const DeviceImage& target);
+    void startImage(const DeviceImage& target);
     // Copies rows [first, end) of texels or blocks of a mip in TRANSFER_DST_OPTIMAL.
     Status copyRows(const MipRows& rows, std::uint32_t first, std::uint32_t end);
     // Blits the mips after the first `given`, and makes all of them readable.
-    void recordMips(const DeviceImage& target, std::uint32_t given);
+    void addMips(const DeviceImage& target, std::uint32_t given);
 
     Context::State* context_;
-    MemoryPool pool_;
-    MemoryPool* deferredPool_ = nullptr;  // null unless the uploader is deferred
-    std::vector<Buffer> staging_;         // the last one is filled
+    MemoryPool own_;  // of staging memory, unless another one is given
+    MemoryPool* pool_;
+    VkDeviceSize mostStaged_;
+    std::vector<Buffer> staging_;
+    std::size_t current_ = 0;  // index of the staging buffer that is being filled
+    VkDeviceSize used_ = 0;    // bytes of it
+    VkDeviceSize staged_ = 0;  // bytes of all staging buffers
     std::vector<Command> queued_;
-    std::unique_ptr<CommandRunner> runner_;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;  // null between recordings
-    VkDeviceSize used_ = 0;
+    std::unique_ptr<CommandRunner> runner_;  // null until something is submitted
+};
+
+// Copies that are recorded into a host's command buffer, with their staging memory.
+struct StagedCopies {
+    explicit StagedCopies(Context::State& contextState)
+        : context(contextState), pool(contextState), uploader(Uploader::createDeferred(contextState, pool)) {}
+
+    // Records what the uploader has, and makes it visible to all later commands.
+    void record(VkCommandBuffer commands, std::uint64_t frameNumber);
+
+    Context::State& context;
+    MemoryPool pool;  // of the staging memory. Members are destroyed in reverse order.
+    std::unique_ptr<Uploader> uploader;
+    std::vector<Buffer> staging;
+    std::uint64_t frame = 0;  // that the commands belong to
 };
 
 // Returns the bytes of an array of plain structures.

@@ -115,7 +115,7 @@ Result<DeviceImage> makeImage(SceneEditor::State& state, const ImageView& image,
     }
     const std::size_t before = state.uploader->waiting();
     Result<DeviceImage> made = uploadSceneTexture(scene, *state.uploader, texture, image, srgb);
-    if (!made && !state.uploading) {
+    if (!made && state.upload == nullptr) {
         state.uploader->forgetAfter(before);
     }
     return made;

@@ -118,7 +118,8 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, const
                 return blas.error();
             }
             part.blas = std::move(*blas);
-            state.builds.push_back({std::move(build), part.blas.handle.get(), {}});
+            build.info.dstAccelerationStructure = part.blas.handle.get();
+            state.builds.push_back({std::move(build), {}});
         }
         first += count;
     }
@@ -252,7 +253,7 @@ Result<EditedMesh> makeMesh(SceneEditor::State& state, std::span<const Primitive
     for (std::size_t i = 0; i < placed.size(); ++i) {
         EditedMeshPrimitive& made = mesh.primitives.emplace_back();
         if (Status status = makePrimitive(state, placed[i], positions[i], inputs, made); !status) {
-            if (!state.uploading) {
+            if (state.upload == nullptr) {
                 state.uploader->forgetAfter(copies);
             }
             for (; state.builds.size() > builds; state.builds.pop_back()) {

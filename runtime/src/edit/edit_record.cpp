@@ -17,17 +17,9 @@ namespace {
 
 using Placed = VkAccelerationStructureInstanceKHR;
 
-// Scratch memory for builds of one command buffer. Builds above it wait for those before them.
-constexpr VkDeviceSize kScratchBytes = VkDeviceSize{64} << 20;
 constexpr VkDeviceSize kPlacedAlignment = 16;  // of the array of instances that a TLAS is built from
 constexpr VkBufferUsageFlags kRecordUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-constexpr MemoryDependency kBuildsInOrder{
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-    VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR};
-
 struct Array {
     RecordStore& store;
     Buffer& device;
@@ -181,7 +173,7 @@ private:
 
     // The size that an array or the TLAS should have. It doubles, and shrinks only after trim().
     std::uint32_t capacityFor(std::uint32_t count, std::uint32_t now, std::uint32_t first) const {
-        if (state_.uploading) {
+        if (state_.upload != nullptr) {
             return std::max(count, 1U);
         }
         if (count > now) {
@@ -263,14 +255,8 @@ private:
             }
             prepared_.staging = std::move(*staging);
         }
-        VkDeviceSize most = 0;
-        VkDeviceSize sum = 0;
-        for (const SceneEditor::State::PendingBuild& pending : state_.builds) {
-            sum += pending.build.scratchBytes;
-            most = std::max(most, pending.build.scratchBytes);
-        }
-        if (sum > 0) {
-            scratchBytes_ = std::max(most, std::min(sum, kScratchBytes));
+        scratchBytes_ = scratchBytesOf(context_, pendingBuilds());
+        if (scratchBytes_ > 0) {
             Result<Scratch> scratch = createScratch(context_, scene_.pool, scratchBytes_);
             if (!scratch) {
                 return scratch.error();
@@ -310,14 +296,16 @@ private:
         // Earlier frames may still read what is written here.
         recordDependency(context_, commands_, kAllToAll);
         recordResizes();
-        if (!state_.uploading) {
-            for (Buffer& staging : state_.uploader->record(commands_)) {
+        for (Buffer& staging : state_.uploader->record(commands_)) {
+            if (state_.upload != nullptr) {
+                state_.upload->keep(std::move(staging));
+            } else {
                 state_.retired.add(std::move(staging));
             }
         }
         recordCopies();
         recordDependency(context_, commands_, kAllToAll);
-        recordBuilds();
+        recordBuilds(context_, commands_, pendingBuilds(), {prepared_.scratch.address, scratchBytes_});
         if (state_.tlasDirty) {
             recordDependency(context_, commands_, kBuildsInOrder);
             recordTlas();
@@ -368,33 +356,12 @@ private:
         }
     }
 
-    void recordBuilds() {
-        std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
-        std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
-        VkDeviceSize used = 0;
-        const auto flush = [&] {
-            if (!infos.empty()) {
-                context_.vk.CmdBuildAccelerationStructuresKHR(
-                    commands_, static_cast<std::uint32_t>(infos.size()), infos.data(), ranges.data());
-            }
-            infos.clear();
-            ranges.clear();
-            used = 0;
-        };
-        for (SceneEditor::State::PendingBuild& pending : state_.builds) {
-            if (used + pending.build.scratchBytes > scratchBytes_) {
-                flush();
-                recordDependency(context_, commands_, kBuildsInOrder);
-            }
-            VkAccelerationStructureBuildGeometryInfoKHR info = pending.build.info;
-            info.pGeometries = pending.build.geometries.data();
-            info.dstAccelerationStructure = pending.target;
-            info.scratchData.deviceAddress = prepared_.scratch.address + used;
-            used += pending.build.scratchBytes;
-            infos.push_back(info);
-            ranges.push_back(pending.build.ranges.data());
+    std::vector<const BlasBuild*> pendingBuilds() const {
+        std::vector<const BlasBuild*> builds;
+        for (const SceneEditor::State::PendingBuild& pending : state_.builds) {
+            builds.push_back(&pending.build);
         }
-        flush();
+        return builds;
     }
 
     void recordTlas() {

@@ -1,6 +1,5 @@
 // The upload of a scene that can be edited: its content becomes that of the editor, and then takes the way of
-// edits, but for BLASes, which are built together and compacted.
-#include "context/commands.h"
+// edits, but for BLASes, which are built together.
 #include "edit/editor_state.h"
 #include "scene/material_table.h"
 #include "scene/scene_materials.h"
@@ -136,45 +135,33 @@ Status addMeshes(SceneEditor::State& state, const PackageScene& known, const Sce
         state.firstMeshes[number] = state.meshes.add(std::move(*mesh));
         first = range.end;
     }
-    if (Status status = state.uploader->finish(); !status) {
-        return status;
-    }
     BlasStatistics statistics;
-    Result<std::vector<AccelerationStructure>> built =
-        buildBlases(state.scene.context, state.scene.pool, inputs, statistics);
+    Result<std::vector<AccelerationStructure>> built = addBlases(*state.upload, inputs, statistics);
     if (!built) {
         return built.error();
     }
-    auto next = built->begin();
-    for (auto& [number, handle] : state.firstMeshes) {
-        for (EditedMeshPrimitive& primitive : state.meshes.find(handle)->primitives) {
-            for (EditedPart& part : primitive.parts) {
-                part.blas = std::move(*next++);
+    std::size_t next = 0;
+    for (const auto& [number, handle] : state.firstMeshes) {
+        std::vector<EditedMeshPrimitive>& primitives = state.meshes.find(handle)->primitives;
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            for (std::size_t part = 0; part < primitives[i].parts.size(); ++part) {
+                primitives[i].parts[part].blas = std::move((*built)[next++]);
+                state.upload->compaction->parts.push_back({handle, i, part});
             }
-            discard(state.scene.pool, std::move(primitive.device.buildInput));
+            state.retired.add(std::move(primitives[i].device.buildInput));
         }
     }
     GpuScene::Statistics& scene = state.scene.statistics;
     scene.blasCount = static_cast<std::uint32_t>(built->size());
     scene.blasBytes = statistics.bytes;
-    scene.blasUncompactedBytes = statistics.uncompactedBytes;
-    scene.blasBuildMs = statistics.buildMs;
-    return okStatus();
-}
-
-Status recordUpload(SceneEditor::State& state) {
-    const auto record = [&](VkCommandBuffer commands) { return recordEdits(state, commands, 0); };
-    if (Status status = runOnce(state.scene.context, record); !status) {
-        return status;
-    }
-    state.retired.complete(0);
+    scene.blasUncompactedBytes = statistics.bytes;
     return okStatus();
 }
 
 }  // namespace
 
 Status uploadEditable(GpuScene::State& scene, const Package& package, const PackageScene& known,
-                      const SceneView& view) {
+                      const SceneView& view, SceneUpload& upload, VkCommandBuffer commands) {
     if (Status status = checkEditable(package, view); !status) {
         return status;
     }
@@ -184,11 +171,8 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
     scene.samplerRoom = std::max({view.samplerRoom, static_cast<std::uint32_t>(known.samplers.size()), 1U});
     scene.shaderIds = state.cases.shaderIds();
     scene.materialLayout = state.layout;
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(scene.context);
-    if (!uploader) {
-        return uploader.error();
-    }
-    state.uploader = std::move(*uploader);
+    state.upload = &upload;
+    state.uploader = upload.uploader.get();
     if (Status status = addSamplers(state, known); !status) {
         return status;
     }
@@ -216,7 +200,7 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
     if (Status status = createSetLayout(scene); !status) {
         return status;
     }
-    if (Status status = recordUpload(state); !status) {
+    if (Status status = recordEdits(state, commands, upload.frame); !status) {
         return status;
     }
     for (RecordStore* const store :
@@ -224,8 +208,9 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
         store->firstCapacity = store->capacity;
     }
     state.firstTlasCapacity = state.tlasCapacity;
-    state.uploader = Uploader::createDeferred(scene.context, scene.pool);
-    state.uploading = false;
+    state.ownUploader = Uploader::createDeferred(scene.context, scene.pool);
+    state.uploader = state.ownUploader.get();
+    state.upload = nullptr;
     scene.editor = SceneEditor::create(std::move(owned));
     return okStatus();
 }

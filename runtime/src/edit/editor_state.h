@@ -12,6 +12,7 @@
 #include "scene/geometry.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/instance_math.h"
+#include "scene/scene_upload.h"
 
 #include <glint/scene_edit.h>
 
@@ -111,11 +112,11 @@ struct SceneEditor::State {
     RunAllocator geometryRuns;
 
     // What record() has to do.
-    std::unique_ptr<Uploader> uploader;
+    std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
+    Uploader* uploader = nullptr;
     struct PendingBuild {
-        BlasBuild build;
-        VkAccelerationStructureKHR target = VK_NULL_HANDLE;
-        Buffer input;  // that this build and those before it of the same primitive read; may be none
+        BlasBuild build;  // with its destination
+        Buffer input;     // that this build and those before it of the same primitive read; may be none
     };
     std::vector<PendingBuild> builds;
     bool tlasDirty = true;
@@ -129,13 +130,14 @@ struct SceneEditor::State {
     Scratch tlasScratch;
     Retired retired;
     std::uint64_t lastFrame = 0;
-    // During the upload, BLASes are built together and compacted.
-    bool uploading = true;
+    // Null after the upload, in which BLASes are built together.
+    SceneUpload* upload = nullptr;
 };
 
-// The upload of an editable scene; `known` may be a scene without tables.
+// The upload of an editable scene; `known` may be a scene without tables. Records everything that is queued
+// in `upload`, and what the editor adds.
 Status uploadEditable(GpuScene::State& state, const Package& package, const PackageScene& known,
-                      const SceneView& view);
+                      const SceneView& view, SceneUpload& upload, VkCommandBuffer commands);
 
 // Parts of an edit that several functions share.
 

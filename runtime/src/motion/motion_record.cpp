@@ -263,6 +263,11 @@ Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const Moti
         return makeError("scene-still", "", "the scene was uploaded as one that does not move",
                          "set SceneView::moves before the upload");
     }
+    if (state.upload) {
+        return makeError(
+            "scene-upload", "", "the scene's upload is not complete, and has the memory of its first pose",
+            "call GpuScene::complete() for the frame of the upload, when the device is done with it");
+    }
     SceneMotion& motion = *state.motion;
     const MotionShape shape{motion.meshes, motion.jointCounts, motion.weightCounts, motion.lightTypes};
     if (Status s = checkMotion(view, shape); !s) {

@@ -90,8 +90,8 @@ Status createTlas(GpuScene::State& state) {
     return okStatus();
 }
 
-// Builds everything for the first time.
-Status buildAll(GpuScene::State& state, const SceneView& scene) {
+// Queues all builds for the first time.
+void buildAll(GpuScene::State& state, const SceneView& scene, Uploader& uploader) {
     SceneMotion& motion = *state.motion;
     const std::vector<Box> boxes = boxesOf(motion, scene.instances);
     Decisions decisions;
@@ -103,28 +103,16 @@ Status buildAll(GpuScene::State& state, const SceneView& scene) {
     decisions.tlas = BuildAction::Build;
     motion.tlasHistory.apply(decisions.tlas, boxes);
     stage(state, scene.instances, scene.lights);
-    const auto record = [&](VkCommandBuffer commands) {
+    uploader.add([&state, decisions = std::move(decisions)](VkCommandBuffer commands) {
         recordAll(state, commands, decisions);
-        return okStatus();
-    };
-    if (Status s = runOnce(state.context, record); !s) {
-        return s;
-    }
-    if (motion.timer.available()) {
-        Result<std::vector<double>> milliseconds = motion.timer.read(kStretches);
-        if (!milliseconds) {
-            return milliseconds.error();
-        }
-        state.statistics.blasBuildMs += (*milliseconds)[kBlasStretch];
-        state.statistics.tlasBuildMs = (*milliseconds)[kTlasStretch];
-    }
-    return okStatus();
+    });
 }
 
 }  // namespace
 
 Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout,
-                    std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer) {
+                    std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer,
+                    Uploader& uploader) {
     Result<Timer> timer = Timer::create(state.context, kStretches);
     if (!timer) {
         return timer.error();
@@ -163,7 +151,19 @@ Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneL
     if (Status s = createTlas(state); !s) {
         return s;
     }
-    return buildAll(state, scene);
+    buildAll(state, scene, uploader);
+    return okStatus();
+}
+
+void readFirstBuild(GpuScene::State& state) {
+    const SceneMotion& motion = *state.motion;
+    if (motion.recorded || !motion.timer.available()) {
+        return;
+    }
+    if (const Result<std::vector<double>> milliseconds = motion.timer.read(kStretches)) {
+        state.statistics.blasBuildMs += (*milliseconds)[kBlasStretch];
+        state.statistics.tlasBuildMs = (*milliseconds)[kTlasStretch];
+    }
 }
 
 }  // namespace glint

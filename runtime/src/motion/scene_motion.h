@@ -58,11 +58,14 @@ struct SceneMotion {
     bool recorded = false;
 };
 
-// Makes state.motion and state.tlas for a scene with SceneView::moves, and waits for the device. It builds
-// the bottom levels of `refitted`, which are the layout's parts that belong to one instance, and the top
+// Makes state.motion and state.tlas for a scene with SceneView::moves. It queues the builds of the bottom
+// levels of `refitted`, which are the layout's parts that belong to one instance, and the top
 // level at the scene's pose. `deformer` is null if no instance changes its shape.
 Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout,
-                    std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer);
+                    std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer,
+                    Uploader& uploader);
+// Adds the device times of these builds to the statistics, if they are complete and no update was recorded.
+void readFirstBuild(GpuScene::State& state);
 
 // These implement GpuScene::update() and GpuScene::motion().
 Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const MotionView& motion);

@@ -1,11 +1,13 @@
 #include "opacity/micromap_build.h"
 
 #include "context/commands.h"
-#include "context/upload.h"
 #include "context/vulkan_error.h"
+#include "renderer/pass_dependencies.h"
 #include "scene/acceleration.h"
+#include "scene/scene_upload.h"
 
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 namespace glint {
@@ -60,21 +62,22 @@ struct PendingMicromap {
 
 class MicromapBuilder {
 public:
-    MicromapBuilder(Context::State& context, MemoryPool& pool)
-        : context_(context), pool_(pool), transient_(context) {}
+    MicromapBuilder(SceneUpload& upload, MemoryPool& pool)
+        : upload_(upload), context_(upload.context), pool_(pool) {}
 
-    Status add(const opacity::MicromapArray& array, Uploader& uploader, DeviceMicromap& made) {
+    Status add(const opacity::MicromapArray& array, DeviceMicromap& made) {
+        Uploader& uploader = *upload_.uploader;
         if (Status status = addIndices(array, uploader, made); !status || array.records.empty()) {
             return status;
         }
         PendingMicromap pending;
-        Result<InputBuffer> data = uploadInput(context_, transient_, uploader, array.data);
+        Result<InputBuffer> data = uploadInput(context_, upload_.pool, uploader, array.data);
         if (!data) {
             return data.error();
         }
         pending.data = std::move(*data);
         Result<InputBuffer> records =
-            uploadInput(context_, transient_, uploader, bytesOf(std::span(array.records)));
+            uploadInput(context_, upload_.pool, uploader, bytesOf(std::span(array.records)));
         if (!records) {
             return records.error();
         }
@@ -83,25 +86,27 @@ public:
         if (Status status = create(pending, made); !status) {
             return status;
         }
-        pending_.push_back(std::move(pending));
+        upload_.keep(std::move(pending.data.buffer));
+        upload_.keep(std::move(pending.records.buffer));
+        upload_.keep(std::move(pending.scratch.buffer));
+        pending_->push_back(std::move(pending));
         return okStatus();
     }
 
-    // Requires that the uploads are done.
-    Status build() {
-        std::vector<VkMicromapBuildInfoEXT> infos;
-        for (PendingMicromap& pending : pending_) {
-            pending.info.pUsageCounts = pending.usages.data();
-            infos.push_back(pending.info);
+    // Queues the builds, after the copies.
+    void build() {
+        if (pending_->empty()) {
+            return;
         }
-        if (infos.empty()) {
-            return okStatus();
-        }
-        return runOnce(context_, [&](VkCommandBuffer commands) {
-            context_.vk.CmdBuildMicromapsEXT(commands, static_cast<std::uint32_t>(infos.size()),
-                                             infos.data());
-            recordDependency(context_, commands, kMicromapToStructures);
-            return okStatus();
+        upload_.uploader->add([&context = context_, pending = pending_](VkCommandBuffer commands) {
+            std::vector<VkMicromapBuildInfoEXT> infos;
+            for (PendingMicromap& one : *pending) {
+                one.info.pUsageCounts = one.usages.data();
+                infos.push_back(one.info);
+            }
+            recordDependency(context, commands, kAllToAll);
+            context.vk.CmdBuildMicromapsEXT(commands, static_cast<std::uint32_t>(infos.size()), infos.data());
+            recordDependency(context, commands, kMicromapToStructures);
         });
     }
 
@@ -156,7 +161,7 @@ private:
         }
         made.handle = UniqueMicromap(context_, handle);
         info.dstMicromap = handle;
-        Result<Scratch> scratch = createScratch(context_, transient_, sizes.buildScratchSize);
+        Result<Scratch> scratch = createScratch(context_, upload_.pool, sizes.buildScratchSize);
         if (!scratch) {
             return scratch.error();
         }
@@ -165,10 +170,11 @@ private:
         return okStatus();
     }
 
+    SceneUpload& upload_;
     Context::State& context_;
     MemoryPool& pool_;
-    MemoryPool transient_;
-    std::vector<PendingMicromap> pending_;
+    // Its buffers are the upload's.
+    std::shared_ptr<std::vector<PendingMicromap>> pending_ = std::make_shared<std::vector<PendingMicromap>>();
 };
 
 }  // namespace
@@ -179,25 +185,16 @@ std::uint32_t micromapLevel(const Context::State& context) {
                      opacity::kMaxLevel});
 }
 
-Result<std::vector<DeviceMicromap>> buildMicromaps(Context::State& context, MemoryPool& pool,
-                                                   std::span<const opacity::MicromapArray> arrays) {
+Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool& pool,
+                                                 std::span<const opacity::MicromapArray> arrays) {
     std::vector<DeviceMicromap> made(arrays.size());
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(context);
-    if (!uploader) {
-        return uploader.error();
-    }
-    MicromapBuilder builder(context, pool);
+    MicromapBuilder builder(upload, pool);
     for (std::size_t i = 0; i < arrays.size(); ++i) {
-        if (Status status = builder.add(arrays[i], **uploader, made[i]); !status) {
+        if (Status status = builder.add(arrays[i], made[i]); !status) {
             return status.error();
         }
     }
-    if (Status status = (*uploader)->finish(); !status) {
-        return status.error();
-    }
-    if (Status status = builder.build(); !status) {
-        return status.error();
-    }
+    builder.build();
     return made;
 }
 

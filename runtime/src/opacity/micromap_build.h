@@ -11,6 +11,8 @@
 
 namespace glint {
 
+struct SceneUpload;
+
 // Members are destroyed in reverse order: the micromap before its buffer.
 struct DeviceMicromap {
     Buffer buffer;
@@ -23,10 +25,11 @@ struct DeviceMicromap {
 // Returns the highest level that the device takes, at most opacity::kMaxLevel; 0 without the extension.
 std::uint32_t micromapLevel(const Context::State& context);
 
-// Builds a micromap for each array and waits for the device. Requires DeviceHandles::opacityMicromaps, and
-// arrays within micromapLevel(). `pool` must outlive the result. Errors: those of buffers and submissions.
-Result<std::vector<DeviceMicromap>> buildMicromaps(Context::State& context, MemoryPool& pool,
-                                                   std::span<const opacity::MicromapArray> arrays);
+// Creates a micromap for each array, and queues their builds in the upload. Requires
+// DeviceHandles::opacityMicromaps, and arrays within micromapLevel(). `pool` must outlive the result. Errors:
+// those of memory and Vulkan's calls.
+Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool& pool,
+                                                 std::span<const opacity::MicromapArray> arrays);
 
 // Describes how a geometry uses a micromap, for the chain of its triangles. Points into `micromap`.
 VkAccelerationStructureTrianglesOpacityMicromapEXT describeMicromap(const DeviceMicromap& micromap);

@@ -2,9 +2,13 @@
 #include "scene/acceleration.h"
 
 #include "context/commands.h"
-#include "context/timer.h"
-#include "context/upload.h"
 #include "context/vulkan_error.h"
+#include "renderer/pass_dependencies.h"
+#include "scene/scene_upload.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
 
 namespace glint {
 
@@ -50,71 +54,6 @@ Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDevic
     return scratch;
 }
 
-namespace {
-
-// Uploads instances into a device buffer. The device's rules for buffers of this usage align it to 16 bytes.
-Result<Buffer> uploadInstances(Context::State& context, MemoryPool& pool,
-                               std::span<const VkAccelerationStructureInstanceKHR> instances) {
-    Result<Buffer> buffer = createBuffer(
-        context, pool,
-        std::max<VkDeviceSize>(instances.size_bytes(), sizeof(VkAccelerationStructureInstanceKHR)),
-        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-            VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(context);
-    if (!uploader) {
-        return uploader.error();
-    }
-    if (Status status = (*uploader)->copyToBuffer(bytesOf(instances), *buffer); !status) {
-        return status.error();
-    }
-    if (Status status = (*uploader)->finish(); !status) {
-        return status.error();
-    }
-    return buffer;
-}
-
-Status submitTlasBuild(Context::State& context, const VkAccelerationStructureBuildGeometryInfoKHR& info,
-                       std::uint32_t instanceCount, double& buildMs) {
-    Result<CommandRunner> runner = CommandRunner::create(context);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<Timer> timer = Timer::create(context, 1);
-    if (!timer) {
-        return timer.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    VkAccelerationStructureBuildRangeInfoKHR range{};
-    range.primitiveCount = instanceCount;
-    const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
-    timer->recordBegin(*commands, 0);
-    context.vk.CmdBuildAccelerationStructuresKHR(*commands, 1, &info, &ranges);
-    timer->recordEnd(*commands, 0);
-    recordDependency(context, *commands,
-                     {VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-                      VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                      VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR});
-    if (Status status = runner->submitAndWait(); !status) {
-        return status;
-    }
-    if (timer->available()) {
-        Result<std::vector<double>> milliseconds = timer->read(1);
-        if (!milliseconds) {
-            return milliseconds.error();
-        }
-        buildMs = milliseconds->front();
-    }
-    return okStatus();
-}
-
-}  // namespace
-
 Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
                     bool updatable, TlasBuild& build) {
     const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
@@ -147,33 +86,74 @@ Status describeTlas(const Context::State& context, VkDeviceAddress instances, st
     return okStatus();
 }
 
-Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
-                                        std::span<const VkAccelerationStructureInstanceKHR> instances,
-                                        double& buildMs) {
-    MemoryPool transient(context);
-    Result<Buffer> buffer = uploadInstances(context, transient, instances);
+Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
+                                 std::span<const VkAccelerationStructureInstanceKHR> instances,
+                                 bool updatable, std::vector<Buffer>& kept) {
+    // The device's rules for buffers of this usage align it to 16 bytes.
+    Result<Buffer> buffer = createBuffer(
+        context, pool,
+        std::max<VkDeviceSize>(instances.size_bytes(), sizeof(VkAccelerationStructureInstanceKHR)),
+        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, MemoryUse::Upload);
     if (!buffer) {
         return buffer.error();
     }
-    TlasBuild build;
-    if (Status status = describeTlas(context, buffer->address, instances.size(), false, build); !status) {
+    if (!instances.empty()) {
+        std::memcpy(buffer->mapped, instances.data(), instances.size_bytes());
+    }
+    PreparedTlas prepared;
+    prepared.count = static_cast<std::uint32_t>(instances.size());
+    if (Status status = describeTlas(context, buffer->address, instances.size(), updatable, prepared.build);
+        !status) {
         return status.error();
     }
-    Result<AccelerationStructure> structure = createStructure(
-        context, pool, build.sizes.accelerationStructureSize, VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
-    if (!structure) {
-        return structure.error();
-    }
-    Result<Scratch> scratch = createScratch(context, transient, build.sizes.buildScratchSize);
+    Result<Scratch> scratch = createScratch(context, pool, prepared.build.sizes.buildScratchSize);
     if (!scratch) {
         return scratch.error();
     }
-    build.info.dstAccelerationStructure = structure->handle.get();
-    build.info.scratchData.deviceAddress = scratch->address;
-    const auto count = static_cast<std::uint32_t>(instances.size());
-    if (Status status = submitTlasBuild(context, build.info, count, buildMs); !status) {
-        return status.error();
+    prepared.scratch = scratch->address;
+    kept.push_back(std::move(*buffer));
+    kept.push_back(std::move(scratch->buffer));
+    return prepared;
+}
+
+void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
+                     VkAccelerationStructureKHR target) {
+    VkAccelerationStructureBuildGeometryInfoKHR info = prepared.build.info;
+    info.pGeometries = &prepared.build.geometry;
+    info.dstAccelerationStructure = target;
+    info.scratchData.deviceAddress = prepared.scratch;
+    VkAccelerationStructureBuildRangeInfoKHR range{};
+    range.primitiveCount = prepared.count;
+    const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
+    context.vk.CmdBuildAccelerationStructuresKHR(commands, 1, &info, &ranges);
+}
+
+Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
+                                      std::span<const VkAccelerationStructureInstanceKHR> instances) {
+    Context::State& context = upload.context;
+    const Result<PreparedTlas> prepared = prepareTlas(context, upload.pool, instances, false, upload.kept);
+    if (!prepared) {
+        return prepared.error();
     }
+    Result<AccelerationStructure> structure =
+        createStructure(context, pool, prepared->build.sizes.accelerationStructureSize,
+                        VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
+    if (!structure) {
+        return structure.error();
+    }
+    const bool timed = upload.timer.has_value();
+    upload.stretches += timed ? 1 : 0;
+    upload.uploader->add([&context, &upload, timed, prepared = *prepared,
+                          target = structure->handle.get()](VkCommandBuffer commands) {
+        recordDependency(context, commands, kAllToAll);
+        if (timed) {
+            upload.timer->recordBegin(commands, SceneUpload::kTlasStretch);
+        }
+        recordTlasBuild(context, commands, prepared, target);
+        if (timed) {
+            upload.timer->recordEnd(commands, SceneUpload::kTlasStretch);
+        }
+    });
     return structure;
 }
 

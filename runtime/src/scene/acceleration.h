@@ -48,22 +48,21 @@ struct BlasInput {
 // no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage buffers.
 BlasCapacity blasCapacity(const Context::State& context);
 
+struct SceneUpload;
+
 struct BlasStatistics {
-    std::uint64_t bytes = 0;
-    std::uint64_t uncompactedBytes = 0;
-    double buildMs = 0.0;
+    std::uint64_t bytes = 0;  // before compaction
 };
+// Creates a BLAS for each input, and queues their builds in the upload. They are in the memory of the
+// upload's Compaction, which is made here, and stay at their full size until it is recorded. Errors: those of
+// memory and Vulkan's calls.
+Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::span<const BlasInput> inputs,
+                                                     BlasStatistics& statistics);
 
-// Builds and compacts all inputs and waits for the device. It works in batches that bound scratch and
-// transient memory. `pool` must outlive the result. Errors: those of buffers and submissions.
-Result<std::vector<AccelerationStructure>> buildBlases(Context::State& context, MemoryPool& pool,
-                                                       std::span<const BlasInput> inputs,
-                                                       BlasStatistics& statistics);
-
-// Builds a TLAS and waits for the device. `instances` may be empty. Error "tlas-limit".
-Result<AccelerationStructure> buildTlas(Context::State& context, MemoryPool& pool,
-                                        std::span<const VkAccelerationStructureInstanceKHR> instances,
-                                        double& buildMs);
+// Creates a TLAS in memory of `pool`, and queues its build in the upload. `instances` may be empty. Error
+// "tlas-limit".
+Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
+                                      std::span<const VkAccelerationStructureInstanceKHR> instances);
 
 // A top level in Vulkan's terms. `instances` is the address of their array, or 0 to ask for sizes only.
 // `info` points at `geometry`, so it must be set again after a move.
@@ -85,5 +84,17 @@ struct Scratch {
     VkDeviceAddress address = 0;
 };
 Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes);
+
+// A build of a TLAS with memory of its own for its input and its scratch. `kept` gets both, from `pool`.
+struct PreparedTlas {
+    TlasBuild build;
+    VkDeviceAddress scratch = 0;
+    std::uint32_t count = 0;  // of instances
+};
+Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
+                                 std::span<const VkAccelerationStructureInstanceKHR> instances,
+                                 bool updatable, std::vector<Buffer>& kept);
+void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
+                     VkAccelerationStructureKHR target);
 
 }  // namespace glint

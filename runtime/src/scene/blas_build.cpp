@@ -2,6 +2,8 @@
 
 #include "opacity/micromap_build.h"
 
+#include <algorithm>
+
 namespace glint {
 namespace {
 
@@ -17,6 +19,8 @@ constexpr VkBuildAccelerationStructureFlagsKHR kStatic =
 constexpr VkBuildAccelerationStructureFlagsKHR kUpdatable =
     VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_BUILD_BIT_KHR |
     VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR;
+
+constexpr VkDeviceSize kSharedScratchBytes = VkDeviceSize{64} << 20;
 
 VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry) {
     VkAccelerationStructureGeometryKHR described{};
@@ -71,6 +75,47 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
     build.scratchBytes = rounded(sizes.buildScratchSize);
     build.updateScratchBytes = input.updatable ? rounded(sizes.updateScratchSize) : 0;
     return build;
+}
+
+VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasBuild* const> builds) {
+    VkDeviceSize most = 0;
+    VkDeviceSize sum = 0;
+    for (const BlasBuild* const build : builds) {
+        sum += build->scratchBytes;
+        most = std::max(most, build->scratchBytes);
+    }
+    // Some drivers bind scratch as a storage buffer, so it must respect the limit of those.
+    const VkDeviceSize limit =
+        std::min<VkDeviceSize>(kSharedScratchBytes, context.limits.core.maxStorageBufferRange);
+    return std::max(most, std::min(sum, limit));
+}
+
+void recordBuilds(const Context::State& context, VkCommandBuffer commands,
+                  std::span<const BlasBuild* const> builds, const ScratchRange& scratch) {
+    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
+    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
+    VkDeviceSize used = 0;
+    const auto flush = [&] {
+        if (!infos.empty()) {
+            context.vk.CmdBuildAccelerationStructuresKHR(commands, static_cast<std::uint32_t>(infos.size()),
+                                                         infos.data(), ranges.data());
+        }
+        infos.clear();
+        ranges.clear();
+        used = 0;
+    };
+    for (const BlasBuild* const build : builds) {
+        if (used + build->scratchBytes > scratch.bytes) {
+            flush();
+            recordDependency(context, commands, kBuildsInOrder);
+        }
+        VkAccelerationStructureBuildGeometryInfoKHR info = build->info;
+        info.scratchData.deviceAddress = scratch.address + used;
+        used += build->scratchBytes;
+        infos.push_back(info);
+        ranges.push_back(build->ranges.data());
+    }
+    flush();
 }
 
 }  // namespace glint

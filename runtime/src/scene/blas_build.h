@@ -1,8 +1,10 @@
 // The description of a bottom level in Vulkan's terms.
 #pragma once
 
+#include "context/commands.h"
 #include "scene/acceleration.h"
 
+#include <span>
 #include <vector>
 
 namespace glint {
@@ -21,5 +23,25 @@ struct BlasBuild {
 
 // Describes a build except for its destination and its scratch memory.
 BlasBuild describeBuild(const Context::State& context, const BlasInput& input);
+
+// Between builds that share scratch memory, or of which one reads what the other has built.
+inline constexpr MemoryDependency kBuildsInOrder{
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+    VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR};
+
+// Builds with destinations that share scratch memory: those that do not fit beside the ones before them wait
+// for these. No dependency is recorded before the first build or after the last. Requires scratchBytesOf()
+// bytes.
+struct ScratchRange {
+    VkDeviceAddress address = 0;
+    VkDeviceSize bytes = 0;
+};
+void recordBuilds(const Context::State& context, VkCommandBuffer commands,
+                  std::span<const BlasBuild* const> builds, const ScratchRange& scratch);
+// Returns the size of that memory: as much as all builds need, and at most 64 MiB unless one build needs
+// more.
+VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasBuild* const> builds);
 
 }  // namespace glint

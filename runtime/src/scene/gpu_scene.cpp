@@ -91,7 +91,7 @@ Status uploadTextures(GpuScene::State& state, Uploader& uploader,
     return okStatus();
 }
 
-Status uploadMicromaps(GpuScene::State& state, const DecidedTriangles& decided) {
+Status uploadMicromaps(GpuScene::State& state, SceneUpload& upload, const DecidedTriangles& decided) {
     if (decided.micromaps.empty()) {
         return okStatus();
     }
@@ -99,7 +99,7 @@ Status uploadMicromaps(GpuScene::State& state, const DecidedTriangles& decided) 
     for (const auto& [primitive, array] : decided.micromaps) {
         arrays.push_back(array);
     }
-    Result<std::vector<DeviceMicromap>> made = buildMicromaps(state.context, state.pool, arrays);
+    Result<std::vector<DeviceMicromap>> made = addMicromaps(upload, state.pool, arrays);
     if (!made) {
         return made.error();
     }
@@ -114,13 +114,10 @@ Status uploadMicromaps(GpuScene::State& state, const DecidedTriangles& decided) 
 
 // Makes `deformer` if an instance changes its shape.
 Status uploadData(GpuScene::State& state, const Package& package, const SceneView& scene,
-                  std::span<const GridPositions> positions, MemoryPool& builds, SceneLayout& layout,
+                  std::span<const GridPositions> positions, SceneUpload& upload, SceneLayout& layout,
                   std::unique_ptr<Deformer>& deformer) {
     const PackageScene known = package.scene(scene.packageScene);
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
-    if (!uploader) {
-        return uploader.error();
-    }
+    Uploader& uploader = *upload.uploader;
     std::vector<std::uint8_t> materials = materialsWithSizes(state.context, known, scene.images);
     Result<std::vector<ChangingMaterial>> changing =
         replaceMaterials(scene.materials, known.materials, materials);
@@ -138,7 +135,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     state.statistics.maskedTriangles = decided.tested;
     state.statistics.provedOpaque = decided.opaque;
     state.statistics.provedTransparent = decided.transparent;
-    if (Status s = uploadMicromaps(state, decided); !s) {
+    if (Status s = uploadMicromaps(state, upload, decided); !s) {
         return s;
     }
     std::vector<std::vector<std::uint32_t>> ordered = std::move(decided.sorted);
@@ -149,15 +146,15 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         state.statistics.orderMs = millisecondsSince(begin);
     }
     Result<std::vector<GpuPrimitive>> primitives =
-        uploadPrimitives(state.context, state.pool, **uploader, package, known, scene.primitives, positions,
-                         {scene.vertices, capacity.triangles, &builds}, ordered);
+        uploadPrimitives(state.context, state.pool, uploader, package, known, scene.primitives, positions,
+                         {scene.vertices, capacity.triangles, &upload.pool}, ordered);
     if (!primitives) {
         return primitives.error();
     }
     state.primitives = std::move(*primitives);
     if (hasDeformedInstance(scene)) {
         Result<std::unique_ptr<Deformer>> created = Deformer::create(
-            state.context, package, scene, state.primitives, **uploader, state.pool, state.deformed);
+            state.context, package, scene, state.primitives, uploader, state.pool, state.deformed);
         if (!created) {
             return created.error();
         }
@@ -198,10 +195,10 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     using Instances = std::span<const gpu::InstanceRecord>;
     using Lights = std::span<const gpu::LightRecord>;
     using Materials = std::span<const std::uint8_t>;
-    if (Status s = uploadRecords(state, **uploader, Geometries(layout.geometries), state.geometries); !s) {
+    if (Status s = uploadRecords(state, uploader, Geometries(layout.geometries), state.geometries); !s) {
         return s;
     }
-    if (Status s = uploadRecords(state, **uploader, Instances(layout.instances), state.instances); !s) {
+    if (Status s = uploadRecords(state, uploader, Instances(layout.instances), state.instances); !s) {
         return s;
     }
     state.package = describePackage(package, scene, layout, *changing);
@@ -214,31 +211,29 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (scene.moves) {
         state.changing = std::move(*changing);
     }
-    if (Status s = uploadRecords(state, **uploader, Materials(materials), state.materials); !s) {
+    if (Status s = uploadRecords(state, uploader, Materials(materials), state.materials); !s) {
         return s;
     }
-    if (Status s = uploadRecords(state, **uploader, Lights(lights), state.lights); !s) {
+    if (Status s = uploadRecords(state, uploader, Lights(lights), state.lights); !s) {
         return s;
     }
     state.emitters = Emitters(package, known, scene, layout, state.deformed.addresses, ordered, materials);
-    if (Status s = uploadLightTree(state, package, scene, **uploader, lights); !s) {
+    if (Status s = uploadLightTree(state, package, scene, uploader, lights); !s) {
         return s;
     }
-    if (Status s = uploadTextures(state, **uploader, known.textures, scene.images); !s) {
+    if (Status s = uploadTextures(state, uploader, known.textures, scene.images); !s) {
         return s;
     }
     state.statistics.narrowedTextures = countNarrowed(state.context, known.textures, scene.images);
-    return (*uploader)->finish();
+    return okStatus();
 }
 
 // Computes the vertices of the scene's first pose, before structures are built from them.
-Status deformOnce(Context::State& context, const Deformer& deformer, std::size_t instances) {
-    return runOnce(context, [&](VkCommandBuffer commands) {
+void deformOnce(SceneUpload& upload, const Deformer& deformer, std::size_t instances) {
+    upload.uploader->add([&context = upload.context, &deformer, instances](VkCommandBuffer commands) {
         deformer.recordPose(commands);
         recordDependency(context, commands, kAllToAll);
         deformer.recordDeform(commands, std::vector<bool>(instances, true));
-        recordDependency(context, commands, kAllToAll);
-        return okStatus();
     });
 }
 
@@ -269,9 +264,10 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
     return input;
 }
 
-// Builds and compacts the bottom levels that stay as they are. createMotion() builds those that move.
-Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, const SceneView& scene,
-                         const SceneLayout& layout, bool dataAccess, std::vector<BlasInput>& refitted) {
+// Builds the bottom levels that stay as they are. createMotion() builds those that move.
+Status buildBottomLevels(GpuScene::State& state, SceneUpload& upload, const PackageScene& known,
+                         const SceneView& scene, const SceneLayout& layout, bool dataAccess,
+                         std::vector<BlasInput>& refitted) {
     std::vector<BlasInput> inputs;
     std::vector<std::size_t> parts;
     for (std::size_t i = 0; i < layout.parts.size(); ++i) {
@@ -284,8 +280,7 @@ Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, cons
         }
     }
     BlasStatistics statistics;
-    Result<std::vector<AccelerationStructure>> blases =
-        buildBlases(state.context, state.pool, inputs, statistics);
+    Result<std::vector<AccelerationStructure>> blases = addBlases(upload, inputs, statistics);
     if (!blases) {
         return blases.error();
     }
@@ -296,30 +291,32 @@ Status buildBottomLevels(GpuScene::State& state, const PackageScene& known, cons
     }
     state.statistics.blasCount = static_cast<std::uint32_t>(state.blases.size());
     state.statistics.blasBytes = statistics.bytes;
-    state.statistics.blasUncompactedBytes = statistics.uncompactedBytes;
-    state.statistics.blasBuildMs = statistics.buildMs;
+    state.statistics.blasUncompactedBytes = statistics.bytes;
     return okStatus();
 }
 
-Status buildTopLevel(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout) {
+Status buildTopLevel(GpuScene::State& state, SceneUpload& upload, const SceneView& scene,
+                     const SceneLayout& layout) {
     std::vector<VkAccelerationStructureInstanceKHR> instances;
     for (const PartInstance& placed : layout.partInstances) {
         instances.push_back(makePlaced(layout.parts[placed.part].doubleSided, placed,
                                        scene.instances[placed.instance].objectToWorld,
                                        state.partBlases[placed.part]));
     }
-    Result<AccelerationStructure> tlas =
-        buildTlas(state.context, state.pool, instances, state.statistics.tlasBuildMs);
+    Result<AccelerationStructure> tlas = addTlas(upload, state.pool, instances);
     if (!tlas) {
         return tlas.error();
     }
     state.tlas = std::move(*tlas);
+    if (upload.compaction) {
+        upload.compaction->placed = std::move(instances);
+    }
     return okStatus();
 }
 
-// Uploads a scene that is not edited. `builds` gets what only the builds of acceleration structures read.
+// Queues the upload of a scene that is not edited.
 Status uploadStill(GpuScene::State& state, const Package& package, const PackageScene& known,
-                   const SceneView& given, MemoryPool& builds) {
+                   const SceneView& given, SceneUpload& upload) {
     // Everything that is made of positions has those that the device reads.
     const std::vector<GridPositions> positions = packPositions(given.primitives, given.vertices);
     const std::vector<PrimitiveView> primitives = withPositions(given.primitives, positions);
@@ -327,25 +324,26 @@ Status uploadStill(GpuScene::State& state, const Package& package, const Package
     scene.primitives = primitives;
     SceneLayout layout;
     std::unique_ptr<Deformer> deformer;
-    if (Status s = uploadData(state, package, scene, positions, builds, layout, deformer); !s) {
+    if (Status s = uploadData(state, package, scene, positions, upload, layout, deformer); !s) {
         return s;
     }
     if (deformer) {
-        if (Status s = deformOnce(state.context, *deformer, scene.instances.size()); !s) {
-            return s;
-        }
+        deformOnce(upload, *deformer, scene.instances.size());
     }
     std::vector<BlasInput> refitted;
-    if (Status s = buildBottomLevels(state, known, scene, layout, package.positionFetch(), refitted); !s) {
-        return s;
-    }
-    if (Status s = scene.moves ? createMotion(state, scene, layout, refitted, std::move(deformer))
-                               : buildTopLevel(state, scene, layout);
+    if (Status s = buildBottomLevels(state, upload, known, scene, layout, package.positionFetch(), refitted);
         !s) {
         return s;
     }
+    if (Status s = scene.moves
+                       ? createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader)
+                       : buildTopLevel(state, upload, scene, layout);
+        !s) {
+        return s;
+    }
+    upload.deformer = std::move(deformer);
     for (GpuPrimitive& primitive : state.primitives) {
-        primitive.buildInput = {};
+        upload.keep(std::move(primitive.buildInput));
     }
     Result<std::vector<UniqueSampler>> samplers = createSamplers(state.context, known.samplers);
     if (!samplers) {
@@ -384,8 +382,13 @@ VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstan
     return instance;
 }
 
-Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
-                                                   const SceneView& scene) {
+namespace {
+
+// Makes a scene and records its upload. If its staging memory would exceed `mostStaged`, parts of the upload
+// are submitted and waited for.
+Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Package& package,
+                                                   const SceneView& scene, VkCommandBuffer commands,
+                                                   std::uint64_t frame, VkDeviceSize mostStaged) {
     Context::State& contextState = context.state();
     const bool hasNothing = scene.editable && scene.packageScene == kNoPackageScene;
     if (!hasNothing && scene.packageScene >= package.sceneCount()) {
@@ -413,22 +416,96 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     if (Status s = checkScene(package, known, scene, imageLimits(contextState)); !s) {
         return s.error();
     }
-    MemoryPool builds(contextState);  // of what only the builds below read
-    auto state = std::make_unique<State>(contextState);
+    auto state = std::make_unique<GpuScene::State>(contextState);
+    state->upload = std::make_unique<SceneUpload>(contextState, mostStaged);
+    SceneUpload& upload = *state->upload;
+    upload.frame = frame;
     if (scene.streamsTextures) {
         state->stream = std::make_unique<TextureStream>(
             std::make_unique<TextureStream::State>(*state, scene.firstTexels));
+        state->stream->state().lastFrame = frame;
     }
     if (scene.editable) {
-        if (Status s = uploadEditable(*state, package, known, scene); !s) {
+        if (Status s = uploadEditable(*state, package, known, scene, upload, commands); !s) {
             return s.error();
         }
-        return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
+    } else {
+        if (Status s = uploadStill(*state, package, known, scene, upload); !s) {
+            return s.error();
+        }
+        for (Buffer& staging : upload.uploader->record(commands)) {
+            upload.keep(std::move(staging));
+        }
+        recordDependency(contextState, commands, kAllToAll);
     }
-    if (Status s = uploadStill(*state, package, known, scene, builds); !s) {
+    state->compaction = std::move(upload.compaction);
+    return state;
+}
+
+// Device times of the builds. They are for people, so an error leaves them at 0.
+void readTimes(GpuScene::State& state) {
+    const SceneUpload& upload = *state.upload;
+    if (upload.timer && upload.timer->available()) {
+        if (const Result<std::vector<double>> times = upload.timer->read(upload.stretches)) {
+            state.statistics.blasBuildMs = (*times)[SceneUpload::kBlasStretch];
+            state.statistics.tlasBuildMs = times->size() > 1 ? (*times)[SceneUpload::kTlasStretch] : 0.0;
+        }
+    }
+    if (state.motion) {
+        readFirstBuild(state);
+    }
+}
+
+// The staging memory of a blocking upload.
+constexpr VkDeviceSize kMostStaged = VkDeviceSize{64} << 20;
+
+}  // namespace
+
+Result<std::unique_ptr<GpuScene>> GpuScene::record(Context& context, const Package& package,
+                                                   const SceneView& scene, VkCommandBuffer commands,
+                                                   std::uint64_t frame) {
+    Result<std::unique_ptr<State>> state =
+        makeScene(context, package, scene, commands, frame, Uploader::kUnlimited);
+    if (!state) {
+        return state.error();
+    }
+    return std::unique_ptr<GpuScene>(new GpuScene(std::move(*state)));
+}
+
+Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
+                                                   const SceneView& scene) {
+    Result<CommandRunner> runner = CommandRunner::create(context.state());
+    if (!runner) {
+        return runner.error();
+    }
+    Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    Result<std::unique_ptr<State>> state = makeScene(context, package, scene, *commands, 0, kMostStaged);
+    if (!state) {
+        return state.error();
+    }
+    std::unique_ptr<GpuScene> uploaded(new GpuScene(std::move(*state)));
+    if (Status s = runner->submitAndWait(); !s) {
         return s.error();
     }
-    return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
+    uploaded->complete(0);
+    commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    const Result<bool> compacted = uploaded->recordCompaction(*commands, 0);
+    if (!compacted) {
+        return compacted.error();
+    }
+    if (*compacted) {
+        if (Status s = runner->submitAndWait(); !s) {
+            return s.error();
+        }
+        uploaded->complete(0);
+    }
+    return uploaded;
 }
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -448,6 +525,28 @@ VkDescriptorSet GpuScene::descriptorSet() const {
 
 VkDescriptorSetLayout GpuScene::descriptorSetLayout() const {
     return state_->setLayout.get();
+}
+
+void GpuScene::complete(std::uint64_t frame) {
+    if (state_->editor) {
+        state_->editor->complete(frame);
+    }
+    if (state_->stream) {
+        state_->stream->complete(frame);
+    }
+    if (state_->upload && state_->upload->frame <= frame) {
+        readTimes(*state_);
+        state_->upload.reset();
+    }
+    completeCompaction(*state_, frame);
+}
+
+bool GpuScene::isUploaded() const {
+    return state_->upload == nullptr;
+}
+
+Result<bool> GpuScene::recordCompaction(VkCommandBuffer commands, std::uint64_t frame) {
+    return glint::recordCompaction(*state_, commands, frame);
 }
 
 const GpuScene::Statistics& GpuScene::statistics() const {

@@ -11,6 +11,7 @@
 #include "scene/geometry.h"
 #include "scene/light_tree.h"
 #include "scene/scene_materials.h"
+#include "scene/scene_upload.h"
 #include "scene/traversal_order.h"
 
 #include <glint/renderer.h>
@@ -40,7 +41,9 @@ struct GpuScene::State {
 
     Context::State& context;
     MemoryPool pool;
-    ScenePackage package;  // that the scene is drawn with
+    std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
+    std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
+    ScenePackage package;                    // that the scene is drawn with
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives

@@ -41,6 +41,8 @@ struct Cone {
 struct LightBounds {
     Double3 lower{};
     Double3 upper{};
+    Double3 mean{};          // of the positions, weighted by intensity
+    Double3 variance{};      // of the positions, by axis
     Cone axes;               // holds the axes of all
     double emission = 0.0;   // the most angle between a light's axis and a direction in which it shines
     double intensity = 0.0;  // sum, candela
@@ -80,9 +82,15 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
         return a.isEmpty ? b : a;
     }
     LightBounds both;
+    const double whole = a.intensity + b.intensity;
+    const double share = whole > 0.0 ? b.intensity / whole : 0.5;
     for (std::size_t i = 0; i < 3; ++i) {
         both.lower[i] = std::min(a.lower[i], b.lower[i]);
         both.upper[i] = std::max(a.upper[i], b.upper[i]);
+        const double apart = b.mean[i] - a.mean[i];
+        both.mean[i] = a.mean[i] + share * apart;
+        both.variance[i] =
+            (1.0 - share) * a.variance[i] + share * b.variance[i] + share * (1.0 - share) * apart * apart;
     }
     both.axes = unite(a.axes, b.axes);
     both.emission = std::max(a.emission, b.emission);
@@ -91,6 +99,15 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
     both.twoSided = a.twoSided || b.twoSided;
     both.isEmpty = false;
     return both;
+}
+
+// The light comes from everywhere in the box alike.
+void fillBox(LightBounds& bounds) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double size = bounds.upper[i] - bounds.lower[i];
+        bounds.mean[i] = bounds.lower[i] + 0.5 * size;
+        bounds.variance[i] = size * size / 12.0;
+    }
 }
 
 LightBounds boundsOfLight(const gpu::LightRecord& light) {
@@ -102,6 +119,7 @@ LightBounds boundsOfLight(const gpu::LightRecord& light) {
         bounds.lower[i] -= light.size;
         bounds.upper[i] += light.size;
     }
+    fillBox(bounds);
     bounds.emission = kLightPi / 2.0;
     const Double3 color = doublesOf(light.intensity);
     // The luminance of linear Rec. 709, as in bsdf/constants.glsl.
@@ -122,6 +140,7 @@ LightBounds boundsOfEmitter(const EmitterBounds& emitter) {
     bounds.isEmpty = false;
     bounds.lower = emitter.lower;
     bounds.upper = emitter.upper;
+    fillBox(bounds);
     bounds.emission = kLightPi / 2.0;
     bounds.intensity = std::clamp(emitter.intensity, 0.0, kMaxIntensity);
     bounds.reach = std::numeric_limits<double>::infinity();
@@ -136,6 +155,16 @@ gpu::vec3 floatsOf(const Double3& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
+// Numbers in [0, 1], one for each axis, in 10 bits each.
+std::uint32_t packShares(const Double3& shares) {
+    std::uint32_t packed = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double share = std::clamp(shares[i], 0.0, 1.0) * gpu::kLightShares;
+        packed |= static_cast<std::uint32_t>(std::lround(share)) << (10 * i);
+    }
+    return packed;
+}
+
 gpu::LightNode makeLightNode(const LightBounds& bounds, std::uint32_t next) {
     gpu::LightNode node{};
     node.lower = floatsOf(bounds.lower);
@@ -146,6 +175,15 @@ gpu::LightNode makeLightNode(const LightBounds& bounds, std::uint32_t next) {
     node.cosAxes = static_cast<float>(std::cos(bounds.axes.angle));
     node.cosEmission = static_cast<float>(std::cos(bounds.emission));
     node.next = next;
+    Double3 mean{};
+    Double3 deviation{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double size = bounds.upper[i] - bounds.lower[i];
+        mean[i] = size > 0.0 ? (bounds.mean[i] - bounds.lower[i]) / size : 0.5;
+        deviation[i] = size > 0.0 ? 2.0 * std::sqrt(std::max(bounds.variance[i], 0.0)) / size : 0.0;
+    }
+    node.mean3x10 = packShares(mean);
+    node.deviation3x10 = packShares(deviation);
     return node;
 }
 

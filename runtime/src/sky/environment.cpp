@@ -76,7 +76,7 @@ Status createSampler(Environment::State& state) {
     return okStatus();
 }
 
-Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& levels) {
+Status uploadLevels(Environment::State& state, Uploader& uploader, const std::vector<RadianceMap>& levels) {
     const bool half = state.statistics.halfFloat;
     state.scale = half ? halfScale(levels.front()) : 1.0F;
     ImageInfo info;
@@ -95,17 +95,10 @@ Status uploadLevels(Environment::State& state, const std::vector<RadianceMap>& l
         mips.push_back(half ? toHalves(level, state.scale) : toFloats(level));
     }
     const std::vector<std::span<const std::uint8_t>> views(mips.begin(), mips.end());
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
-    if (!uploader) {
-        return uploader.error();
-    }
-    if (Status status = (*uploader)->copyToImage(views, {1, 1, half ? 8U : 16U}, state.map); !status) {
-        return status;
-    }
-    return (*uploader)->finish();
+    return uploader.copyToImage(views, {1, 1, half ? 8U : 16U}, state.map);
 }
 
-Status uploadCounts(Environment::State& state, const SkyCounts& distribution) {
+Status uploadCounts(Environment::State& state, Uploader& uploader, const SkyCounts& distribution) {
     state.countColumns = distribution.columns;
     state.countRows = distribution.rows;
     const std::span<const std::uint8_t> bytes = bytesOf(std::span<const std::uint32_t>(distribution.counts));
@@ -116,32 +109,24 @@ Status uploadCounts(Environment::State& state, const SkyCounts& distribution) {
         return buffer.error();
     }
     state.counts = std::move(*buffer);
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(state.context);
-    if (!uploader) {
-        return uploader.error();
-    }
-    if (Status status = (*uploader)->copyToBuffer(bytes, state.counts); !status) {
-        return status;
-    }
-    return (*uploader)->finish();
+    return uploader.copyToBuffer(bytes, state.counts);
 }
 
-}  // namespace
-
-Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image,
-                                                         const EnvironmentOptions& options) {
+// Makes an environment, and queues its copies.
+Result<std::shared_ptr<Environment::State>> makeState(Context& context, const LinearImage& image,
+                                                      const EnvironmentOptions& options, Uploader& uploader) {
     Result<CheckedMap> checked = checkMap(image);
     if (!checked) {
         return checked.error();
     }
-    auto state = std::make_shared<State>(context.state());
+    auto state = std::make_shared<Environment::State>(context.state());
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     RadianceMap map = fitToDevice(std::move(checked->map));
     state->harmonics = skyHarmonics(map);
     const SkyCounts distribution = options.sampled ? skyCounts(map) : SkyCounts{};
     const std::vector<RadianceMap> levels = filterByRoughness(std::move(map));
-    Statistics& statistics = state->statistics;
+    Environment::Statistics& statistics = state->statistics;
     statistics.filterMs = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     statistics.width = levels.front().width;
     statistics.height = levels.front().height;
@@ -149,18 +134,62 @@ Result<std::unique_ptr<Environment>> Environment::create(Context& context, const
     statistics.negativePixels = checked->negativePixels;
     statistics.sampled = options.sampled;
     statistics.halfFloat = !context.state().limits.filteredFloats;
-    if (Status status = uploadLevels(*state, levels); !status) {
+    if (Status status = uploadLevels(*state, uploader, levels); !status) {
         return status.error();
     }
     if (options.sampled) {
-        if (Status status = uploadCounts(*state, distribution); !status) {
+        if (Status status = uploadCounts(*state, uploader, distribution); !status) {
             return status.error();
         }
     }
     if (Status status = createSampler(*state); !status) {
         return status.error();
     }
-    return std::unique_ptr<Environment>(new Environment(std::move(state)));
+    return state;
+}
+
+}  // namespace
+
+struct Environment::Upload : StagedCopies {
+    using StagedCopies::StagedCopies;
+};
+
+Result<std::unique_ptr<Environment>> Environment::record(Context& context, const LinearImage& image,
+                                                         const EnvironmentOptions& options,
+                                                         VkCommandBuffer commands, std::uint64_t frame) {
+    auto upload = std::make_unique<Upload>(context.state());
+    Result<std::shared_ptr<State>> state = makeState(context, image, options, *upload->uploader);
+    if (!state) {
+        return state.error();
+    }
+    upload->record(commands, frame);
+    std::unique_ptr<Environment> environment(new Environment(std::move(*state)));
+    environment->upload_ = std::move(upload);
+    return environment;
+}
+
+Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image,
+                                                         const EnvironmentOptions& options) {
+    std::unique_ptr<Environment> environment;
+    const Status status = runOnce(context.state(), [&](VkCommandBuffer commands) -> Status {
+        Result<std::unique_ptr<Environment>> recorded = record(context, image, options, commands, 0);
+        if (!recorded) {
+            return recorded.error();
+        }
+        environment = std::move(*recorded);
+        return okStatus();
+    });
+    if (!status) {
+        return status.error();
+    }
+    environment->complete(0);
+    return environment;
+}
+
+void Environment::complete(std::uint64_t frame) {
+    if (upload_ && upload_->frame <= frame) {
+        upload_.reset();
+    }
 }
 
 Environment::Environment(std::shared_ptr<const State> state) : state_(std::move(state)) {}

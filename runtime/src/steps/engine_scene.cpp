@@ -208,8 +208,9 @@ void recordContents(const EngineScene::State& state, VkCommandBuffer commands, c
 
 }  // namespace
 
-Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const Package& package,
-                                                         const EngineSceneView& scene) {
+Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const Package& package,
+                                                         const EngineSceneView& scene,
+                                                         VkCommandBuffer commands, std::uint64_t frame) {
     if (scene.packageScene >= package.sceneCount()) {
         return makeError("scene-package", "",
                          "the package has no scene " + std::to_string(scene.packageScene),
@@ -245,28 +246,48 @@ Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const
     state->instanceCount = instances->size();
     state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights->size());
     state->recordsBy = scene.recordsBy;
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(context.state());
-    if (!uploader) {
-        return uploader.error();
-    }
+    state->upload = std::make_unique<StagedCopies>(context.state());
+    Uploader& uploader = *state->upload->uploader;
     const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
     for (const Status& status :
-         {upload(*state, **uploader, *geometries, 0, state->geometries),
-          upload(*state, **uploader, *instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
-          upload(*state, **uploader, *instances, 0, state->previousInstances),
-          upload(*state, **uploader, *lights, 0, state->lights),
-          upload(*state, **uploader, *materials, 0, state->materials),
-          upload(*state, **uploader, firstRecords, 0, state->firstRecords)}) {
+         {upload(*state, uploader, *geometries, 0, state->geometries),
+          upload(*state, uploader, *instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
+          upload(*state, uploader, *instances, 0, state->previousInstances),
+          upload(*state, uploader, *lights, 0, state->lights),
+          upload(*state, uploader, *materials, 0, state->materials),
+          upload(*state, uploader, firstRecords, 0, state->firstRecords)}) {
         if (!status) {
             return status.error();
         }
     }
-    if (Status status = (*uploader)->finish(); !status) {
-        return status.error();
-    }
+    state->upload->record(commands, frame);
     state->addresses = {state->geometries.address, state->instances.address, state->previousInstances.address,
                         state->materials.address,  state->lights.address,    state->firstRecords.address};
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
+}
+
+Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const Package& package,
+                                                         const EngineSceneView& scene) {
+    std::unique_ptr<EngineScene> made;
+    const Status status = runOnce(context.state(), [&](VkCommandBuffer commands) -> Status {
+        Result<std::unique_ptr<EngineScene>> recorded = record(context, package, scene, commands, 0);
+        if (!recorded) {
+            return recorded.error();
+        }
+        made = std::move(*recorded);
+        return okStatus();
+    });
+    if (!status) {
+        return status.error();
+    }
+    made->complete(0);
+    return made;
+}
+
+void EngineScene::complete(std::uint64_t frame) {
+    if (state_->upload && state_->upload->frame <= frame) {
+        state_->upload.reset();
+    }
 }
 
 Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) {

@@ -3,10 +3,12 @@
 
 #include "context/context_state.h"
 #include "context/resources.h"
+#include "context/upload.h"
 
 #include <glint/engine_scene.h>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace glint {
@@ -17,6 +19,7 @@ struct EngineScene::State {
 
     Context::State& context;
     MemoryPool pool;
+    std::unique_ptr<StagedCopies> upload;  // null when the device has completed it
     Buffer geometries;
     Buffer instances;
     Buffer previousInstances;

@@ -17,6 +17,7 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 #include "host/random.glsl"
 #include "hit/trace.glsl"
 #include "light/sized.glsl"
+#include "materials/volume/nesting.glsl"
 #include "materials/volume/volume.glsl"
 #if GLINT_LAYER_RAYS
 #include "layers/ray_hits.glsl"
@@ -24,40 +25,6 @@ const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | 
 
 // The pairs of dimensions of the sequence: each interface has two.
 const uint kPairInterface = 512u;
-
-// The media around a ray, the innermost last.
-const uint kMaxMedia = 4u;
-struct Media {
-    uint count;
-    uint material[kMaxMedia];
-    vec3 ior[kMaxMedia];  // indices of red, green, blue
-};
-
-// Returns the place of a material's medium counted from 1, the innermost of several; 0 if the ray is not in that
-// material.
-uint placeOf(Media media, uint material) {
-    uint place = 0u;
-    for (uint i = 0u; i < min(media.count, kMaxMedia); ++i) {
-        place = media.material[i] == material ? i + 1u : place;
-    }
-    return place;
-}
-
-void enterMedium(inout Media media, uint material, vec3 ior) {
-    if (media.count < kMaxMedia) {
-        media.material[media.count] = material;
-        media.ior[media.count] = ior;
-        media.count += 1u;
-    }
-}
-
-void leaveMedium(inout Media media, uint place) {
-    for (uint i = place; i < media.count; ++i) {
-        media.material[i - 1u] = media.material[i];
-        media.ior[i - 1u] = media.ior[i];
-    }
-    media.count -= 1u;
-}
 
 // The state of the ray.
 struct Walker {
@@ -179,34 +146,6 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     return kPasses;
 }
 
-// Sets the indices on both sides of a volume's surface, for the media that the ray is in. Returns the place of the
-// medium that the ray leaves if it passes, or 0 if it enters one.
-uint nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
-    vec3 own = mediumIors(hit, features);
-    uint place = hit.frontFace ? 0u : placeOf(media, hit.material);
-    // The index of the medium outside of the surface.
-    uint around = media.count;
-    if (place > 0u && place == media.count) {
-        around = place - 1u;
-    }
-    vec3 outside = around > 0u ? media.ior[around - 1u] : vec3(1.0);
-    b.eta = hit.frontFace ? own / outside : outside / own;
-    if (around > 0u) {
-        // f0 follows from the two media; f90 is the specular factor of a dielectric (KHR_materials_specular).
-        b.f0 = vec3(dielectricF0(b.eta.y) * b.f90);
-    }
-    return place;
-}
-
-// Enters the surface's medium, or leaves the one at `place`.
-void passInterface(Hit hit, Features features, uint place, inout Media media) {
-    if (hit.frontFace) {
-        enterMedium(media, hit.material, mediumIors(hit, features));
-    } else if (place > 0u) {
-        leaveMedium(media, place);
-    }
-}
-
 #if GLINT_SIZED_LIGHTS
 // The light of lights with a size that the ray meets before the distance at which it ends, as the viewer sees it. No
 // samples of lights bring light to the surfaces of a walk.
@@ -218,9 +157,9 @@ vec3 lightsOnWay(Walker walker, float end) {
         LightSample point = lightAlong(light, hostSampleLight(light, walker.origin), walker.direction);
         if (lobesFind(light) && point.irradiance != vec3(0.0) && point.distance < end) {
             vec3 arriving = walker.weight * point.irradiance;
-            if (walker.media.count > 0u) {
-                uint medium = walker.media.material[walker.media.count - 1u];
-                arriving *= volumeTransmittance(GLINT_RECORD_ABSORPTION(hostMaterials().data[medium]), point.distance);
+            if (isWithin(walker.media)) {
+                vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[innermostMaterial(walker.media)]);
+                arriving *= volumeTransmittance(absorption, point.distance);
             }
             sum += arriving;
         }
@@ -241,7 +180,7 @@ uint walk(uvec2 pixel, uint target) {
     walker.direction = camera.direction;
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
-    walker.media.count = 0u;
+    walker.media = uvec2(0u);
     walker.weight = vec3(storedSample(target).coneSpread);  // see the comment in refraction.glsl
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
@@ -253,7 +192,9 @@ uint walk(uvec2 pixel, uint target) {
         if (meets) {
             Surface surface = evaluateSurface(hit, features);
             bool volume = hasLobe(features, GLINT_VOLUME);
-            uint place = volume ? nestMedia(hit, features, walker.media, surface.bsdf) : 0u;
+            if (volume) {
+                nestMedia(hit, features, walker.media, surface.bsdf);
+            }
             vec3 before = walker.direction;
             uint outcome = scatter(hit, surface, features, depth == 0u, depth, walker);
             if (outcome == kStops) {
@@ -268,7 +209,7 @@ uint walk(uvec2 pixel, uint target) {
                 return segments;
             }
             if (outcome == kPasses && volume) {
-                passInterface(hit, features, place, walker.media);
+                walker.media = mediaBeyond(hit, walker.media);
             }
         }
         walker.origin = rayOrigin(hit, walker.direction);
@@ -283,7 +224,7 @@ uint walk(uvec2 pixel, uint target) {
         }
         // Continues to the next surface. Within a medium, its back is seen too.
         RayRecord ray = RayRecord(walker.origin, target, walker.direction, walker.coneWidth, GLINT_FRAME.pixelSpread);
-        bool within = walker.media.count > 0u;
+        bool within = isWithin(walker.media);
         TracedHit record = traceRay(ray, within ? 0u : gl_RayFlagsCullBackFacingTrianglesEXT);
         segments += 1u;
 #if GLINT_SIZED_LIGHTS
@@ -309,8 +250,8 @@ uint walk(uvec2 pixel, uint target) {
         way += travelled;
 #endif
         if (within) {
-            uint medium = walker.media.material[walker.media.count - 1u];
-            walker.weight *= volumeTransmittance(GLINT_RECORD_ABSORPTION(hostMaterials().data[medium]), travelled);
+            vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[innermostMaterial(walker.media)]);
+            walker.weight *= volumeTransmittance(absorption, travelled);
         }
         // The back of a single-sided surface is ignored, unless it is the end of a volume.
         bool back = !hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u;
@@ -332,10 +273,8 @@ uint walk(uvec2 pixel, uint target) {
     GLINT_FRAME.rayHits.data[samplePlace(target)].distance = max(way - travelled, 0.0);
 #endif
 #if GLINT_PATHS
-    // What the ray meets is in the innermost medium, and sends its next ray there.
-    if (walker.media.count > 0u) {
-        GLINT_FRAME.paths.data[samplePlace(target)].medium = walker.media.material[walker.media.count - 1u] + 1u;
-    }
+    // What the ray meets is in these volumes, and sends its next ray there.
+    GLINT_FRAME.paths.data[samplePlace(target)].media = uint[2](walker.media.x, walker.media.y);
 #endif
     return segments;
 }

@@ -1,22 +1,16 @@
 // KHR_materials_volume: the index on the far side, and what the volume absorbs.
 #include "hit/surface_values.glsl"
-#include "materials/dispersion/dispersion.glsl"
-#include "materials/ior/ior.glsl"
 #include "materials/volume/attenuation.glsl"
-
-// The indices of the surface's own medium for red, green and blue light.
-vec3 mediumIors(Hit hit, Features features) {
-    float ior = mediumIor(hit, features);
-    if (hasLobe(features, GLINT_DISPERSION)) {
-        return dispersedIor(ior, GLINT_MATERIAL_DISPERSION(hit));
-    }
-    return vec3(ior);
-}
+#include "materials/volume/nesting.glsl"
 
 void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {
-    vec3 iors = mediumIors(hit, features);
     bool inside = showsBack(features) && !hit.frontFace;
+#if GLINT_PATHS
+    nestMedia(hit, features, hit.arrival.media, surface.bsdf);
+#else
+    vec3 iors = mediumIors(hit, features);
     surface.bsdf.eta = inside ? vec3(1.0) / iors : iors;
+#endif
     if (inside) {
         // From within, more is reflected than the albedos of the outside say, so the diffuse lobe is removed.
         surface.bsdf.diffuse = vec3(0.0);

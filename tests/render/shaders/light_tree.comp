@@ -1,6 +1,8 @@
 #version 460
-// For points (origin) and random numbers (direction): the light that the tree chooses, how probable that is, the sum of
-// the probabilities of all lights, and what is wrong.
+// For points (origin), packed normals (target) and random numbers (direction): the light that the tree chooses, how
+// probable that is, the sum of the probabilities of all lights, what is wrong, and the second moment of a sample without
+// shadows over the square of its mean.
+#include "bsdf/fresnel.glsl"
 #include "hit/bindings.glsl"
 #include "light/punctual.glsl"
 #include "light/tree.glsl"
@@ -13,12 +15,14 @@ void main() {
         return;
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
-    LightReceiver receiver = LightReceiver(ray.origin, vec3(0.0));
+    LightReceiver receiver = LightReceiver(ray.origin, unpackReceiver(ray.target));
     float probability;
     uint chosen = lightOfTree(receiver, ray.direction, probability);
     float sum = 0.0;
     uint unreachable = 0u;
     float evaluated = -1.0;
+    float light1 = 0.0;
+    float light2 = 0.0;
     for (uint node = 0u; node < GLINT_FRAME.lightTreeNodes; ++node) {
         uint next = GLINT_FRAME.lightNodes.data[node].next;
         if ((next & kLightLeaf) == 0u) {
@@ -28,12 +32,18 @@ void main() {
         float own = lightProbability(receiver, node);
         sum += own;
         LightSample arriving = sampleLight(GLINT_FRAME.lights.data[light], ray.origin);
-        unreachable += own <= 0.0 && dot(arriving.irradiance, vec3(1.0)) > 0.0 ? 1u : 0u;
+        bool both = receiver.normal == vec3(0.0);
+        float cosine = both ? 1.0 : max(dot(receiver.normal, arriving.direction), 0.0);
+        float arrives = cosine * luminance(arriving.irradiance);
+        unreachable += own <= 0.0 && arrives > 0.0 ? 1u : 0u;
+        light1 += arrives;
+        light2 += own > 0.0 ? arrives * arrives / own : 0.0;
         evaluated = light == chosen ? own : evaluated;
     }
-    GLINT_FRAME.counters.data[5u * index] = chosen;
-    GLINT_FRAME.counters.data[5u * index + 1u] = floatBitsToUint(probability);
-    GLINT_FRAME.counters.data[5u * index + 2u] = floatBitsToUint(evaluated);
-    GLINT_FRAME.counters.data[5u * index + 3u] = floatBitsToUint(sum);
-    GLINT_FRAME.counters.data[5u * index + 4u] = unreachable;
+    GLINT_FRAME.counters.data[6u * index] = chosen;
+    GLINT_FRAME.counters.data[6u * index + 1u] = floatBitsToUint(probability);
+    GLINT_FRAME.counters.data[6u * index + 2u] = floatBitsToUint(evaluated);
+    GLINT_FRAME.counters.data[6u * index + 3u] = floatBitsToUint(sum);
+    GLINT_FRAME.counters.data[6u * index + 4u] = unreachable;
+    GLINT_FRAME.counters.data[6u * index + 5u] = floatBitsToUint(light1 > 0.0 ? light2 / (light1 * light1) : 1.0);
 }

@@ -180,6 +180,35 @@ TEST(LightTree, DarkLightsHaveNoIntensity) {
     EXPECT_EQ(std::min(tree.nodes[1].intensity, tree.nodes[2].intensity), 0.0F);
 }
 
+// The mean and the deviation of positions, from the shares of the box that a node has.
+TEST(LightTree, NodesKnowWhereTheirLightComesFrom) {
+    const std::vector<gpu::LightRecord> lights = mixedLights(300, 10);
+    const LightTree tree = buildLightTree(lights);
+    double weight = 0.0;
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const Leaf& leaf : leavesOf(tree)) {
+        const gpu::LightRecord& light = lights[leaf.light];
+        const double x = light.position.x;
+        weight += light.intensity.x;
+        mean += light.intensity.x * x;
+        // A light with a size is everywhere in its box.
+        squares += light.intensity.x * (x * x + light.size * light.size / 3.0);
+    }
+    mean /= weight;
+    const gpu::LightNode& root = tree.nodes[0];
+    const double size = root.upper.x - root.lower.x;
+    const auto share = [](std::uint32_t shares) { return (shares & gpu::kLightShares) / 1023.0; };
+    EXPECT_NEAR(root.lower.x + size * share(root.mean3x10), mean, size / 1023.0);
+    EXPECT_NEAR(size / 2.0 * share(root.deviation3x10), std::sqrt(squares / weight - mean * mean),
+                size / 1023.0);
+    const LightTree pair = buildLightTree(std::vector{point(0, 1, 0, 3.0F), point(8, 1, 0, 1.0F)});
+    EXPECT_NEAR(share(pair.nodes[0].mean3x10), 0.25, 1e-3);
+    EXPECT_NEAR(share(pair.nodes[0].deviation3x10), std::sqrt(0.75), 1e-3) << "a share of half of the box";
+    EXPECT_EQ(pair.nodes[0].deviation3x10 >> 10, 0U);
+    EXPECT_EQ(pair.nodes[1].deviation3x10, 0U) << "one point";
+}
+
 // Triangles of random places and normals, of which every fifth is dark and every third shines on both sides.
 std::vector<EmitterBounds> someEmitters(std::size_t count, unsigned seed) {
     std::mt19937 random(seed);

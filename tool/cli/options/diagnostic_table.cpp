@@ -320,6 +320,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-samplers", kError, "The scene has more samplers than the device takes."},
     {"scene-still", kError, "The runtime was given a pose of a scene that was uploaded without motion."},
     {"scene-textures", kError, "The scene has more textures than the device takes."},
+    {"scene-upload", kError, "The runtime was given a pose of a scene whose upload is not complete."},
     {"settings-file", kError,
      "The file of `--settings` is not a settings file, or has an unknown setting or value."},
     {"sized-lights", kError,

@@ -1,0 +1,236 @@
+// glint_scene_load: measures how long the program stands still while a scene is uploaded, and how long it
+// takes to the first frame and to all levels of the textures: with the blocking upload, with one that is
+// recorded into the first frame's command buffer, and with one that begins with coarse levels.
+#include "base/clock.h"
+#include "context/commands.h"
+#include "emit/compile.h"
+#include "gltf/import.h"
+#include "settings/configuration.h"
+
+#include <glint/context.h>
+#include <glint/measure/render_settings.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/sky.h>
+#include <glint/scene_view/textures.h>
+#include <glint/texture_stream.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+namespace {
+
+enum class Way { Blocking, Recorded, Streamed };
+
+struct Arguments {
+    std::string scene;
+    int rounds = 5;
+    std::uint32_t width = 320;
+    std::uint32_t height = 180;
+};
+
+// Everything that is there before the upload.
+struct Ready {
+    std::unique_ptr<Context> context;
+    gltf::Scene scene;
+    std::unique_ptr<Package> package;
+    std::shared_ptr<const scene_view::TextureSet> textures;
+    scene_view::SceneViewData data;
+    FrameOptions frame;
+};
+
+// Milliseconds of wall clock since the upload began.
+struct Times {
+    double returned = 0.0;    // the call has returned
+    double firstFrame = 0.0;  // the device has completed a frame, including the making of pipelines
+    double allLevels = 0.0;   // the same, of a frame with all levels of the textures
+};
+
+Result<std::unique_ptr<Ready>> prepare(const Arguments& arguments, const compiler::Settings& settings) {
+    auto ready = std::make_unique<Ready>();
+    Result<std::unique_ptr<Context>> context = Context::createHeadless(measure::deviceOptions(settings));
+    if (!context) {
+        return context.error();
+    }
+    ready->context = std::move(*context);
+    Result<gltf::Scene> scene = gltf::importScene(arguments.scene, {.keepImageFiles = true});
+    if (!scene) {
+        return scene.error();
+    }
+    ready->scene = std::move(*scene);
+    compiler::CompileSettings compile;
+    compile.strategies = package::kStrategyUber;
+    compile.tracers = ready->context->handles().tracers;
+    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(ready->scene, compile);
+    if (!compiled) {
+        return compiled.error();
+    }
+    Result<Package> package = scene_view::loadPackage(*compiled);
+    if (!package) {
+        return package.error();
+    }
+    ready->package = std::make_unique<Package>(std::move(*package));
+    scene_view::TextureOptions options =
+        measure::textureOptions(settings, *ready->context, *ready->package, nullptr);
+    options.fit.allLevels = true;
+    auto textures = scene_view::loadTextures(ready->scene, options);
+    if (!textures) {
+        return textures.error();
+    }
+    ready->textures = std::move(*textures);
+    ready->data = measure::sceneView(settings, ready->scene);
+    scene_view::useTextures(ready->textures, ready->data);
+    const double aspect = static_cast<double>(arguments.width) / arguments.height;
+    const Result<scene_view::CameraChoice> camera =
+        scene_view::chooseCamera(ready->scene, ready->data, "", aspect);
+    if (!camera) {
+        return camera.error();
+    }
+    ready->frame.camera = camera->view;
+    return ready;
+}
+
+// Brings the finer levels, 8 MiB a frame, each of which is waited for.
+Status bringLevels(GpuScene& scene, Renderer& renderer, const FrameOptions& frame, CommandRunner& runner) {
+    for (std::uint64_t number = 2; scene.textureStream()->progress().textures > 0; ++number) {
+        const Result<VkCommandBuffer> commands = runner.begin();
+        if (!commands) {
+            return commands.error();
+        }
+        if (const auto levels = scene.textureStream()->record(*commands, number); !levels) {
+            return levels.error();
+        }
+        if (Status recorded = renderer.record(*commands, frame); !recorded) {
+            return recorded;
+        }
+        if (Status waited = runner.submitAndWait(); !waited) {
+            return waited;
+        }
+        scene.complete(number);
+    }
+    return okStatus();
+}
+
+Result<Times> measureOnce(const Ready& ready, Way way, const Arguments& arguments) {
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = arguments.width;
+    options.height = arguments.height;
+    SceneView view = ready.data.view();
+    view.streamsTextures = way == Way::Streamed;
+    Result<CommandRunner> runner = CommandRunner::create(ready.context->state());
+    if (!runner) {
+        return runner.error();
+    }
+    const Result<VkCommandBuffer> commands = runner->begin();
+    if (!commands) {
+        return commands.error();
+    }
+    Times times;
+    const base::Clock::time_point start = base::Clock::now();
+    Result<std::unique_ptr<GpuScene>> scene =
+        way == Way::Blocking ? GpuScene::upload(*ready.context, *ready.package, view)
+                             : GpuScene::record(*ready.context, *ready.package, view, *commands, 1);
+    if (!scene) {
+        return scene.error();
+    }
+    times.returned = base::millisecondsSince(start);
+    Result<std::unique_ptr<Renderer>> renderer =
+        Renderer::create(*ready.context, *ready.package, **scene, options);
+    if (!renderer) {
+        return renderer.error();
+    }
+    if (Status recorded = (*renderer)->record(*commands, ready.frame); !recorded) {
+        return recorded.error();
+    }
+    if (Status waited = runner->submitAndWait(); !waited) {
+        return waited.error();
+    }
+    times.firstFrame = base::millisecondsSince(start);
+    (*scene)->complete(1);
+    if (way == Way::Streamed) {
+        if (Status brought = bringLevels(**scene, **renderer, ready.frame, *runner); !brought) {
+            return brought.error();
+        }
+    }
+    times.allLevels = base::millisecondsSince(start);
+    return times;
+}
+
+std::string spread(std::vector<Times>& all, double Times::*time) {
+    std::ranges::sort(all, {}, time);
+    return fmt::format("{:.1f} ({:.1f} to {:.1f})", all[all.size() / 2].*time, all.front().*time,
+                       all.back().*time);
+}
+
+int fail(const Diagnostic& error) {
+    fmt::print(stderr, "{}\n", toString(error));
+    return 1;
+}
+
+int run(const Arguments& arguments) {
+    const compiler::Settings settings;
+    const Result<std::unique_ptr<Ready>> ready = prepare(arguments, settings);
+    if (!ready) {
+        return fail(ready.error());
+    }
+    constexpr std::pair<Way, const char*> kWays[] = {{Way::Blocking, "`upload()`"},
+                                                     {Way::Recorded, "`record()`"},
+                                                     {Way::Streamed, "`record()`, streamed"}};
+    std::vector<Times> times[std::size(kWays)];
+    // The driver's caches are warm after the first round, which does not count.
+    for (int round = 0; round <= arguments.rounds; ++round) {
+        for (std::size_t i = 0; i < std::size(kWays); ++i) {
+            const Result<Times> measured = measureOnce(**ready, kWays[i].first, arguments);
+            if (!measured) {
+                return fail(measured.error());
+            }
+            if (round > 0) {
+                times[i].push_back(*measured);
+            }
+        }
+    }
+    fmt::print("{}: {}, {} rounds; medians in ms, with the least and the most\n\n", arguments.scene,
+               (*ready)->context->deviceName(), arguments.rounds);
+    fmt::print("| way | the call returns | first frame | all levels |\n|---|--:|--:|--:|\n");
+    for (std::size_t i = 0; i < std::size(kWays); ++i) {
+        fmt::print("| {} | {} | {} | {} |\n", kWays[i].second, spread(times[i], &Times::returned),
+                   spread(times[i], &Times::firstFrame), spread(times[i], &Times::allLevels));
+    }
+    return 0;
+}
+
+}  // namespace
+
+}  // namespace glint
+
+int main(int count, char** words) {
+    glint::Arguments arguments;
+    CLI::App app{"Measures how long a scene takes to its first frame, by the way in which it is uploaded."};
+    app.add_option("scene", arguments.scene, "glTF file")->required();
+    app.add_option("--rounds", arguments.rounds, "rounds of each way, which alternate")
+        ->check(CLI::Range(1, 1000));
+    app.add_option("--width", arguments.width, "pixels")->capture_default_str();
+    app.add_option("--height", arguments.height, "pixels")->capture_default_str();
+    CLI11_PARSE(app, count, words);
+    try {
+        return glint::run(arguments);
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "glint_scene_load: {}\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,84 @@
+// What the upload of a scene needs until the device has completed it, and the compaction that follows.
+#pragma once
+
+#include "context/timer.h"
+#include "context/upload.h"
+#include "motion/deformer.h"
+#include "scene/acceleration.h"
+
+#include <glint/scene_edit.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+// --- Compaction ---
+// Bottom levels are built at their full size, and the size of a compacted copy is known when the device has
+// built them.
+
+// The place of a BLAS in a scene that is edited.
+struct PartOfMesh {
+    MeshHandle mesh;
+    std::size_t primitive = 0;
+    std::size_t part = 0;
+};
+
+struct Compaction {
+    explicit Compaction(Context::State& context) : pool(context) {}
+
+    // Of the structures as they were built, and of what the recording needs. Members are destroyed in reverse
+    // order: the pool's memory last.
+    MemoryPool pool;
+    UniqueQueryPool sizes;  // of the compacted copies: one for each BLAS of the upload
+    std::uint32_t count = 0;
+    std::vector<AccelerationStructure> replaced;
+    std::vector<Buffer> kept;
+    // The top level of a scene that neither moves nor is edited, as it was built.
+    std::vector<VkAccelerationStructureInstanceKHR> placed;
+    std::vector<PartOfMesh> parts;       // in a scene that is edited
+    bool queued = false;                 // the editor has the copies
+    std::optional<std::uint64_t> frame;  // in which the copies were recorded
+};
+
+// These implement GpuScene::recordCompaction() and the part of GpuScene::complete() that is about it.
+Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, std::uint64_t frame);
+void completeCompaction(GpuScene::State& state, std::uint64_t frame);
+
+// --- The upload ---
+
+struct SceneUpload {
+    // `mostStaged` is that of Uploader::createDeferred().
+    SceneUpload(Context::State& contextState, VkDeviceSize mostStaged)
+        : context(contextState),
+          pool(contextState),
+          uploader(Uploader::createDeferred(contextState, pool, mostStaged)) {}
+
+    // Keeps a buffer of `pool`, if there is one, until the upload is complete.
+    void keep(Buffer&& buffer) {
+        if (buffer.handle.get() != VK_NULL_HANDLE) {
+            kept.push_back(std::move(buffer));
+        }
+    }
+
+    // The stretches that `timer` measures.
+    static constexpr std::uint32_t kBlasStretch = 0;
+    static constexpr std::uint32_t kTlasStretch = 1;
+
+    Context::State& context;
+    // Of staging, scratch, and what acceleration structures are built from. Members are destroyed in reverse
+    // order: the pool's memory last.
+    MemoryPool pool;
+    std::vector<Buffer> kept;
+    std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order
+    std::unique_ptr<Deformer> deformer;  // of a scene that does not move and is not in its rest pose
+    std::optional<Timer> timer;
+    std::uint32_t stretches = 0;             // that are recorded
+    std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
+    std::uint64_t frame = 0;                 // that the commands belong to
+};
+
+}  // namespace glint

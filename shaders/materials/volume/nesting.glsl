@@ -1,0 +1,45 @@
+// The indices on both sides of the surface of a volume, which may lie within another one.
+#include "hit/media.glsl"
+#include "host/material.glsl"
+#include "materials/dispersion/dispersion.glsl"
+#include "materials/ior/ior.glsl"
+
+// The indices of the surface's own medium for red, green and blue light.
+vec3 mediumIors(Hit hit, Features features) {
+    float ior = mediumIor(hit, features);
+    if (hasLobe(features, GLINT_DISPERSION)) {
+        return dispersedIor(ior, GLINT_MATERIAL_DISPERSION(hit));
+    }
+    return vec3(ior);
+}
+
+// The same for the number of a medium; 1 for none.
+vec3 iorsOfMedium(uint number) {
+    if (number == 0u) {
+        return vec3(1.0);
+    }
+#ifdef GLINT_RECORD_IOR
+    float ior = GLINT_RECORD_IOR(hostMaterials().data[number - 1u]);
+#else
+    float ior = kDefaultIor;
+#endif
+#ifdef GLINT_RECORD_DISPERSION
+    return dispersedIor(ior, GLINT_RECORD_DISPERSION(hostMaterials().data[number - 1u]));
+#else
+    return vec3(ior);
+#endif
+}
+
+// Sets the indices on both sides of a volume's surface, for the media that the ray is in.
+void nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
+    // The medium outside of the surface.
+    bool leavesInnermost = !hit.frontFace && placeOf(media, hit.material) == 0u;
+    uint around = mediumAt(media, leavesInnermost ? 1u : 0u);
+    vec3 outside = iorsOfMedium(around);
+    vec3 own = mediumIors(hit, features);
+    b.eta = hit.frontFace ? own / outside : outside / own;
+    if (around != 0u) {
+        // f0 follows from the two media; f90 is the specular factor of a dielectric (KHR_materials_specular).
+        b.f0 = vec3(dielectricF0(b.eta.y) * b.f90);
+    }
+}
