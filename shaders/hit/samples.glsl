@@ -1,6 +1,6 @@
 // The samples of effects in memory: what primary surfaces send, and the light that comes back.
 #include "hit/bindings.glsl"
-#include "hit/hit_codes.glsl"
+#include "packed/hit_codes.glsl"
 #if GLINT_PATHS
 #include "hit/path.glsl"
 #endif
@@ -26,7 +26,7 @@ struct EffectSample {
 };
 
 #if GLINT_SAMPLE_RECORD_PACKED
-#include "hit/sample_packed.glsl"
+#include "packed/sample.glsl"
 #endif
 
 uint pixelCount() {

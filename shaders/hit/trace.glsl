@@ -5,7 +5,7 @@
 #include "hit/payload.glsl"
 #include "hit/stage.glsl"
 #include "hit/tlas.glsl"
-#include "hit/hit_codes.glsl"
+#include "packed/hit_codes.glsl"
 #if GLINT_TALLIES
 #include "generated/tallies.glsl"
 #endif

@@ -54,8 +54,8 @@ struct SampleStart {
 };
 GLINT_CONSTANT(kPathShift, 8u);
 GLINT_CONSTANT(kOutcomeMask, 0xFFu);
-// The same in the state of a packed record with light, which takes 24 bytes (hit/sample_packed.glsl): a SampleStart and
-// a PackedSampleAim.
+// The same in the state of a packed record with light, which takes 24 bytes: a SampleStart, and a uvec2 in the place of
+// the other two (packed/sample.glsl).
 GLINT_CONSTANT(kPackedPathShift, 4u);
 GLINT_CONSTANT(kPackedPathMask, 0xFu);
 GLINT_CONSTANT(kPackedOutcomeMask, 0xFu);
@@ -70,12 +70,6 @@ struct SampleAim {
 struct SampleWeight {
     vec3 weight;       // factor of the radiance that the ray finds
     float coneSpread;  // growth of the cone's width in a metre
-};
-
-// 8 bytes, in the place of the last two in packed records.
-struct PackedSampleAim {
-    uint weight11_11_10;
-    uint direction27_exponent5;
 };
 
 // A ray as a host lists it. 36 bytes. The lists of a frame have the number of each ray's sample instead.

@@ -57,7 +57,7 @@ enum class HitRecordFormat : std::uint32_t {
 // How the samples of effects are stored between passes.
 enum class SampleRecordFormat : std::uint32_t {
     Full = 0,    // 48 bytes, gpu::SampleStart, SampleAim and SampleWeight
-    Packed = 1,  // 24 bytes, gpu::SampleStart and PackedSampleAim
+    Packed = 1,  // 24 bytes, gpu::SampleStart and gpu::uvec2
 };
 
 // The most bounces that a path may have. It stands for "unlimited": paths that carry little light end

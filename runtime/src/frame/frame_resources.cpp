@@ -188,9 +188,8 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     return {{
         {&Frame::constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
         {&Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead, MemoryUse::Device},
-        {&Frame::sampleAims,
-         samples * (size.packedSamples ? sizeof(gpu::PackedSampleAim) : sizeof(gpu::SampleAim)), kRead,
-         MemoryUse::Device},
+        {&Frame::sampleAims, samples * (size.packedSamples ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim)),
+         kRead, MemoryUse::Device},
         {&Frame::sampleWeights, size.packedSamples ? 0 : samples * sizeof(gpu::SampleWeight), kRead,
          MemoryUse::Device},
         {&Frame::listed, ownRays * sizeof(std::uint32_t), kRead, MemoryUse::Device},

@@ -30,7 +30,7 @@ bool packsSamples(const TrafficShape& shape) {
 
 // The record of a sample behind its start: direction and weight, which a packed record has in one array.
 std::uint32_t aimBytes(const TrafficShape& shape) {
-    return packsSamples(shape) ? sizeof(gpu::PackedSampleAim) : sizeof(gpu::SampleAim);
+    return packsSamples(shape) ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim);
 }
 
 std::uint32_t weightBytes(const TrafficShape& shape) {

@@ -9,7 +9,7 @@
 #include "strategies/hit_shaders/payload.glsl"
 #include "hit/geometry_index.glsl"
 #include "generated/shade.glsl"
-#include "hit/hit_codes.glsl"
+#include "packed/hit_codes.glsl"
 #if GLINT_LAYER_RAYS
 #include "layers/ray_hits.glsl"
 #endif
