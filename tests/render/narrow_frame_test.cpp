@@ -164,6 +164,27 @@ TEST(PackedSamples, SayHowPixelsFoundLight) {
     expectNoValidationMessages();
 }
 
+// The march reads the weights of other pixels, and moves the starts of rays.
+TEST(PackedSamples, MarchOverTheScreenAsFullOnesDo) {
+    const gltf::Scene scene = roomOfMaterials();
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyVisibility;
+    settings.plan.merge = compiler::MergePolicy::All;
+    RenderSetup setup = narrowSetup(scene, 1);
+    setup.frame.screenSteps = 32;
+    RendererOptions options = optionsOf({package::kStrategyVisibility, package::kTracerRayQuery});
+    options.screenMarch = true;
+    FrameCounters ofFull;
+    const LinearImage full = LoadedScene(scene, settings).render(options, setup, &ofFull);
+    settings.sampleRecord = package::SampleRecordFormat::Packed;
+    FrameCounters ofPacked;
+    const LinearImage packed = LoadedScene(scene, settings).render(options, setup, &ofPacked);
+    EXPECT_LT(shareThatDiffers(packed, full, 0.004F), 0.02);
+    const double found = ofFull.of(package::kEffectReflection).screenHits;
+    EXPECT_GT(found, 0.0);
+    EXPECT_NEAR(ofPacked.of(package::kEffectReflection).screenHits, found, 0.02 * found);
+}
+
 // Half floats have 11 significant bits. The light of the primary surfaces is rounded before that of effects
 // is added, and a device may cut what it doesn't keep.
 TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
