@@ -106,6 +106,7 @@ TEST(PackedSamples, OfPathsAreOnePicture) {
     compiler::CompileSettings settings = narrowSettings();
     settings.maxBounces = 3;
     settings.skyLight = compiler::SkyLight::On;
+    settings.plan.merge = compiler::MergePolicy::All;
     expectOnePicture(scene, settings, narrowSetup(scene, 1), 3);
 }
 
@@ -191,8 +192,13 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
     const gltf::Scene scene = narrowScene();
     compiler::CompileSettings settings = narrowSettings();
     settings.sampleRecord = package::SampleRecordFormat::Full;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = narrowSetup(scene, 1);
-    forEachWay(scene, settings, [&](const LoadedScene& loaded, const Way& way) {
+    // The lighting pass is a compute shader or a ray generation shader.
+    for (const Way& way : waysOf(package::kStrategyUber, package::kAllTracers)) {
         RendererOptions options = optionsOf(way);
         const LinearImage exact = loaded.render(options, setup);
         options.accumulate = false;
@@ -207,7 +213,7 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
         }
         options.bands = 3;
         EXPECT_EQ(loaded.render(options, setup).pixels, half.pixels) << nameOf(way);
-    });
+    }
 }
 
 // Light above what half floats hold becomes the largest of them, and no pixel is taken for one without a
