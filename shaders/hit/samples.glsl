@@ -179,7 +179,7 @@ uint listedTarget(uint index) {
 }
 
 #if GLINT_HITS_IN_SAMPLES
-// The same after its hit is stored in the place of its start, which is gone. Only the number of the sample and the
+// Returns a ray of the list whose hit is stored in the place of its start. Only the number of the sample and the
 // direction are left.
 RayRecord shadedRay(uint index) {
     uint target = GLINT_FRAME.listed.data[index];
