@@ -158,7 +158,12 @@ uint walk(uvec2 pixel, uint target) {
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
     walker.media = uvec2(0u);
-    walker.weight = vec3(storedSample(target).coneSpread);  // see the comment in refraction.glsl
+    // See the comment in refraction.glsl.
+#if GLINT_SAMPLE_RECORD_PACKED
+    walker.weight = storedSample(target).origin;
+#else
+    walker.weight = vec3(storedSample(target).coneSpread);
+#endif
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
 #if GLINT_LAYER_RAYS

@@ -30,6 +30,7 @@ compiler::Configuration usual() {
             {"sky-light", "off"},
             {"precision", "32"},
             {"hit-record", "full"},
+            {"sample-record", "full"},
             {"strategy", "visibility"},
             {"merge", "family"},
             {"shadows", "inline"},
