@@ -67,7 +67,12 @@ void beginPath(uint place) {
 
 void endPath(uint place) {
     if (pathGoesOn()) {
+#if GLINT_SAMPLE_RECORD_PACKED
+        uint state = GLINT_FRAME.sampleStarts.data[place].state;
+        GLINT_FRAME.sampleStarts.data[place].state = (state & ~kPackedOutcomeMask) | kRayEnded;
+#else
         GLINT_FRAME.sampleStarts.data[place].state = kRayEnded;
+#endif
     }
 }
 

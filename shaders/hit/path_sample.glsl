@@ -79,6 +79,9 @@ PathStep nextStep(Hit hit, Surface surface, Features features,
     // its light is reflected at the triangle, like all light below a surface.
     bool passes = drawn.direction.z < 0.0 && transmits(features);
     step.direction = onSide(toWorld(surface, drawn.direction), passes ? -hit.geometricNormal : hit.geometricNormal);
+#if GLINT_SAMPLE_RECORD_PACKED
+    step.direction = keptDirection(step.direction);
+#endif
     step.density = drawn.pdf;
     // A sample stands for a solid angle of 1 / density. Its cone fills it, up to the width that keeps textures sharp
     // enough for the mean of many samples.
@@ -125,9 +128,15 @@ void storePath(Hit hit, PathStep step) {
         endPath(place);
         return;
     }
+#if GLINT_SAMPLE_RECORD_PACKED
+    EffectSample next = EffectSample(rayOrigin(hit, step.direction), kRaySent, step.direction, hit.arrival.coneWidth,
+                                     vec3(0.0), step.coneSpread);
+    putRay(place, next);  // The weight stays that of the primary surface.
+#else
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(rayOrigin(hit, step.direction), kRaySent);
     GLINT_FRAME.sampleAims.data[place] = SampleAim(step.direction, hit.arrival.coneWidth);
     GLINT_FRAME.sampleWeights.data[place].coneSpread = step.coneSpread;
+#endif
     GLINT_FRAME.paths.data[place] = PathState(step.throughput, uint[2](step.media.x, step.media.y));
 #if GLINT_EMISSIVE_LIGHTS
     storeLobeRay(hit.target, step.density, step.receiver);

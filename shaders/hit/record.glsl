@@ -16,7 +16,29 @@ float unpackConeWidth(uint code) {
     return code > 0u ? exp2(float(code) * 0.125 - 20.0) : 0.0;
 }
 
-#if GLINT_HIT_RECORD_PACKED
+#if GLINT_HITS_IN_SAMPLES
+
+// What includes this file also includes hit/samples.glsl, which has these.
+uint samplePlace(uint target);
+void putHit(uint place, HitRecord hit);
+HitRecord packedHit(uint place);
+uint packedHitGeometry(uint place);
+
+// Takes the place of the ray's start.
+void storeHit(uint index, HitRecord hit) {
+    putHit(samplePlace(GLINT_FRAME.listed.data[index]), hit);
+}
+
+HitRecord storedHit(uint index) {
+    return packedHit(samplePlace(GLINT_FRAME.listed.data[index]));
+}
+
+// Returns the geometry of a stored hit, or kMissGeometry, or after its light is stored a geometry that there is not.
+uint storedGeometry(uint index) {
+    return packedHitGeometry(samplePlace(GLINT_FRAME.listed.data[index]));
+}
+
+#elif GLINT_HIT_RECORD_PACKED
 
 void storeHit(uint index, HitRecord hit) {
     uint geometry = hit.geometry == kMissGeometry ? kMissGeometry : hit.geometry << 8 | packConeWidth(hit.coneWidth);

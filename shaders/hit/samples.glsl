@@ -1,5 +1,6 @@
 // The samples of effects in memory: what primary surfaces send, and the light that comes back.
 #include "hit/bindings.glsl"
+#include "packed/hit_codes.glsl"
 #if GLINT_PATHS
 #include "hit/path.glsl"
 #endif
@@ -23,6 +24,10 @@ struct EffectSample {
     vec3 weight;       // factor of the radiance that the ray finds
     float coneSpread;  // growth of the width in a metre
 };
+
+#if GLINT_SAMPLE_RECORD_PACKED
+#include "packed/sample.glsl"
+#endif
 
 uint pixelCount() {
     return GLINT_FRAME.width * GLINT_FRAME.height;
@@ -48,10 +53,14 @@ EffectSample noSample(uint outcome) {
     return EffectSample(vec3(0.0), outcome, vec3(0.0), 0.0, vec3(0.0), 0.0);
 }
 
-// Stores the ray of a sample anew.
+// Stores the start of a sample's ray anew, and the width of its cone there.
 void storeSampleRay(uint place, EffectSample drawn) {
+#if GLINT_SAMPLE_RECORD_PACKED
+    putStart(place, drawn, encodeDirection(drawn.direction));
+#else
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(drawn.origin, drawn.outcome);
     GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
+#endif
 }
 
 #if GLINT_LAYER_BOUNCES
@@ -72,9 +81,15 @@ void clearBounces(uint place) {
 
 void storeSample(uint target, EffectSample drawn) {
     uint place = samplePlace(target);
+#if GLINT_SAMPLE_RECORD_PACKED
+    putSample(place, drawn, GLINT_FRAME.screenSteps != 0u);
+#else
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(drawn.origin, drawn.outcome);
+#endif
     if (drawn.outcome == kRaySent) {
+#if !GLINT_SAMPLE_RECORD_PACKED
         GLINT_FRAME.sampleAims.data[place] = SampleAim(drawn.direction, drawn.coneWidth);
+#endif
 #if GLINT_LAYER_RAYS
         GLINT_FRAME.rayHits.data[place].distance = 0.0;
 #endif
@@ -85,29 +100,43 @@ void storeSample(uint target, EffectSample drawn) {
         beginPath(place);
 #endif
     }
+#if !GLINT_SAMPLE_RECORD_PACKED
     // The march in screen space reads the weights of other pixels, whether they sent a ray or not.
     if (drawn.outcome == kRaySent || GLINT_FRAME.screenSteps != 0u) {
         GLINT_FRAME.sampleWeights.data[place] = SampleWeight(drawn.weight, drawn.coneSpread);
     }
+#endif
 }
 
 // Returns whether a sample sends a ray, or why not. Before light is stored.
 uint sampleOutcome(uint target) {
+#if GLINT_SAMPLE_RECORD_PACKED
+    return packedOutcome(samplePlace(target));
+#else
     return GLINT_FRAME.sampleStarts.data[samplePlace(target)].state & kOutcomeMask;
+#endif
 }
 
 // Returns a sample that sends a ray, before light is stored.
 EffectSample storedSample(uint target) {
     uint place = samplePlace(target);
+#if GLINT_SAMPLE_RECORD_PACKED
+    return packedSample(place);
+#else
     SampleStart start = GLINT_FRAME.sampleStarts.data[place];
     SampleAim aim = GLINT_FRAME.sampleAims.data[place];
     SampleWeight weight = GLINT_FRAME.sampleWeights.data[place];
     return EffectSample(start.origin_orRadiance, start.state & kOutcomeMask, aim.direction, aim.coneWidth,
                         weight.weight, weight.coneSpread);
+#endif
 }
 
 vec3 sampleWeight(uint target) {
+#if GLINT_SAMPLE_RECORD_PACKED
+    return packedWeight(samplePlace(target));
+#else
     return GLINT_FRAME.sampleWeights.data[samplePlace(target)].weight;
+#endif
 }
 
 // Returns a ray of the list.
@@ -120,9 +149,23 @@ RayRecord listedRay(uint index) {
 #if GLINT_TALLIES
     tallyForSample(target);
 #endif
+#if GLINT_SAMPLE_RECORD_PACKED
+    return packedRay(place, target);
+#else
     SampleAim aim = GLINT_FRAME.sampleAims.data[place];
     return RayRecord(GLINT_FRAME.sampleStarts.data[place].origin_orRadiance, target, aim.direction, aim.coneWidth,
                      GLINT_FRAME.sampleWeights.data[place].coneSpread);
+#endif
+#endif
+}
+
+// Returns the direction of a sample that sends a ray, before light is stored.
+vec3 sampleDirection(uint target) {
+    uint place = samplePlace(target);
+#if GLINT_SAMPLE_RECORD_PACKED
+    return packedSample(place).direction;
+#else
+    return GLINT_FRAME.sampleAims.data[place].direction;
 #endif
 }
 
@@ -134,6 +177,21 @@ uint listedTarget(uint index) {
     return GLINT_FRAME.listed.data[index];
 #endif
 }
+
+#if GLINT_HITS_IN_SAMPLES
+// Returns a ray of the list whose hit is stored in the place of its start. Only the number of the sample and the
+// direction are left.
+RayRecord shadedRay(uint index) {
+    uint target = GLINT_FRAME.listed.data[index];
+    uint place = samplePlace(target);
+#if GLINT_TALLIES
+    tallyForSample(target);
+#endif
+    return RayRecord(vec3(0.0), target, directionOfHit(place), 0.0, 0.0);
+}
+#else
+#define shadedRay listedRay
+#endif
 
 #if GLINT_EMISSIVE_LIGHTS
 // How the ray of a sample was chosen, for what it finds on emissive lights.
@@ -169,6 +227,8 @@ void storeRadiance(uint target, vec3 radiance, uint path) {
 #endif
 #if GLINT_RADIANCE_APART
     GLINT_FRAME.radiance.data[place] = vec4(radiance, float(path));
+#elif GLINT_SAMPLE_RECORD_PACKED
+    putLight(place, radiance, kRaySent, path);
 #else
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(radiance, kRaySent | path << kPathShift);
 #endif
@@ -177,13 +237,23 @@ void storeRadiance(uint target, vec3 radiance, uint path) {
 // Ends a sample with a known radiance, so that no ray joins the list.
 void endSample(uint target, vec3 weight, vec3 radiance) {
     uint place = samplePlace(target);
+#if GLINT_SAMPLE_RECORD_PACKED
+    putAim(place, weight, 0u);
+#else
     GLINT_FRAME.sampleWeights.data[place].weight = weight;
+#endif
 #if GLINT_LAYER_BOUNCES
     addToBounce(place, radiance);
 #endif
 #if GLINT_RADIANCE_APART
+#if GLINT_SAMPLE_RECORD_PACKED
+    putOutcome(place, kRayEnded);
+#else
     GLINT_FRAME.sampleStarts.data[place].state = kRayEnded;
+#endif
     GLINT_FRAME.radiance.data[place] = vec4(radiance, float(kPathMiss));
+#elif GLINT_SAMPLE_RECORD_PACKED
+    putLight(place, radiance, kRayEnded, kPathMiss);
 #else
     GLINT_FRAME.sampleStarts.data[place] = SampleStart(radiance, kRayEnded | kPathMiss << kPathShift);
 #endif
@@ -209,12 +279,20 @@ void addRadiance(uint target, vec3 light) {
 vec4 sampleRadiance(uint target) {
     uint place = samplePlace(target);
 #if GLINT_RADIANCE_APART
+#if GLINT_SAMPLE_RECORD_PACKED
+    uint outcome = packedOutcome(place);
+#else
     uint outcome = GLINT_FRAME.sampleStarts.data[place].state & kOutcomeMask;
+#endif
     return outcome == kRaySent || outcome == kRayEnded ? GLINT_FRAME.radiance.data[place]
                                                        : vec4(0.0, 0.0, 0.0, float(kPathNone));
 #else
     SampleStart stored = GLINT_FRAME.sampleStarts.data[place];
+#if GLINT_SAMPLE_RECORD_PACKED
+    uint path = stored.state >> kPackedPathShift & kPackedPathMask;
+#else
     uint path = stored.state >> kPathShift;
+#endif
     return path != kPathNone ? vec4(stored.origin_orRadiance, float(path)) : vec4(0.0, 0.0, 0.0, float(kPathNone));
 #endif
 }

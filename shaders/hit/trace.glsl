@@ -5,6 +5,7 @@
 #include "hit/payload.glsl"
 #include "hit/stage.glsl"
 #include "hit/tlas.glsl"
+#include "packed/hit_codes.glsl"
 #if GLINT_TALLIES
 #include "generated/tallies.glsl"
 #endif
@@ -23,12 +24,23 @@ TracedHit tracedMiss() {
 }
 
 TracedHit tracedHit(RayRecord ray, TracePayload found) {
+#if GLINT_HITS_IN_SAMPLES
+    // The width is rounded where it is kept, so that all strategies need the same last bit.
+    precise float coneWidth = ray.coneWidth + ray.coneSpread * found.distance;
+    return TracedHit(found.geometry, found.primitive, found.barycentrics, found.distance, coneWidth);
+#else
     return TracedHit(found.geometry, found.primitive, found.barycentrics, found.distance,
                      ray.coneWidth + ray.coneSpread * found.distance);
+#endif
 }
 
 HitRecord recordOf(TracedHit hit) {
+#if GLINT_HITS_IN_SAMPLES
+    vec2 barycentrics = keptBarycentrics(hit.barycentrics);
+    return HitRecord(hit.geometry, hit.primitive, barycentrics.x, barycentrics.y, keptConeWidth(hit.coneWidth));
+#else
     return HitRecord(hit.geometry, hit.primitive, hit.barycentrics.x, hit.barycentrics.y, hit.coneWidth);
+#endif
 }
 
 #if GLINT_TRACER == 1

@@ -54,6 +54,11 @@ struct SampleStart {
 };
 GLINT_CONSTANT(kPathShift, 8u);
 GLINT_CONSTANT(kOutcomeMask, 0xFFu);
+// The same in the state of a packed record with light, which takes 24 bytes: a SampleStart, and a uvec2 in the place of
+// the other two (packed/sample.glsl).
+GLINT_CONSTANT(kPackedPathShift, 4u);
+GLINT_CONSTANT(kPackedPathMask, 0xFu);
+GLINT_CONSTANT(kPackedOutcomeMask, 0xFu);
 
 // 16 bytes.
 struct SampleAim {
@@ -254,6 +259,11 @@ GLINT_CONSTANT(kBinningSign, 1u);        // signs of the direction: 8 bins
 GLINT_CONSTANT(kBinningOctahedral, 2u);  // cells of the octahedral map of the direction: 8 x 8 bins
 GLINT_CONSTANT(kMaxDirectionBins, 64u);
 
+// FrameConstants::accumulates, bits.
+GLINT_CONSTANT(kPictureHasResidual, 1u);  // the residual of the mean has an image
+GLINT_CONSTANT(kPictureIsHalf, 2u);       // the images of light have 16-bit floats: values above kMostHalf become that
+GLINT_CONSTANT(kMostHalf, 65504u);
+
 // Shaders have the last members only in packages that need them, so that others do not change. Those that follow a
 // group of members need this group, too.
 #ifdef __cplusplus
@@ -352,7 +362,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Uint) firstEmitters;  // of every geometry: the emitter of its first triangle, or kNoEmitter
     GLINT_ADDRESS(LobeRay) lobeRays;    // of every sample, in the order of the samples
     uint emitterCount;
-    uint accumulates;  // 1: the residual of the mean has an image
+    uint accumulates;  // kPicture*
     // The band of rows that the passes over pixels are at:
     uint firstRow;
     uint endRow;        // the row after its last one

@@ -27,8 +27,8 @@ void main() {
         RunningMean last = RunningMean(imageLoad(accumulatedImage, place).rgb, imageLoad(residualImage, place).rgb);
         mean = includeSample(last, radiance, GLINT_FRAME.averaged);
     }
-    imageStore(accumulatedImage, place, vec4(mean.mean, 1.0));
-    if (GLINT_FRAME.accumulates != 0u) {
+    imageStore(accumulatedImage, place, storable(vec4(mean.mean, 1.0)));
+    if ((GLINT_FRAME.accumulates & kPictureHasResidual) != 0u) {
         imageStore(residualImage, place, vec4(mean.residual, 0.0));
     }
 }

@@ -226,7 +226,7 @@ void main() {
                            direct);
 #endif
     }
-    imageStore(radianceImage, place, radianceDepth);
+    imageStore(radianceImage, place, storable(radianceDepth));
 #if GLINT_STARTS_ON_SCREEN
     if (GLINT_FRAME.screenSteps != 0u) {
         imageStore(positionImage, place, position);

@@ -4,6 +4,9 @@
 // no more hits than slots. Any number of threads works: each takes every threadCount-th bucket and slot.
 #include "hit/list.glsl"
 #include "hit/record.glsl"
+#if GLINT_HITS_IN_SAMPLES
+#include "hit/samples.glsl"
+#endif
 
 GLINT_RAY_WORKGROUP
 

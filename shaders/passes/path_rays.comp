@@ -16,7 +16,7 @@ void main() {
     if (GLINT_FRAME.binning == kBinningNone) {
         slot = appendedSlot(goesOn);
     } else {
-        slot = binnedSlot(goesOn, GLINT_FRAME.sampleAims.data[samplePlace(target)].direction);
+        slot = binnedSlot(goesOn, sampleDirection(target));
     }
     if (goesOn) {
         if (GLINT_FRAME.bounceWeight != 1.0) {

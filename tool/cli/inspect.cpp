@@ -239,6 +239,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"shadows", std::string(package::nameOf(package.shape().shadows))},
           {"shadowThrough", std::string(package::nameOf(package.shadowThrough()))},
           {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
+          {"sampleRecord", std::string(package::nameOf(package.sampleRecord()))},
           {"bounces", package.shape().maxBounces},
           {"fallback", package.shape().fallback},
           {"passes", std::string(package::nameOf(package.passes()))},
@@ -270,7 +271,9 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"tracers", base::join(compiler::tracerNames(package.shape().tracers))},
          {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
          {"shadows through", std::string(package::nameOf(package.shadowThrough()))},
-         {"hit record", std::string(package::nameOf(package.hitRecord()))},
+         {"hit record", package.hitsInSamples() ? std::string("in the record of its sample")
+                                                : std::string(package::nameOf(package.hitRecord()))},
+         {"sample record", std::string(package::nameOf(package.sampleRecord()))},
          {"bounces", std::to_string(package.shape().maxBounces)},
          {"fallback", package.shape().fallback ? "yes" : "no"},
          {"passes", std::string(package::nameOf(package.passes()))},

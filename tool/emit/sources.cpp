@@ -126,6 +126,9 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
                         flag(settings.shadows == package::ShadowPlacement::Deferred));
     text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
+    const bool packsSamples = settings.sampleRecord == package::SampleRecordFormat::Packed &&
+                              settings.passes == package::Passes::Frame;
+    text += fmt::format("#define GLINT_SAMPLE_RECORD_PACKED {}\n", flag(packsSamples));
     text += fmt::format("#define GLINT_ENVIRONMENT_MAP {}\n", flag(settings.environmentMap));
     text += fmt::format("#define GLINT_POSITION_FETCH {}\n", flag(settings.positionFetch));
     text += fmt::format("#define GLINT_LIGHT_SAMPLES {}\n", settings.lightSamples.value_or(0));
@@ -143,7 +146,10 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));
-    text += fmt::format("#define GLINT_PATHS {}\n", flag(package::hasPaths(shapeOf(scenes, plan, settings))));
+    const bool paths = package::hasPaths(shapeOf(scenes, plan, settings));
+    text += fmt::format("#define GLINT_PATHS {}\n", flag(paths));
+    text += "// The record of a sample holds what its ray hit, in the place of the ray's start.\n";
+    text += fmt::format("#define GLINT_HITS_IN_SAMPLES {}\n", flag(packsSamples && !paths && !emissive));
     text += fmt::format("#define GLINT_FALLBACK {}\n", flag(settings.plan.fallback));
     text += fmt::format("#define GLINT_TEXTURE_LEVELS {}\n", flag(settings.textureLevels));
     text += fmt::format("#define GLINT_SKY_LIGHT_MEMBERS {}\n", flag(sky || !plan.layers.empty()));

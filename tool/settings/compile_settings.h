@@ -70,6 +70,7 @@ struct CompileSettings {
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
     package::ShadowThrough shadowThrough = package::ShadowThrough::Alpha;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
+    package::SampleRecordFormat sampleRecord = package::SampleRecordFormat::Full;
     std::uint32_t maxBounces = 1;  // of paths: 1 to package::kMaxBounces
     package::Passes passes = package::Passes::Frame;
     package::HitAnswer answer = package::HitAnswer::Radiance;

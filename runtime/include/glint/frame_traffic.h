@@ -50,14 +50,17 @@ constexpr std::span<const Named<TrafficUnit>> namesOf(TrafficUnit /*type*/) {
 struct TrafficShape {
     package::Strategy strategy = package::kDefaultStrategy;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
-    std::uint32_t effects = 0;  // those that send rays
-    std::uint32_t walks = 0;    // those of them with a pass that follows their rays first
+    package::SampleRecordFormat sampleRecord = package::SampleRecordFormat::Full;
+    bool hitsInSamples = false;  // as Package::hitsInSamples() says
+    std::uint32_t effects = 0;   // those that send rays
+    std::uint32_t walks = 0;     // those of them with a pass that follows their rays first
     std::uint32_t bucketCount = 1;
     bool paths = false;  // of several bounces
     bool emissiveLights = false;
     bool skyLight = false;
     bool deferredShadows = false;
     bool accumulates = false;  // the frame adds its sample to a mean
+    bool halfPicture = false;
     bool marchesScreen = false;
     bool binsRays = false;
     std::vector<package::LayerEntry> layers{};

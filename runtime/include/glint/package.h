@@ -75,6 +75,9 @@ public:
     // modules the package has.
     package::PackageShape shape() const;
     package::HitRecordFormat hitRecord() const;
+    package::SampleRecordFormat sampleRecord() const;
+    // Whether the record of a sample also holds what its ray hit, so that there are no records of hits.
+    bool hitsInSamples() const;
     // Whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
     // Whether shaders record which levels of textures they read (FrameCounters::textureLevels).

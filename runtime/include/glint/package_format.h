@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 17;
+inline constexpr std::uint32_t kVersion = 18;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -52,6 +52,12 @@ enum class ShadowThrough : std::uint32_t {
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 20 bytes, gpu::HitRecord
     Packed = 1,  // 12 bytes, gpu::PackedHitRecord
+};
+
+// How the samples of effects are stored between passes.
+enum class SampleRecordFormat : std::uint32_t {
+    Full = 0,    // 48 bytes, gpu::SampleStart, SampleAim and SampleWeight
+    Packed = 1,  // 24 bytes, gpu::SampleStart and gpu::uvec2
 };
 
 // The most bounces that a path may have. It stands for "unlimited": paths that carry little light end
@@ -142,8 +148,8 @@ struct PackageHeader {
     std::uint32_t trustTextures;  // 1: shaders rely on what the textures of the scenes hold
     std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
     std::uint32_t early;          // 1: shows an edit; its other modules are those before it
-    std::uint32_t sizedLights;    // 1: rays of lobes find punctual lights that have a size, too
-    std::uint32_t reserved;       // 0
+    SampleRecordFormat sampleRecord;
+    std::uint32_t sizedLights;  // 1: rays of lobes find punctual lights that have a size, too
 };
 
 enum class SectionKind : std::uint32_t {

@@ -103,6 +103,11 @@ inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
     {HitRecordFormat::Full, "full", "20 bytes"},
     {HitRecordFormat::Packed, "packed", "12 bytes, with less precision"},
 };
+inline constexpr Named<SampleRecordFormat> kSampleRecordNames[] = {
+    {SampleRecordFormat::Full, "full", "48 bytes"},
+    {SampleRecordFormat::Packed, "packed",
+     "24 bytes, with less precision, which hold the hit as well where that is possible"},
+};
 inline constexpr Named<ShadingPrecision> kPrecisionNames[] = {
     {ShadingPrecision::Single, "32", "everything in 32-bit float"},
     {ShadingPrecision::Half, "16",
@@ -142,6 +147,9 @@ constexpr std::span<const Named<ShadowThrough>> namesOf(ShadowThrough /*type*/) 
 }
 constexpr std::span<const Named<HitRecordFormat>> namesOf(HitRecordFormat /*type*/) {
     return kHitRecordNames;
+}
+constexpr std::span<const Named<SampleRecordFormat>> namesOf(SampleRecordFormat /*type*/) {
+    return kSampleRecordNames;
 }
 constexpr std::span<const Named<ShadingPrecision>> namesOf(ShadingPrecision /*type*/) {
     return kPrecisionNames;

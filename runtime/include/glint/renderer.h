@@ -349,9 +349,10 @@ public:
     // "frame-options", "environment-missing", "environment-unread".
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
-    // The accumulated linear image. Its format is VK_FORMAT_R32G32B32A32_SFLOAT and its layout is GENERAL; a
-    // compute shader writes it last.
+    // The accumulated linear image. Its layout is GENERAL; a compute shader writes it last. Its format is
+    // VK_FORMAT_R32G32B32A32_SFLOAT, or VK_FORMAT_R16G16B16A16_SFLOAT with PictureFormat::Half.
     VkImage output() const;
+    VkFormat outputFormat() const;
     VkImageView outputView() const;
 
     // The images of the package's layers, in the order of Package::layers(). They live as long as the

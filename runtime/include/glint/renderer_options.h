@@ -15,6 +15,16 @@
 
 namespace glint {
 
+// How many bits a picture has for each channel.
+enum class PictureFormat : std::uint32_t { Full = 0, Half = 1 };
+inline constexpr Named<PictureFormat> kPictureFormatNames[] = {
+    {PictureFormat::Full, "full", "32-bit floats"},
+    {PictureFormat::Half, "half", "16-bit floats, where a picture has one sample"},
+};
+constexpr std::span<const Named<PictureFormat>> namesOf(PictureFormat /*type*/) {
+    return kPictureFormatNames;
+}
+
 struct RendererOptions {
     package::Strategy strategy = package::kDefaultStrategy;
     std::uint32_t width = 1280;  // pixels
@@ -32,6 +42,10 @@ struct RendererOptions {
     // Lets frames add their sample to the mean of earlier ones (FrameOptions::sampleIndex). It takes two
     // images more, 32 bytes a pixel. A program whose frames are all samples of their own does without.
     bool accumulate = true;
+    // With Half, the picture takes 8 bytes a pixel instead of 16: 11 significant bits, and light above 65504
+    // becomes that. Frames that accumulate, that march in screen space, or that have layers of 32-bit vectors
+    // keep 32 bits. Renderer::outputFormat() says which one it is.
+    PictureFormat picture = PictureFormat::Full;
     // Lets frames look for the ends of rays in screen space (FrameOptions::screenSteps). It takes an image
     // more in packages with such effects, 16 bytes a pixel, and frames in one band.
     bool screenMarch = false;

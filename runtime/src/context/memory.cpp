@@ -45,6 +45,21 @@ std::optional<std::uint32_t> chooseType(const VkPhysicalDeviceMemoryProperties& 
 
 }  // namespace
 
+bool SharedMemory::take(const VkMemoryRequirements& requirements, Allocation& taken) {
+    const VkDeviceSize offset = alignUp(begin, requirements.alignment);
+    if (memory.memory == VK_NULL_HANDLE || (requirements.memoryTypeBits >> memory.type & 1U) == 0 ||
+        offset + requirements.size > end) {
+        return false;
+    }
+    // The pool has handed it out already, so there is nothing to give back.
+    taken = Allocation{};
+    taken.memory = memory.memory;
+    taken.offset = offset;
+    taken.type = memory.type;
+    begin = offset + requirements.size;
+    return true;
+}
+
 Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,
                                                 bool map) {
     if (bytes > context_->limits.maxAllocationBytes) {
@@ -62,7 +77,7 @@ Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tilin
     flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
     VkMemoryAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    info.pNext = tiling == Tiling::Linear ? &flags : nullptr;
+    info.pNext = tiling == Tiling::Optimal ? nullptr : &flags;
     info.allocationSize = bytes;
     info.memoryTypeIndex = type;
     VkDeviceMemory memory = VK_NULL_HANDLE;
@@ -112,7 +127,8 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
         for (const Block& other : blocks_) {
             taken += other.type == *type && other.tiling == tiling ? other.bytes : 0;
         }
-        const VkDeviceSize usual = std::min({kBlockBytes, heap / 8, taken});
+        // Few resources share memory, so these blocks are no larger than they need to be.
+        const VkDeviceSize usual = tiling == Tiling::Shared ? 0 : std::min({kBlockBytes, heap / 8, taken});
         Result<Block> made =
             makeBlock(*type, tiling, std::max(usual, requirements.size), use != MemoryUse::Device);
         if (!made) {
@@ -123,6 +139,7 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
     }
     Allocation allocation;
     allocation.memory = block->memory.get();
+    allocation.type = block->type;
     const auto room = block->findRoom(requirements);
     allocation.begin = room->begin;
     allocation.offset = alignUp(room->begin, requirements.alignment);

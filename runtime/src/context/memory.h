@@ -22,9 +22,22 @@ struct Allocation {
     // What MemoryPool::release() gives back: from here on, the gap before `offset` included.
     VkDeviceSize begin = 0;
     VkDeviceSize bytes = 0;
+    std::uint32_t type = 0;  // of the memory
 };
 
-enum class Tiling { Linear, Optimal };  // tiling of the resource; buffers are linear
+// Tiling of a resource; buffers are linear. Memory for Shared is for an image in whose place buffers may lie
+// as well, at other times.
+enum class Tiling { Linear, Optimal, Shared };
+
+// Memory that buffers may share with an image: what no buffer has yet of an allocation for Tiling::Shared.
+struct SharedMemory {
+    Allocation memory;       // without memory: there is none to share
+    VkDeviceSize begin = 0;  // in `memory`
+    VkDeviceSize end = 0;
+
+    // Takes memory for a buffer. Returns false if the rest is too small or not of a type that it may have.
+    bool take(const VkMemoryRequirements& requirements, Allocation& taken);
+};
 
 // Hands out memory, and frees all of it when it is destroyed. The resources that live in it must be destroyed
 // before.

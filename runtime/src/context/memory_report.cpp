@@ -54,7 +54,16 @@ std::vector<MemoryItem> Renderer::memory() const {
     for (std::size_t i = 0; i < frame.layers.size(); ++i) {
         addTo(items, "layer " + state_->size.layers[i].name, frame.layers[i]);
     }
-    addTo(items, "depth", frame.depth);
+    // Memory that buffers share with the depth counts as theirs.
+    VkDeviceSize shared = 0;
+    for (const auto& [name, buffer] : frame.buffers()) {
+        const bool shares =
+            buffer->handle.get() != VK_NULL_HANDLE && buffer->memory.memory == frame.depth.memory.memory;
+        shared += shares ? buffer->bytes : 0;
+    }
+    if (frame.depth.handle.get() != VK_NULL_HANDLE) {
+        add(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
+    }
     for (const auto& [name, buffer] : frame.buffers()) {
         addTo(items, name, *buffer);
     }

@@ -114,8 +114,24 @@ Result<std::vector<SurfaceIdentity>> readIdentities(const Renderer::State& state
 
 Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
                                                          std::uint32_t binding) {
-    return readImage<std::array<float, 4>>(state, runner, imageOf(state.frame, binding),
-                                           std::size_t{state.size.width} * state.size.height);
+    const DeviceImage& image = imageOf(state.frame, binding);
+    const std::size_t count = std::size_t{state.size.width} * state.size.height;
+    if (image.format != kHalfLightFormat) {
+        return readImage<std::array<float, 4>>(state, runner, image, count);
+    }
+    using HalfPixel = std::array<std::uint16_t, 4>;
+    const Result<std::vector<HalfPixel>> pixels = readImage<HalfPixel>(state, runner, image, count);
+    if (!pixels) {
+        return pixels.error();
+    }
+    std::vector<std::array<float, 4>> widened(count);
+    std::ranges::transform(*pixels, widened.begin(), [](const HalfPixel& pixel) {
+        std::array<float, 4> wide{};
+        std::ranges::transform(pixel, wide.begin(),
+                               [](std::uint16_t value) { return glm::unpackHalf1x16(value); });
+        return wide;
+    });
+    return widened;
 }
 
 Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
@@ -265,8 +281,10 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     for (std::size_t i = 0; i < paths.size(); ++i) {
         gpu::SampleStart start{};
         std::memcpy(&start, starts->data() + (first + i) * sizeof(start), sizeof(start));
-        const std::uint32_t outcome = start.state & gpu::kOutcomeMask;
-        std::uint32_t path = start.state >> gpu::kPathShift;
+        const bool packed = state_->size.packedSamples;
+        const std::uint32_t outcome = start.state & (packed ? gpu::kPackedOutcomeMask : gpu::kOutcomeMask);
+        std::uint32_t path = packed ? start.state >> gpu::kPackedPathShift & gpu::kPackedPathMask
+                                    : start.state >> gpu::kPathShift;
         if (state_->size.paths && (outcome == gpu::kRaySent || outcome == gpu::kRayEnded)) {
             gpu::vec4 found{};
             std::memcpy(&found, radiance->data() + (first + i) * sizeof(found), sizeof(found));

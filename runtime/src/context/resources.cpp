@@ -9,7 +9,7 @@
 namespace glint {
 
 Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
-                            VkBufferUsageFlags usage, MemoryUse use) {
+                            VkBufferUsageFlags usage, MemoryUse use, SharedMemory* shared) {
     Buffer buffer;
     buffer.bytes = std::max<VkDeviceSize>(bytes, 1);
     if (buffer.bytes > context.limits.maxBufferBytes) {
@@ -32,7 +32,10 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
 
     VkMemoryRequirements requirements{};
     context.vk.GetBufferMemoryRequirements(device, handle, &requirements);
-    Result<Allocation> memory = pool.allocate(requirements, use, Tiling::Linear);
+    Result<Allocation> memory = Allocation{};
+    if (shared == nullptr || !shared->take(requirements, *memory)) {
+        memory = pool.allocate(requirements, use, Tiling::Linear);
+    }
     if (!memory) {
         return memory.error();
     }
@@ -68,7 +71,8 @@ Result<UniqueImageView> createImageView(Context::State& context, VkImage image, 
     return UniqueImageView(context, handle);
 }
 
-Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info) {
+Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info,
+                                Tiling tiling) {
     DeviceImage image;
     image.format = info.format;
     image.extent = info.extent;
@@ -95,7 +99,7 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     VkMemoryRequirements requirements{};
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
     image.bytes = requirements.size;
-    Result<Allocation> memory = pool.allocate(requirements, MemoryUse::Device, Tiling::Optimal);
+    Result<Allocation> memory = pool.allocate(requirements, MemoryUse::Device, tiling);
     if (!memory) {
         return memory.error();
     }

@@ -16,9 +16,11 @@ struct Buffer {
     MemoryUse use = MemoryUse::Device;
 };
 
-// Creates a buffer of at least one byte, with a device address. `pool` must outlive it.
+// Creates a buffer of at least one byte, with a device address. `pool` must outlive it. A buffer for which
+// `shared` has room lies there, whatever `use` is.
 Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
-                            VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device);
+                            VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device,
+                            SharedMemory* shared = nullptr);
 
 struct DeviceImage {
     UniqueImage handle;
@@ -44,8 +46,10 @@ struct ImageInfo {
 Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
                                         std::uint32_t firstMip);
 
-// Creates a two-dimensional image on the device, in an undefined layout. `pool` must outlive it.
-Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info);
+// Creates a two-dimensional image on the device, in an undefined layout. `pool` must outlive it. With
+// Tiling::Shared buffers may share its memory.
+Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info,
+                                Tiling tiling = Tiling::Optimal);
 
 // Returns the range of layer 0 and all mips of an image.
 VkImageSubresourceRange wholeImage(VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);

@@ -107,7 +107,7 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
             continue;
         }
         const bool surface = binding == gpu::kBindingSurface;
-        info.format = surface ? kSurfaceFormat : VK_FORMAT_R32G32B32A32_SFLOAT;
+        info.format = surface ? kSurfaceFormat : size.halfPicture ? kHalfLightFormat : kLightFormat;
         info.usage =
             VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         if (surface) {
@@ -139,7 +139,7 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
     info.format = kDepthFormat;
     info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    Result<DeviceImage> depth = createImage(context, frame.pool, info);
+    Result<DeviceImage> depth = createImage(context, frame.pool, info, Tiling::Shared);
     if (!depth) {
         return depth.error();
     }
@@ -152,6 +152,13 @@ struct WantedBuffer {
     VkDeviceSize bytes;  // 0: the frame needs none
     VkBufferUsageFlags usage;
     MemoryUse use;
+
+    // Whether nothing writes or reads the buffer until surfaces are known. Then it may lie in the memory of
+    // the depth, which nothing needs afterwards. Others are cleared at the start of a frame, or are read by
+    // the raster pass.
+    bool followsDepth() const {
+        return use == MemoryUse::Device && (usage & VK_BUFFER_USAGE_TRANSFER_DST_BIT) == 0;
+    }
 };
 
 // In the order of FrameResources::buffers().
@@ -181,8 +188,10 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     return {{
         {&Frame::constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
         {&Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead, MemoryUse::Device},
-        {&Frame::sampleAims, samples * sizeof(gpu::SampleAim), kRead, MemoryUse::Device},
-        {&Frame::sampleWeights, samples * sizeof(gpu::SampleWeight), kRead, MemoryUse::Device},
+        {&Frame::sampleAims, samples * (size.packedSamples ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim)),
+         kRead, MemoryUse::Device},
+        {&Frame::sampleWeights, size.packedSamples ? 0 : samples * sizeof(gpu::SampleWeight), kRead,
+         MemoryUse::Device},
         {&Frame::listed, ownRays * sizeof(std::uint32_t), kRead, MemoryUse::Device},
         {&Frame::radiance, size.paths ? samples * sizeof(gpu::vec4) : 0, kRead, MemoryUse::Device},
         {&Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage, MemoryUse::Device},
@@ -211,11 +220,14 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
 }
 
 Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    SharedMemory ofDepth{frame.depth.memory, frame.depth.memory.offset,
+                         frame.depth.memory.offset + frame.depth.bytes};
     for (const WantedBuffer& entry : wantedBuffers(size)) {
         if (entry.bytes == 0) {
             continue;
         }
-        Result<Buffer> buffer = createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use);
+        Result<Buffer> buffer = createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use,
+                                             entry.followsDepth() ? &ofDepth : nullptr);
         if (!buffer) {
             return buffer.error();
         }
@@ -327,13 +339,6 @@ Status clearImages(Context::State& context, const FrameResources& frame) {
     };
     std::ranges::for_each(frame.images, clear);
     std::ranges::for_each(frame.layers, clear);
-    ImageTransition depth;
-    depth.image = frame.depth.handle.get();
-    depth.to = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
-    depth.dependency.toStages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    depth.dependency.toAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    depth.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    recordTransition(context, *commands, depth);
     return runner->submitAndWait();
 }
 
@@ -379,13 +384,17 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
 
 VkDeviceSize frameBytes(const FrameSize& size) {
     VkDeviceSize bytes = 0;
+    const VkDeviceSize depth = size.hostRays ? 0 : VkDeviceSize{size.width} * size.height * sizeof(float);
+    VkDeviceSize shared = 0;  // by the depth and buffers that follow it
     for (const WantedBuffer& buffer : wantedBuffers(size)) {
         bytes += buffer.bytes;
+        shared += buffer.followsDepth() && shared + buffer.bytes <= depth ? buffer.bytes : 0;
     }
-    VkDeviceSize ofPixel = size.hostRays ? 0 : sizeof(float);  // the depth
+    bytes += depth - shared;
+    VkDeviceSize ofPixel = 0;
     for (std::uint32_t binding = 0; !size.hostRays && binding < gpu::kFrameImageCount; ++binding) {
         if (hasImage(size, binding)) {
-            ofPixel += binding == gpu::kBindingSurface ? 2 * sizeof(std::uint32_t) : sizeof(gpu::vec4);
+            ofPixel += binding == gpu::kBindingSurface || size.halfPicture ? 8 : sizeof(gpu::vec4);
         }
     }
     ofPixel += package::bytesOf(size.layers);
@@ -398,7 +407,7 @@ bool haveSameImages(const FrameSize& first, const FrameSize& second) {
                hasImage(first, binding) == hasImage(second, binding);
     };
     bool same = first.width == second.width && first.height == second.height &&
-                first.environmentMap == second.environmentMap &&
+                first.halfPicture == second.halfPicture && first.environmentMap == second.environmentMap &&
                 std::ranges::equal(first.layers, second.layers, {}, &package::PackageLayer::name,
                                    &package::PackageLayer::name);
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {

@@ -19,6 +19,8 @@ namespace glint {
 
 inline constexpr VkFormat kSurfaceFormat = VK_FORMAT_R32G32_UINT;
 inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
+inline constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+inline constexpr VkFormat kHalfLightFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 // The layout of what counters() reads: the counters first, then for each round of rays the counters of its
 // lists and its buckets.
@@ -37,21 +39,22 @@ struct FrameResources {
     // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
     std::vector<DeviceImage> layers;  // FrameSize::layers; layout GENERAL
-    DeviceImage depth;                // layout DEPTH_ATTACHMENT_OPTIMAL
-    Buffer constants;                 // FrameConstants; every pass reads them, so this is not host memory
+    // Buffers may lie in its memory, so each frame gives it the layout DEPTH_ATTACHMENT_OPTIMAL anew.
+    DeviceImage depth;
+    Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
     // These buffers and those below serve all effects with rays. Samples are those of a band.
     Buffer sampleStarts;
     Buffer sampleAims;
-    Buffer sampleWeights;
-    Buffer listed;    // the list of rays: the numbers of their samples
-    Buffer radiance;  // this buffer and the next two are present if paths have several bounces
+    Buffer sampleWeights;  // present if samples are not packed
+    Buffer listed;         // the list of rays: the numbers of their samples
+    Buffer radiance;       // this buffer and the next two are present if paths have several bounces
     Buffer nextListed;
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer skyShares;    // present if the sky is a light of the package
     Buffer rayHits;      // present if layers need what rays hit
     Buffer bounceLight;  // present if layers need what bounces bring
-    Buffer hits;         // full or packed records; present if hits are ordered
+    Buffer hits;         // full or packed records; present if hits are ordered and samples don't hold them
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
     Buffer shadows;      // present if shadow rays are deferred
@@ -109,8 +112,9 @@ struct FrameSize {
     bool ordered = false;  // hits are stored and ordered by bucket
     bool checksOrder = false;
     std::uint32_t bucketAlignment = 1;
-    std::uint32_t hitBytes = sizeof(gpu::HitRecord);
-    std::uint32_t keyBytes = 1;  // size of the key of a hit's bucket
+    bool packedSamples = false;
+    std::uint32_t hitBytes = sizeof(gpu::HitRecord);  // 0: the samples hold their hits
+    std::uint32_t keyBytes = 1;                       // size of the key of a hit's bucket
     bool deferredShadows = false;
     bool environmentMap = false;
     std::uint32_t textureLevels = 0;  // textures whose finest level is noted
@@ -128,6 +132,7 @@ struct FrameSize {
     std::uint32_t layerBounces = 0;               // bounces that have layers of their own
 
     bool accumulates = true;     // the picture is a mean over frames
+    bool halfPicture = false;    // the picture has 16-bit floats; it is no mean then
     bool marchesScreen = false;  // frames may look for the ends of rays in screen space
     // The frame is lit in bands of that many rows, one after the other; 0 if it is lit as a whole.
     std::uint32_t bandRows = 0;

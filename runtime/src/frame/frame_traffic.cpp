@@ -1,5 +1,6 @@
 #include "frame/frame_resources.h"
 #include "interop/frame.h"
+#include "renderer/renderer_choice.h"
 
 #include <glint/frame_traffic.h>
 #include <glint/package.h>
@@ -16,25 +17,42 @@ using Unit = TrafficUnit;
 
 constexpr std::uint32_t kWord = sizeof(std::uint32_t);
 constexpr std::uint32_t kVector = sizeof(gpu::vec3);
-constexpr std::uint32_t kPixel = sizeof(gpu::vec4);  // of an image with light
+constexpr std::uint32_t kPixel = sizeof(gpu::vec4);  // of an image with light, and of the light of a path
 constexpr std::uint32_t kIdentity = 2 * kWord;       // of the surface that a pixel sees
 constexpr std::uint32_t kStart = sizeof(gpu::SampleStart);
-constexpr std::uint32_t kAim = sizeof(gpu::SampleAim);
-constexpr std::uint32_t kWeight = sizeof(gpu::SampleWeight);
 constexpr std::uint32_t kPath = sizeof(gpu::PathState);
 constexpr std::uint32_t kRayHit = sizeof(gpu::RayHit);
 constexpr std::uint32_t kBounce = sizeof(gpu::BounceLight);
+
+bool packsSamples(const TrafficShape& shape) {
+    return shape.sampleRecord == package::SampleRecordFormat::Packed;
+}
+
+// The record of a sample behind its start: direction and weight, which a packed record has in one array.
+std::uint32_t aimBytes(const TrafficShape& shape) {
+    return packsSamples(shape) ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim);
+}
+
+std::uint32_t weightBytes(const TrafficShape& shape) {
+    return packsSamples(shape) ? 0 : sizeof(gpu::SampleWeight);
+}
+
 // A ray as listedRay() reads it: its number, the origin, the aim, and how its cone grows.
-constexpr std::uint32_t kRay = kWord + kVector + kAim + kWord;
+std::uint32_t rayBytes(const TrafficShape& shape) {
+    return kWord + (packsSamples(shape) ? kStart : kVector + kWord) + aimBytes(shape);
+}
 
 // What a pass that shades a hit writes: light, and the next ray of the path or that there is none.
 std::uint32_t answerBytes(const TrafficShape& shape) {
-    return shape.paths ? kPixel + kStart + kAim + kWord + kPath + (shape.skyLight ? kWord : 0) : kStart;
+    const std::uint32_t spread = packsSamples(shape) ? 0 : kWord;
+    return shape.paths ? kPixel + kStart + aimBytes(shape) + spread + kPath + (shape.skyLight ? kWord : 0)
+                       : kStart;
 }
 
-// What it reads of the ray.
+// What it reads of the ray. A record that holds the hit as well has the rest of the direction there.
 std::uint32_t arrivalBytes(const TrafficShape& shape) {
-    const std::uint32_t direction = kWord + kVector;
+    const std::uint32_t apart = packsSamples(shape) ? aimBytes(shape) + kWord : kVector;
+    const std::uint32_t direction = kWord + (shape.hitsInSamples ? aimBytes(shape) : apart);
     return direction + (shape.paths ? kVector + kWord + kPath : 0) +
            (shape.emissiveLights
                 ? (shape.paths ? 0 : kVector) + static_cast<std::uint32_t>(sizeof(gpu::LobeRay))
@@ -44,18 +62,24 @@ std::uint32_t arrivalBytes(const TrafficShape& shape) {
 void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const std::uint32_t lobe = shape.emissiveLights ? sizeof(gpu::LobeRay) : 0;
     const std::uint32_t share = shape.skyLight ? kWord : 0;
-    rows.push_back({"lighting", Unit::Sample, 0, kStart + lobe + (shape.marchesScreen ? kWeight : 0)});
+    const std::uint32_t aim = aimBytes(shape);
+    const std::uint32_t weight = packsSamples(shape) ? aim : weightBytes(shape);
+    // A packed sample without a ray has only the word that says so.
+    const std::uint32_t always = packsSamples(shape) ? kWord : kStart;
+    rows.push_back({"lighting", Unit::Sample, 0, always + lobe + (shape.marchesScreen ? weight : 0)});
     rows.push_back({"lighting", Unit::Sent, 0,
-                    kAim + share + (shape.marchesScreen ? 0 : kWeight) + (shape.paths ? kPath : 0)});
+                    kStart - always + aim + weightBytes(shape) - (shape.marchesScreen ? weight : 0) + share +
+                        (shape.paths ? kPath : 0)});
     if (shape.walks > 0) {
         // The counts tell effects apart no further, so all that is sent is taken for walked.
         rows.push_back({"effect walk", Unit::Sample, kWord, 0});
-        rows.push_back({"effect walk", Unit::Sent, kIdentity + kWord, kStart + kAim + kWeight});
+        rows.push_back({"effect walk", Unit::Sent, kIdentity + (packsSamples(shape) ? kVector : kWord),
+                        kStart + aim + weightBytes(shape)});
     }
     rows.push_back({"lighting", Unit::Sent, 0, (shape.layerRays ? kWord : 0) + shape.layerBounces * kBounce});
     rows.push_back({"effect rays", Unit::Sample, kWord, 0});
     rows.push_back({"effect rays", Unit::Sent,
-                    (shape.binsRays || shape.marchesScreen ? kAim : 0) + (shape.marchesScreen ? kVector : 0),
+                    (shape.binsRays || shape.marchesScreen ? aim : 0) + (shape.marchesScreen ? kVector : 0),
                     0});
     rows.push_back({"effect rays", Unit::Ray, 0, kWord});
 }
@@ -78,24 +102,27 @@ TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::str
 }
 
 void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
-    const std::uint32_t hit = shape.hitRecord == package::HitRecordFormat::Packed
+    const std::uint32_t hit = shape.hitsInSamples ? kStart
+                              : shape.hitRecord == package::HitRecordFormat::Packed
                                   ? sizeof(gpu::PackedHitRecord)
                                   : sizeof(gpu::HitRecord);
     const std::uint32_t key = keyBytesOf(shape.bucketCount);
     const std::uint32_t answer = answerBytes(shape);
     const package::StrategyInfo& strategy = package::infoOf(shape.strategy);
     if (strategy.ordersHits) {
-        rows.push_back({"trace", Unit::Ray, kRay + (shape.paths ? kWord : 0), hit + key});
+        rows.push_back({"trace", Unit::Ray, rayBytes(shape) + (shape.paths ? kWord : 0), hit + key});
         rows.push_back({"count", Unit::Ray, key, 0});
         rows.push_back({"copy", Unit::Ray, key, kWord});
     }
+    const std::uint32_t direction = packsSamples(shape) ? aimBytes(shape) + kWord : kVector;
     // A miss needs of its record only that it is one.
     const TrafficRow miss{"", Unit::Miss,
-                          (shape.skyLight ? 4 : 3) * kWord + kVector + (shape.paths ? kVector : 0),
+                          (shape.skyLight ? 4 : 3) * kWord + direction + (shape.paths ? kVector : 0),
                           shape.paths ? kPixel + kWord : kStart};
     const TrafficRow shaded{"", Unit::Hit, kWord + hit + arrivalBytes(shape), answer};
     const TrafficRow traced{
-        "", Unit::Ray, kRay + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0), answer};
+        "", Unit::Ray, rayBytes(shape) + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0),
+        answer};
     // What layers need of hits is stored by the pass that finds them. Each bounce adds its light.
     const std::uint32_t bounce = shape.layerBounces > 0 ? kBounce : 0;
     rows.push_back({strategy.ordersHits ? std::string_view("trace") : strategy.modules.front().pass,
@@ -138,6 +165,8 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
     TrafficShape shape;
     shape.strategy = options.strategy;
     shape.hitRecord = package.hitRecord();
+    shape.sampleRecord = package.sampleRecord();
+    shape.hitsInSamples = package.hitsInSamples();
     shape.effects = package::effectSlots(effects);
     shape.walks = static_cast<std::uint32_t>(std::popcount(effects.walks));
     shape.bucketCount = package.bucketCount();
@@ -147,6 +176,7 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
     shape.deferredShadows =
         effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
     shape.accumulates = options.accumulate;
+    shape.halfPicture = hasHalfPicture(package, options);
     shape.marchesScreen = options.screenMarch && effects.screenStarts != 0;
     for (const package::PackageLayer& layer : package.layers()) {
         shape.layers.push_back({layer.info->number, layer.effect, layer.bounce});
@@ -159,7 +189,8 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
 std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     std::vector<TrafficRow> rows;
     rows.push_back({"gbuffer", Unit::Pixel, 0, kIdentity + kWord});  // and the depth
-    rows.push_back({"lighting", Unit::Pixel, kIdentity, kPixel + (shape.marchesScreen ? kPixel : 0)});
+    const std::uint32_t picture = shape.halfPicture ? kPixel / 2 : kPixel;
+    rows.push_back({"lighting", Unit::Pixel, kIdentity, picture + (shape.marchesScreen ? kPixel : 0)});
     rows.push_back(layersOf(shape, package::LayerPass::Lighting, "lighting"));
     if (shape.effects > 0) {
         addSamples(shape, rows);
@@ -173,13 +204,14 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
             rows.push_back({"path rays", Unit::FurtherRay, 0, kWord});
         }
         rows.push_back({"compose", Unit::Sample, shape.paths ? kWord : kStart, 0});
-        rows.push_back({"compose", Unit::Sent, kVector + (shape.paths ? kPixel : 0), 0});
+        const std::uint32_t weight = packsSamples(shape) ? aimBytes(shape) : kVector;
+        rows.push_back({"compose", Unit::Sent, weight + (shape.paths ? kPixel : 0), 0});
         rows.push_back(layersOf(shape, package::LayerPass::Compose, "compose"));
         rows.push_back(
             {"compose", Unit::Sent, (shape.layerRays ? kRayHit : 0) + shape.layerBounces * kBounce, 0});
     }
     const std::uint32_t mean = shape.accumulates ? 2 * kPixel : 0;
-    rows.push_back({"compose", Unit::Pixel, kPixel + mean, shape.accumulates ? mean : kPixel});
+    rows.push_back({"compose", Unit::Pixel, picture + mean, shape.accumulates ? mean : picture});
     std::erase_if(rows, [](const TrafficRow& row) { return row.read + row.written == 0; });
     return rows;
 }

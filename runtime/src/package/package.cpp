@@ -74,6 +74,17 @@ package::HitRecordFormat Package::hitRecord() const {
     return state_->header.hitRecord;
 }
 
+package::SampleRecordFormat Package::sampleRecord() const {
+    return state_->header.sampleRecord;
+}
+
+// Paths and emissive lights need the start of a ray when its hit is shaded. GLINT_HITS_IN_SAMPLES of
+// tool/emit/sources.cpp says the same.
+bool Package::hitsInSamples() const {
+    return sampleRecord() == package::SampleRecordFormat::Packed && passes() == package::Passes::Frame &&
+           !package::hasPaths(shape()) && emission() == nullptr;
+}
+
 bool Package::textureLevels() const {
     return state_->header.textureLevels != 0;
 }

@@ -105,6 +105,9 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     if (header.hitRecord > package::HitRecordFormat::Packed) {
         return outside("the hit record", static_cast<std::uint32_t>(header.hitRecord));
     }
+    if (header.sampleRecord > package::SampleRecordFormat::Packed) {
+        return outside("the record of samples", static_cast<std::uint32_t>(header.sampleRecord));
+    }
     if (header.positionFetch > 1) {
         return outside("the source of positions", header.positionFetch);
     }

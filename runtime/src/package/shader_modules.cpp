@@ -17,6 +17,32 @@ Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span
     return UniqueShaderModule(context, module);
 }
 
+std::vector<std::uint32_t> withHalfImages(std::span<const std::uint32_t> words) {
+    // SPIR-V, "Physical Layout of a SPIR-V Module and Instruction", "OpTypeImage" and "Image Format".
+    constexpr std::size_t kHeaderWords = 5;
+    constexpr std::uint32_t kOpTypeImage = 25;
+    constexpr std::uint32_t kOpFunction = 54;
+    constexpr std::size_t kSampledOperand = 7;
+    constexpr std::size_t kFormatOperand = 8;
+    constexpr std::uint32_t kStorage = 2;
+    constexpr std::uint32_t kRgba32f = 1;
+    constexpr std::uint32_t kRgba16f = 2;
+    std::vector<std::uint32_t> changed(words.begin(), words.end());
+    for (std::size_t at = kHeaderWords; at < changed.size();) {
+        const std::uint32_t operation = changed[at] & 0xFFFFU;
+        const std::size_t length = changed[at] >> 16U;
+        if (length == 0 || operation == kOpFunction) {
+            break;  // types stand before functions
+        }
+        if (operation == kOpTypeImage && at + kFormatOperand < changed.size() &&
+            changed[at + kSampledOperand] == kStorage && changed[at + kFormatOperand] == kRgba32f) {
+            changed[at + kFormatOperand] = kRgba16f;
+        }
+        at += length;
+    }
+    return changed;
+}
+
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module) {
     VkPipelineShaderStageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -28,7 +54,9 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
 
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout, PipelineCreation& creation) {
-    Result<UniqueShaderModule> module = createShaderModule(context, words);
+    Result<UniqueShaderModule> module = creation.halfPicture
+                                            ? createShaderModule(context, withHalfImages(words))
+                                            : createShaderModule(context, words);
     if (!module) {
         return module.error();
     }

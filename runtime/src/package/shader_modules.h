@@ -5,11 +5,16 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace glint {
 
 // Makes a module from SPIR-V words. Error "vulkan-call".
 Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words);
+
+// Returns a module whose storage images of the format rgba32f have rgba16f instead. The format is a literal
+// of their type, which they share.
+std::vector<std::uint32_t> withHalfImages(std::span<const std::uint32_t> words);
 
 // Describes a stage whose entry point is "main".
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module);
@@ -20,6 +25,7 @@ struct PipelineCreation {
     // The number of threads in a compute shader's workgroup, if that is its constant 0. 0 means that the
     // shader has no such constant.
     std::uint32_t threads = 0;
+    bool halfPicture = false;  // the shader's images of light have 16-bit floats: withHalfImages()
     VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
 };
 

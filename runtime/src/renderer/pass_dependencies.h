@@ -16,6 +16,8 @@ inline constexpr MemoryDependency kTransferToTransfer{
     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
 inline constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+inline constexpr VkPipelineStageFlags2 kDepthStages =
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
 inline constexpr VkPipelineStageFlags2 kRasterShaders =
     VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
 
@@ -27,8 +29,11 @@ struct PassDependencies {
                         kRasterStage | kRasterShaders | stages,
                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT |
                             VK_ACCESS_2_SHADER_WRITE_BIT},
-          rasterToPasses{kRasterStage, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, stages,
-                         VK_ACCESS_2_SHADER_READ_BIT},
+          // Passes may write to the memory of the depth.
+          rasterToPasses{
+              kRasterStage | kDepthStages,
+              VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, stages,
+              VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT},
           passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages,
                      VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT},
           passToDispatch{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,

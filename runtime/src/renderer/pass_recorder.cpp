@@ -113,6 +113,16 @@ void PassRecorder::beginRendering() {
 
 void PassRecorder::drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets) {
     beginPass({"gbuffer", Pass::Gbuffer});
+    recordTransition(
+        state_.context, commands_,
+        {state_.frame.depth.handle.get(),
+         VK_IMAGE_LAYOUT_UNDEFINED,
+         VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+         {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, kDepthStages,
+          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT},
+         0,
+         VK_REMAINING_MIP_LEVELS,
+         VK_IMAGE_ASPECT_DEPTH_BIT});
     beginRendering();
     vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
     bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS, sets);

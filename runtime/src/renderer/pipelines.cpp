@@ -164,15 +164,17 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
         const std::uint32_t threads = chosenThreads(context.limits, key, package.bucketCount());
         const auto [known, fresh] = byWords.emplace(words.data(), plan.size());
         if (fresh) {
-            plan.push_back({{pipelineName(package, key), words.size(),
-                             [&context, words, layout, threads](PipelineCreation& creation) {
-                                 creation.threads = threads;
-                                 return createComputePipeline(context, words, layout, creation);
-                             },
-                             identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
-                            {},
-                            {},
-                            PipelineTurn::Spare});
+            plan.push_back(
+                {{pipelineName(package, key), words.size(),
+                  [&context, words, layout, threads, half = choice.halfPicture](PipelineCreation& creation) {
+                      creation.threads = threads;
+                      creation.halfPicture = half;
+                      return createComputePipeline(context, words, layout, creation);
+                  },
+                  identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
+                 {},
+                 {},
+                 PipelineTurn::Spare});
         }
         PlannedPipeline& planned = plan[known->second];
         planned.keys.push_back(key);
@@ -201,7 +203,8 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
     for (RayPass& planned : planRayPasses(package, choice, shaderIds)) {
         const auto pass = std::make_shared<const RayPass>(std::move(planned));
         plan.push_back({{pass->name, wordCount(pass->source),
-                         [&context, pass, layout](PipelineCreation& creation) {
+                         [&context, pass, layout, half = choice.halfPicture](PipelineCreation& creation) {
+                             creation.halfPicture = half;
                              return createRayPipeline(context, layout, pass->source, creation);
                          },
                          identify(package, pass->source)},

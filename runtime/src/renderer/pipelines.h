@@ -32,6 +32,7 @@ struct PipelineChoice {
     bool draft = false;
     // The edit of an early package is shown.
     bool showsEdit = false;
+    bool halfPicture = false;  // as FrameSize::halfPicture
 };
 
 // When a pipeline is made: these follow each other.

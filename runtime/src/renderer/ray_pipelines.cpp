@@ -79,10 +79,17 @@ Status addHitGroups(Context::State& context, const RayPipelineSource& source, Pa
     return okStatus();
 }
 
-Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source) {
+Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source, bool halfPicture) {
     Parts parts;
+    // The other stages know no images of light.
+    std::vector<std::uint32_t> withHalf;
+    SpirvWords rayGeneration = source.rayGeneration;
+    if (halfPicture) {
+        withHalf = withHalfImages(rayGeneration);
+        rayGeneration = withHalf;
+    }
     if (Status status =
-            addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, std::span(&source.rayGeneration, 1), parts);
+            addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, std::span(&rayGeneration, 1), parts);
         !status) {
         return status.error();
     }
@@ -153,7 +160,7 @@ Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeli
 
 Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
                                          const RayPipelineSource& source, PipelineCreation& creation) {
-    Result<Parts> parts = makeParts(context, source);
+    Result<Parts> parts = makeParts(context, source, creation.halfPicture);
     if (!parts) {
         return parts.error();
     }

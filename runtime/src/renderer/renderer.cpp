@@ -124,7 +124,8 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.firstEmitters = state.scene.firstEmitters.address;
     constants.emitterCount = static_cast<std::uint32_t>(state.scene.emitters.records.size());
     constants.lastBounce = bouncesOf(state.size, options);
-    constants.accumulates = state.size.accumulates ? 1 : 0;
+    constants.accumulates = (state.size.accumulates ? gpu::kPictureHasResidual : 0U) |
+                            (state.size.halfPicture ? gpu::kPictureIsHalf : 0U);
     fillLists(state.frame, state.size, constants);
     setBand(state.size, 0, constants);
     return constants;
@@ -277,6 +278,10 @@ void Renderer::finished(std::uint64_t recording) {
         std::memcpy(depths.data(), state_->frame.readback.mapped + place, sizeof(depths));
         state_->bounceLevels.completed(recording, depths);
     }
+}
+
+VkFormat Renderer::outputFormat() const {
+    return state_->frame.images[gpu::kBindingAccumulated].format;
 }
 
 VkImage Renderer::output() const {

@@ -150,6 +150,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.ordering = options.ordering.value_or(orderingFor(context.limits, package.bucketCount()));
     choice.checksOrder = options.checkOrder;
     choice.batchEffects = options.batchEffects;
+    choice.halfPicture = hasHalfPicture(package, options);
     // Bands cost a GPU with memory of its own a fifth of its time and more (docs/memory.md).
     const bool isDiscrete = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     choice.bands = options.bands == 0 && isDiscrete ? 1 : options.bands;
@@ -184,6 +185,14 @@ std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, 
     return whole < size.height ? whole : 0;
 }
 
+bool hasHalfPicture(const Package& package, const RendererOptions& options) {
+    const bool hasWideLayers = std::ranges::any_of(package.layers(), [](const package::PackageLayer& layer) {
+        return layer.info->format == package::LayerFormat::Float4;
+    });
+    const bool marches = options.screenMarch && package.shape().effects.screenStarts != 0;
+    return options.picture == PictureFormat::Half && !options.accumulate && !marches && !hasWideLayers;
+}
+
 FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
                     std::uint32_t textures) {
     FrameSize size;
@@ -205,8 +214,10 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
         (choice.strategy & package::strategiesThat(&package::StrategyInfo::fillsWorkgroups)) != 0
             ? gpu::kRayGroupSize
             : 1;
-    size.hitBytes = package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
-                                                                            : sizeof(gpu::HitRecord);
+    size.packedSamples = package.sampleRecord() == package::SampleRecordFormat::Packed;
+    size.hitBytes = package.hitsInSamples()                                   ? 0
+                    : package.hitRecord() == package::HitRecordFormat::Packed ? sizeof(gpu::PackedHitRecord)
+                                                                              : sizeof(gpu::HitRecord);
     size.keyBytes = keyBytesOf(size.bucketCount);
     size.environmentMap = package.environmentMap();
     size.textureLevels = package.textureLevels() ? textures : 0;
@@ -218,6 +229,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.layerBounces = package::layerBounces(size.layers);
     size.accumulates = options.accumulate;
     size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
+    size.halfPicture = choice.halfPicture;
     size.bandRows = chooseBandRows(size, choice.strategy, choice.bands);
     return size;
 }

@@ -18,6 +18,11 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
 // Pure.
 std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted);
 
+// Whether frames have a picture of 16-bit floats: what asks for it is there, and nothing needs it in full.
+// The march in screen space reads depths from it, and shaders have one format for the picture and for layers
+// of 32-bit vectors.
+bool hasHalfPicture(const Package& package, const RendererOptions& options);
+
 FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
                     std::uint32_t textures);
 

@@ -13,8 +13,8 @@ namespace {
 // Vectors of four floats get an alignment of their size, which suits every device.
 constexpr VkDeviceSize kAttributeAlignment = 16;
 constexpr std::size_t kMostShortVertices = std::size_t{1} << 16;
-// Custom indices have 24 bits.
-constexpr std::size_t kMaxGeometries = std::size_t{1} << 24;
+// Custom indices have 24 bits. Packed records of samples have two numbers of them that stand for no geometry.
+constexpr std::size_t kMaxGeometries = (std::size_t{1} << 24) - 2;
 
 struct AttributeUpload {
     std::span<const std::uint8_t> bytes;

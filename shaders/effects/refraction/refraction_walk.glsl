@@ -181,7 +181,12 @@ uint walk(uvec2 pixel, uint target) {
     walker.coneWidth = GLINT_FRAME.pixelWidth;
     walker.channel = 3u;
     walker.media = uvec2(0u);
-    walker.weight = vec3(storedSample(target).coneSpread);  // see the comment in refraction.glsl
+    // See the comment in refraction.glsl.
+#if GLINT_SAMPLE_RECORD_PACKED
+    walker.weight = storedSample(target).origin;
+#else
+    walker.weight = vec3(storedSample(target).coneSpread);
+#endif
     float travelled = distance(hit.position, camera.origin);
     uint segments = 0u;
 #if GLINT_LAYER_RAYS
@@ -231,7 +236,7 @@ uint walk(uvec2 pixel, uint target) {
         vec3 met = lightsOnWay(walker, record.geometry == kMissGeometry ? 2.0 * kFarDistance : record.distance);
         if (met != vec3(0.0)) {
             vec4 seen = imageLoad(radianceImage, ivec2(pixel));
-            imageStore(radianceImage, ivec2(pixel), vec4(seen.rgb + met, seen.a));
+            imageStore(radianceImage, ivec2(pixel), storable(vec4(seen.rgb + met, seen.a)));
         }
 #endif
         if (record.geometry == kMissGeometry) {

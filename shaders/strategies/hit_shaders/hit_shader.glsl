@@ -9,6 +9,7 @@
 #include "strategies/hit_shaders/payload.glsl"
 #include "hit/geometry_index.glsl"
 #include "generated/shade.glsl"
+#include "packed/hit_codes.glsl"
 #if GLINT_LAYER_RAYS
 #include "layers/ray_hits.glsl"
 #endif
@@ -22,9 +23,16 @@ uint hitGeometry() {
 
 Hit shadedHit(HostGeometry geometry, Features features) {
     uint target = floatBitsToUint(shaded.radiance.x);
+#if GLINT_HITS_IN_SAMPLES
+    precise float exactWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
+    float coneWidth = keptConeWidth(exactWidth);
+    Hit hit = fetchHit(geometry, uint(gl_PrimitiveID), keptBarycentrics(hitBarycentrics), gl_WorldRayDirectionEXT,
+                       coneWidth, target, features);
+#else
     float coneWidth = shaded.radiance.y + shaded.radiance.z * gl_HitTEXT;
     Hit hit = fetchHit(geometry, uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, coneWidth, target,
                        features);
+#endif
 #if GLINT_LAYER_RAYS
     storeRayHit(target, hitGeometry(), uint(gl_PrimitiveID), hitBarycentrics, gl_WorldRayDirectionEXT, gl_HitTEXT);
 #endif

@@ -8,6 +8,9 @@
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
 #include "hit/resolve.glsl"
 #include "generated/cases.glsl"
+#if GLINT_HITS_IN_SAMPLES
+#include "order/bucket_key.glsl"
+#endif
 
 GLINT_RAY_WORKGROUP
 
@@ -32,15 +35,20 @@ void main() {
         return;
     }
     HitRecord record = storedHit(slot);
-    RayRecord ray = listedRay(slot);
+    RayRecord ray = shadedRay(slot);
     GLINT_CLOCK_START
     if (record.geometry == kMissGeometry) {
         resolveMiss(ray.target, ray.direction);
         return;
     }
     // The first hit of a workgroup gives the case of all its hits.
+#if GLINT_HITS_IN_SAMPLES
+    // It may already have its light in the place of the hit, so this reads its bucket.
+    uint shaderId = storedKey(GLINT_FRAME.orderedHits.data[firstSlot()]) - 1u;
+#else
     uint first = storedGeometry(GLINT_FRAME.orderedHits.data[firstSlot()]);
     uint shaderId = first == kMissGeometry ? kNoShader : hostShaderId(first);
+#endif
     HostGeometry geometry = hostGeometry(record.geometry);
     Hit hit = loadHit(record, ray, geometry, GLINT_HIT_FEATURES(geometry));
 #if GLINT_DRAWS_FIRST

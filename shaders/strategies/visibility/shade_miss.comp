@@ -13,7 +13,7 @@ void main() {
         return;
     }
     uint hit = GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[0] + index];
-    RayRecord ray = listedRay(hit);
+    RayRecord ray = shadedRay(hit);
     if (storedGeometry(hit) == kMissGeometry) {
         resolveMiss(ray.target, ray.direction);
     } else {

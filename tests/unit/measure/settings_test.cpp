@@ -31,6 +31,7 @@ compiler::Configuration usual() {
             {"sized-lights", "off"},
             {"precision", "32"},
             {"hit-record", "full"},
+            {"sample-record", "full"},
             {"strategy", "visibility"},
             {"merge", "family"},
             {"shadows", "inline"},

@@ -202,6 +202,7 @@ const std::map<std::string, std::set<std::string>, std::less<>>& enumerations() 
         {"shadows", namesOfAll<package::ShadowPlacement>()},
         {"shadowThrough", namesOfAll<package::ShadowThrough>()},
         {"hitRecord", namesOfAll<package::HitRecordFormat>()},
+        {"sampleRecord", namesOfAll<package::SampleRecordFormat>()},
         {"textureLod", namesOfAll<compiler::TextureLod>()},
         {"merge", namesOfAll<compiler::MergePolicy>()},
         {"alpha", namesOfAll<package::AlphaPolicy>()}};
@@ -248,8 +249,9 @@ TEST(Schemas, EnumerateTheValuesOfSettings) {
         compareEnumerations(Json::parse(readText(entry.path().string())), "",
                             entry.path().filename().string(), found);
     }
-    for (const char* const name : {"strategy", "strategies", "fastest", "tracer", "tracers", "shadows",
-                                   "shadowThrough", "hitRecord", "textureLod", "merge", "alpha"}) {
+    for (const char* const name :
+         {"strategy", "strategies", "fastest", "tracer", "tracers", "shadows", "shadowThrough", "hitRecord",
+          "sampleRecord", "textureLod", "merge", "alpha"}) {
         EXPECT_GE(found[name], 1) << name;
     }
 }

@@ -336,6 +336,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.tracers = settings.tracers;
     header.shadows = settings.shadows;
     header.hitRecord = settings.hitRecord;
+    header.sampleRecord = settings.sampleRecord;
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
     header.lightSamples = settings.lightSamples.value_or(0);

@@ -1,0 +1,44 @@
+// Parts of a hit in fewer bits, for packed records of samples.
+#if GLINT_SAMPLE_RECORD_PACKED
+
+// Encodes a length as a number of steps of its logarithm, `steps` of which make a factor of two, from 2^-20 metres as 1
+// to the largest code. 0 means no length.
+uint encodeLog2(float value, float steps, uint most) {
+    precise float code = (log2(value) + 20.0) * steps;
+    return value > 0.0 ? uint(clamp(roundEven(code), 1.0, float(most))) : 0u;
+}
+
+float decodeLog2(uint code, float steps) {
+    precise float power = float(code) / steps - 20.0;
+    return code > 0u ? exp2(power) : 0.0;
+}
+
+// The width of a cone at a hit: 11 bits, exact to 1/128 of a mip level.
+const float kHitWidthSteps = 64.0;
+const uint kMostHitWidthCode = 0x7FFu;
+
+// Barycentric coordinates in 24 bits keep what float has of numbers above a half.
+uint encodeBarycentric(float value) {
+    precise float steps = value * 16777216.0;
+    return uint(clamp(roundEven(steps), 0.0, 16777215.0));
+}
+
+// `code` may have more bits above.
+float decodeBarycentric(uint code) {
+    return float(code & 0xFFFFFFu) * (1.0 / 16777216.0);
+}
+
+#if GLINT_HITS_IN_SAMPLES
+// Returns what a record keeps of barycentric coordinates and of a cone's width. Strategies that keep no record round
+// their hits in the same way, so all pictures are the same.
+vec2 keptBarycentrics(vec2 barycentrics) {
+    return vec2(decodeBarycentric(encodeBarycentric(barycentrics.x)),
+                decodeBarycentric(encodeBarycentric(barycentrics.y)));
+}
+
+float keptConeWidth(float width) {
+    return decodeLog2(encodeLog2(width, kHitWidthSteps, kMostHitWidthCode), kHitWidthSteps);
+}
+#endif
+
+#endif
