@@ -304,13 +304,19 @@ TEST_F(ReplacePackage, ADraftEndsWhileAPackageWaits) {
     draw(*renderer);
     EXPECT_TRUE(renderer->pipelineProgress().draft);
     ASSERT_TRUE(renderer->replacePackage(*edited_));
+    // A thread may have made the pipelines of the new package by now. Then the picture switches to it.
+    const auto pauseNext = [&](bool paused) {
+        if (renderer->state().next && renderer->state().next->pipelines.background) {
+            renderer->state().next->pipelines.background->setPaused(paused);
+        }
+    };
+    pauseNext(true);
     renderer->state().pipelines.background->wait();
     // One more pipeline than the fixed ones would be a case.
     renderer->state().pipelines.adoptedAtOnce = 1;
-    renderer->state().next->pipelines.background->setPaused(true);
     draw(*renderer);
     EXPECT_FALSE(renderer->pipelineProgress().draft);
-    renderer->state().next->pipelines.background->setPaused(false);
+    pauseNext(false);
     renderer->waitForPipelines();
     expectEqualImage(draw(*renderer), wanted, "the other package");
     EXPECT_FALSE(renderer->pipelineProgress().draft);
