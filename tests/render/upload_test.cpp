@@ -190,6 +190,7 @@ TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
     const std::unique_ptr<Renderer> renderer = makeRenderer(*source_, *scene);
     ASSERT_NE(renderer, nullptr);
     EXPECT_TRUE(renderer->record(commands, frame_));
+    EXPECT_EQ(watch.waits + watch.submissions, 0) << "of the renderer";
     frames.submit();
     // Another frame while the first one may be on its way. The sizes of compacted copies are not known yet.
     commands = frames.begin();

@@ -300,7 +300,7 @@ struct LayerValues {
 // outlive it.
 class Renderer {
 public:
-    // Makes all pipelines, images and buffers and waits for the device. Errors: "renderer-options" (not
+    // Makes all pipelines, images and buffers. Submits nothing. Errors: "renderer-options" (not
     // exactly one strategy, tracer or ordering), "package-strategy", "package-tracer" and "package-bounces"
     // (the package lacks it), "package-fallback" (see RendererOptions::backgroundPipelines), "device-tracer"
     // and "device-ordering" (the device lacks it), "pipeline-statistics", "render-size" (no pixels, or more

@@ -312,36 +312,6 @@ void fillSet(Context::State& context, const FrameSize& size, const FrameResource
     }
 }
 
-// Moves images into the layouts that they keep, and clears them to black.
-Status clearImages(Context::State& context, const FrameResources& frame) {
-    Result<CommandRunner> runner = CommandRunner::create(context);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    const auto clear = [&](const DeviceImage& image) {
-        if (image.handle.get() == VK_NULL_HANDLE) {
-            return;
-        }
-        recordTransition(
-            context, *commands,
-            {image.handle.get(),
-             VK_IMAGE_LAYOUT_UNDEFINED,
-             VK_IMAGE_LAYOUT_GENERAL,
-             {VK_PIPELINE_STAGE_2_NONE, 0, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
-        const VkClearColorValue black{};
-        const VkImageSubresourceRange range = wholeImage();
-        context.vk.CmdClearColorImage(*commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL, &black, 1,
-                                      &range);
-    };
-    std::ranges::for_each(frame.images, clear);
-    std::ranges::for_each(frame.layers, clear);
-    return runner->submitAndWait();
-}
-
 }  // namespace
 
 VkFormat vulkanFormat(package::LayerFormat format) {
@@ -379,7 +349,35 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
         return status;
     }
     fillSet(context, size, frame);
-    return clearImages(context, frame);
+    return okStatus();
+}
+
+void prepareImages(Context::State& context, VkCommandBuffer commands, FrameResources& frame) {
+    if (frame.prepared) {
+        return;
+    }
+    frame.prepared = true;
+    constexpr VkAccessFlags2 kAnyAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+    const auto clear = [&](const DeviceImage& image) {
+        if (image.handle.get() == VK_NULL_HANDLE) {
+            return;
+        }
+        recordTransition(
+            context, commands,
+            {image.handle.get(),
+             VK_IMAGE_LAYOUT_UNDEFINED,
+             VK_IMAGE_LAYOUT_GENERAL,
+             {VK_PIPELINE_STAGE_2_NONE, 0, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+        const VkClearColorValue black{};
+        const VkImageSubresourceRange range = wholeImage();
+        context.vk.CmdClearColorImage(commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL, &black, 1,
+                                      &range);
+    };
+    std::ranges::for_each(frame.images, clear);
+    std::ranges::for_each(frame.layers, clear);
+    recordDependency(context, commands,
+                     {VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                      VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAnyAccess});
 }
 
 VkDeviceSize frameBytes(const FrameSize& size) {

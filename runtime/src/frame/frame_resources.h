@@ -70,6 +70,7 @@ struct FrameResources {
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
+    bool prepared = false;  // by prepareImages()
 
     // All buffers, with names for reports.
     std::array<std::pair<const char*, const Buffer*>, kBufferCount> buffers() const {
@@ -189,9 +190,12 @@ VkFormat vulkanFormat(package::LayerFormat format);
 // write the light of the primary surfaces there, and compose() adds to it.
 const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding);
 
-// Makes all resources, or with FrameSize::hostRays the lists and counters alone, clears the images and waits
-// for the device.
+// Makes all resources, or with FrameSize::hostRays the lists and counters alone. The first commands that use
+// the images must come after those of prepareImages().
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);
+
+// Before the first frame moves the images into the layouts that they keep, and clears them to black.
+void prepareImages(Context::State& context, VkCommandBuffer commands, FrameResources& frame);
 
 // Buffers for frames of another size in memory, which replace those that have another size now.
 struct NextBuffers {

@@ -2,7 +2,6 @@
 
 #include "context/commands.h"
 #include "context/memory_report.h"
-#include "context/upload.h"
 
 #include <algorithm>
 #include <cstring>
@@ -76,7 +75,7 @@ Status MotionHistory::makeRoom() {
 
 // Geometries that do not deform keep the positions that they have, in whatever form that is.
 Status MotionHistory::createVertices() {
-    std::vector<gpu::PreviousVertices> table;
+    std::vector<gpu::PreviousVertices>& table = newTable_;
     table.reserve(scene_->geometryPositions.size());
     VkDeviceSize bytes = 0;
     std::vector<std::size_t> deformed;  // places in `table` of `copies_`, one for each geometry that deforms
@@ -101,6 +100,7 @@ Status MotionHistory::createVertices() {
         }
     }
     if (copies_.empty()) {
+        table.clear();
         return okStatus();
     }
     Result<Buffer> vertices = createBuffer(scene_->context, pool_, bytes, kHistoryUsage);
@@ -117,15 +117,22 @@ Status MotionHistory::createVertices() {
         return uploaded.error();
     }
     table_ = std::move(*uploaded);
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(scene_->context);
-    if (!uploader) {
-        return uploader.error();
+    return okStatus();
+}
+
+void MotionHistory::recordTable(VkCommandBuffer commands) {
+    constexpr std::size_t kMostBytes = 65536;  // of vkCmdUpdateBuffer()
+    const std::span<const std::uint8_t> bytes = bytesOf(std::span<const gpu::PreviousVertices>(newTable_));
+    for (std::size_t at = 0; at < bytes.size(); at += kMostBytes) {
+        const auto part = bytes.subspan(at, std::min(kMostBytes, bytes.size() - at));
+        scene_->context.vk.CmdUpdateBuffer(commands, table_.handle.get(), at, part.size(), part.data());
     }
-    if (Status s = (*uploader)->copyToBuffer(bytesOf(std::span<const gpu::PreviousVertices>(table)), table_);
-        !s) {
-        return s;
+    if (!bytes.empty()) {
+        recordDependency(scene_->context, commands,
+                         {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT});
     }
-    return (*uploader)->finish();
+    newTable_.clear();
 }
 
 Status MotionHistory::fill(gpu::FrameConstants& constants) {
@@ -149,6 +156,7 @@ void MotionHistory::record(VkCommandBuffer commands) {
         return;
     }
     recordDependency(scene_->context, commands, kFrameToCopy);
+    recordTable(commands);
     const DeviceTable& vk = scene_->context.vk;
     const VkBufferCopy all{0, 0, std::min(instances_.bytes, scene_->instances.bytes)};
     vk.CmdCopyBuffer(commands, scene_->instances.handle.get(), instances_.handle.get(), 1, &all);

@@ -38,6 +38,7 @@ private:
 
     Status createVertices();
     Status makeRoom();
+    void recordTable(VkCommandBuffer commands);
 
     // The positions of one deformed primitive.
     struct Copy {
@@ -53,7 +54,8 @@ private:
     Buffer instances_;
     std::vector<Buffer> outgrown_;  // frames in flight may read them
     Buffer vertices_;
-    Buffer table_;  // gpu::PreviousVertices by geometry
+    Buffer table_;                                 // gpu::PreviousVertices by geometry
+    std::vector<gpu::PreviousVertices> newTable_;  // until they are recorded
     std::vector<Copy> copies_;
     std::optional<View> view_;   // of the last frame
     View next_{};                // of the frame that is recorded

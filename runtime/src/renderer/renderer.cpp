@@ -241,6 +241,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
             return status;
         }
     }
+    prepareImages(state_->context, commands, state_->frame);
     recordFrame(*state_, commands, frame, constants);
     state_->recorded = true;
     ++state_->recordings;
