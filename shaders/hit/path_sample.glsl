@@ -9,7 +9,7 @@
 #include "host/random.glsl"
 #include "host/sky.glsl"
 #include "materials/volume/attenuation.glsl"
-#include "hit/media.glsl"
+#include "materials/volume/media.glsl"
 
 // The pairs of dimensions of the sequence: a direction; a lobe, and whether the path survives.
 const uint kPairPathDirection = 6u;

@@ -2,7 +2,7 @@
 #include "effects/ambient.glsl"
 #include "generated/hit_effects.glsl"
 #include "hit/answer_radiance.glsl"
-#include "hit/draw_light.glsl"
+#include "light/draw.glsl"
 #include "hit/material.glsl"
 #include "light/sized.glsl"
 #if GLINT_PATHS

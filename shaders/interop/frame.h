@@ -85,7 +85,7 @@ struct RayRecord {
 // ray takes the place of the last one in the sample's records. 20 bytes.
 struct PathState {
     vec3 throughput;  // factor of the radiance that the ray finds, since the primary surface
-    uint media[2];    // volumes that the ray is in (hit/media.glsl)
+    uint media[2];    // volumes that the ray is in (materials/volume/media.glsl)
 };
 
 // What a ray hit. Its index is that of the ray in the list. 20 bytes.

@@ -2,7 +2,6 @@
 // balance heuristic, as in light/shared.glsl. Whoever draws a direction of a lobe asks which lights it meets, and sends
 // a shadow ray there. So both see the same, and nothing of it waits in memory for the ray's own end.
 #include "host/lights.glsl"
-#include "light/punctual.glsl"
 
 #if GLINT_SIZED_LIGHTS
 

@@ -546,8 +546,8 @@ TEST(EmissiveLights, AutoTakesAFewSamples) {
     EXPECT_EQ(samplesOf(8, 16), 2U);
     EXPECT_EQ(samplesOf(8, 17), 4U);
     EXPECT_EQ(samplesOf(9, 0), 4U);
-    EXPECT_EQ(samplesOf(64, 0), 4U);
-    EXPECT_EQ(samplesOf(65, 0), 8U);
+    EXPECT_EQ(samplesOf(256, 0), 4U);
+    EXPECT_EQ(samplesOf(257, 0), 8U);
     EXPECT_EQ(samplesOf(0, 16), 0U) << "without triangles";
 }
 

@@ -15,7 +15,7 @@ namespace glint::compiler {
 
 // `--lights auto` takes all lights of scenes with up to as many, and so many samples of more. docs/lights.md
 // says how both were measured.
-inline constexpr std::size_t kFewLights = 256;
+inline constexpr std::size_t kFewLights = 128;
 inline constexpr std::uint32_t kSamplesOfManyLights = 8;
 
 // Beside emissive triangles it takes no more samples than these where the hierarchy has up to `most` lights.
@@ -23,7 +23,7 @@ struct SamplesOfEmitters {
     std::size_t most;
     std::uint32_t samples;
 };
-inline constexpr SamplesOfEmitters kSamplesOfEmitters[] = {{16, 2}, {128, 4}};
+inline constexpr SamplesOfEmitters kSamplesOfEmitters[] = {{16, 2}, {512, 4}};
 
 // `--emissive-lights auto` takes no more triangles of a scene as lights.
 inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
