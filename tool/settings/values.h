@@ -513,7 +513,7 @@ inline constexpr SettingValues kLights{
     .words =
         [] {
             return std::vector<SettingWord>{{"auto",
-                                             "all of up to 256 lights, and 8 of more; 2 to 8 of the "
+                                             "all of up to 128 lights, and 8 of more; 2 to 8 of the "
                                              "triangles in scenes with emissive lights"},
                                             {"all", "every light"}};
         },
