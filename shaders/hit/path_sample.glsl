@@ -115,6 +115,12 @@ PathStep straightStep(Hit hit, vec3 arriving) {
     step.throughput = arriving;
     step.coneSpread = hit.arrival.coneSpread;
     step.media = hit.arrival.media;
+#if GLINT_EMISSIVE_LIGHTS
+    // The surface that sent the ray shares its light. Its place is taken to be here, which is close.
+    LobeRay ray = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)];
+    step.density = ray.density;
+    step.receiver = ray.normal;
+#endif
 #if GLINT_SKY_LIGHT
     step.skyShare = storedSkyShare(hit.target);
 #endif

@@ -408,7 +408,7 @@ GLINT_CONSTANT(kSetScene, 0u);
 GLINT_CONSTANT(kBindingTlas, 0u);      // accelerationStructureEXT[]
 GLINT_CONSTANT(kBindingTextures, 1u);  // texture2D[]
 GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
-// Descriptor set 1: the images of a frame, all storage images.
+// Descriptor set 1: the images of a frame, all storage images. Half pictures have rgba16f for rgba32f.
 GLINT_CONSTANT(kSetFrame, 1u);
 GLINT_CONSTANT(kBindingSurface, 0u);      // rg32ui: geometry, primitive; also a colour attachment
 GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the primary surface, without effects that have

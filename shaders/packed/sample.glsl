@@ -190,8 +190,8 @@ HitRecord packedHit(uint place) {
     uvec4 start = GLINT_PACKED_STARTS.data[place];
     uint geometry = start.w >> 8;
     uint width = start.y >> 24 | (start.z >> 24 & 7u) << 8;
-    return HitRecord(geometry >= kLitGeometry24 ? kMissGeometry : geometry, start.x, decodeBarycentric(start.y), decodeBarycentric(start.z),
-                     decodeLog2(width, kHitWidthSteps));
+    return HitRecord(geometry >= kLitGeometry24 ? kMissGeometry : geometry, start.x, decodeBarycentric(start.y),
+                     decodeBarycentric(start.z), decodeLog2(width, kHitWidthSteps));
 }
 
 // Returns the direction of a ray whose hit is stored.

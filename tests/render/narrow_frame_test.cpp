@@ -216,9 +216,8 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
     }
 }
 
-// Light above what half floats hold becomes the largest of them, and no pixel is taken for one without a
-// number.
-TEST(HalfPicture, HoldsBrightLight) {
+// What a picture of bright light shows in a package with these layers.
+void expectBrightPicture(std::vector<std::string> layers, float expected) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
     materials::Material lamp;
@@ -228,6 +227,7 @@ TEST(HalfPicture, HoldsBrightLight) {
                 addMesh(scene, makeQuad(addMaterial(scene, lamp), {-20, -20, -2}, {40, 0, 0}, {0, 40, 0})));
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
+    settings.layers = std::move(layers);
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     RendererOptions options;
@@ -239,8 +239,19 @@ TEST(HalfPicture, HoldsBrightLight) {
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.nonFinite, 0U);
     for (const auto& pixel : image.pixels) {
-        EXPECT_EQ(pixel[0], 65504.0F);
+        EXPECT_EQ(pixel[0], expected);
     }
+}
+
+// Light above what half floats hold becomes the largest of them, and no pixel is taken for one without a
+// number.
+TEST(HalfPicture, HoldsBrightLight) {
+    expectBrightPicture({}, 65504.0F);
+}
+
+// A module that writes layers of four half floats must not have that format twice.
+TEST(HalfPicture, StaysFullBesideLayersOfHalfFloats) {
+    expectBrightPicture({"albedo"}, 1e6F);
 }
 
 }  // namespace

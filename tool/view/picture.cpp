@@ -115,7 +115,6 @@ bool Picture::isLoading() const {
 Status Picture::adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame) {
     Device made;
     made.loaded = std::move(loaded);
-    // It waits for the queue, and the upload need not be in it yet.
     Result<std::unique_ptr<Renderer>> renderer =
         Renderer::create(context_, *made.loaded.source.package, *made.loaded.scene, options);
     if (!renderer) {
@@ -175,6 +174,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     if (loading_.valid()) {
         loaded = loading_.get();
     }
+    const bool isLoaded = loaded.has_value();
     if (Status read = readEnvironment(build, notes); !read) {
         return read;
     }
@@ -195,7 +195,9 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
         if (Status adopted = adopt(std::move(**loaded), options, frame); !adopted) {
             return adopted;
         }
-        if (build.scene != build_.scene) {
+        // A pose may have been taken while the thread recorded a scene that stands still: the next one
+        // uploads it to move.
+        if (build.scene != build_.scene || isLoaded) {
             posed_.reset();
             moment_.reset();
         }

@@ -42,8 +42,7 @@ public:
     explicit Picture(Context& context) : context_(context) {}
 
     // Begins to record the upload of a build's scene on a thread, if install() will need it, and returns
-    // whether it has. The build can be installed when the
-    // thread is done.
+    // whether it has. The build can be installed when the thread is done.
     bool load(const Build& build);
     bool isLoading() const;
     // Whether it has begun, and install() was not called since.

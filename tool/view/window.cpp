@@ -745,9 +745,9 @@ Status Window::drawFrame(const Presenter::Frame& frame) {
     if (!look_.isPicture() && view_ && display_->recordCopy(frame.commands)) {
         area = area_;
     } else if (sides_[0]->picture.isReady() && display_->image().width > 0 &&
-               sides_[0]->picture.samples() + samples_ > 0) {
+               sides_[0]->picture.renderer().recordings() > 0) {
         const bool hasSecond =
-            sides_[1] && sides_[1]->picture.isReady() && sides_[1]->picture.recordedIn() > 0;
+            sides_[1] && sides_[1]->picture.isReady() && sides_[1]->picture.renderer().recordings() > 0;
         DisplayOptions options;
         options.scale = std::exp2(exposure_);
         options.shown = hasSecond ? shown_ : Shown::First;

@@ -60,7 +60,7 @@ public:
     //
     // Errors: "scene-package" (the package has no such scene, or the attributes disagree with it),
     // "position-fetch" and "half-precision" (the device was created without what the package needs),
-    // "scene-geometries" (more than 2^24 geometry records), other "scene-" errors for a scene that is not
+    // "scene-geometries" (more than 2^24 - 2 geometry records), other "scene-" errors for a scene that is not
     // well formed, "tlas-limit", and those of memory and Vulkan's calls. Nothing is recorded then.
     static Result<std::unique_ptr<GpuScene>> record(Context& context, const Package& package,
                                                     const SceneView& scene, VkCommandBuffer commands,
@@ -139,9 +139,9 @@ public:
     // The spans are read in this call and not kept. Poses are written to host-visible memory in this call, so
     // only one update may be in flight at a time. The recorded commands must be submitted before the next
     // call, which builds upon them. With an error nothing is recorded. Errors: "scene-still" (the scene was
-    // uploaded without `moves`), "scene-upload" (isUploaded() returns false), "scene-motion" (another number of instances, lights, joints or weights than
-    // at upload, another mesh, or a number that is not finite), "scene-light", "scene-material" (other
-    // materials than at upload).
+    // uploaded without `moves`), "scene-upload" (isUploaded() returns false), "scene-motion" (another number
+    // of instances, lights, joints or weights than at upload, another mesh, or a number that is not finite),
+    // "scene-light", "scene-material" (other materials than at upload).
     Status update(VkCommandBuffer commands, const MotionView& motion);
 
     // Records an update, submits it and waits for the device. This is for tools and tests.
@@ -283,7 +283,7 @@ struct LayerImage {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     VkFormat format = VK_FORMAT_UNDEFINED;
-    // It is always in this layout.
+    // It is in this layout after the first recording.
     static constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
 };
 
@@ -345,12 +345,14 @@ public:
     // Records one sample into a command buffer of the caller's, in the recording state and outside a render
     // pass. Recordings of a renderer share its buffers, so they must run one after the other. On one queue
     // the barrier at their beginning ensures that. counters() returns those of the last recording. After the
-    // commands ran, output() holds the mean over samples 0..sampleIndex. Errors: "camera", "sky",
+    // commands ran, output() holds the mean over samples 0..sampleIndex. The commands of the first recording
+    // prepare images and tables for all that follow, so they must be submitted. Errors: "camera", "sky",
     // "frame-options", "environment-missing", "environment-unread".
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
-    // The accumulated linear image. Its layout is GENERAL; a compute shader writes it last. Its format is
-    // VK_FORMAT_R32G32B32A32_SFLOAT, or VK_FORMAT_R16G16B16A16_SFLOAT with PictureFormat::Half.
+    // The accumulated linear image. After the first recording its layout is GENERAL; a compute shader writes
+    // it last. Its format is VK_FORMAT_R32G32B32A32_SFLOAT, or VK_FORMAT_R16G16B16A16_SFLOAT with
+    // PictureFormat::Half.
     VkImage output() const;
     VkFormat outputFormat() const;
     VkImageView outputView() const;

@@ -1,5 +1,6 @@
 // SceneEditor: meshes and their BLASes, and instances.
 #include "edit/editor_state.h"
+#include "scene/geometry.h"
 #include "scene/instance_math.h"
 #include "scene/scene_checks.h"
 #include "scene/traversal_order.h"
@@ -9,9 +10,6 @@
 
 namespace glint {
 namespace {
-
-// Custom indices have 24 bits.
-constexpr std::uint32_t kMostRecords = 1U << 24;
 
 bool isFinite(const Rows& rows) {
     return std::ranges::all_of(rows, [](float value) { return std::isfinite(value); });
@@ -366,9 +364,9 @@ Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) {
     if (!report) {
         return report.error();
     }
-    if (state_->geometryRuns.end() > kMostRecords - mesh->partCount) {
+    if (state_->geometryRuns.end() > kMostGeometries - mesh->partCount) {
         return makeError("scene-geometries", where,
-                         "the scene's instances have more than 2^24 primitives altogether",
+                         "the scene's instances have more than 2^24 - 2 primitives altogether",
                          "join primitives of a material, or use fewer instances");
     }
     EditedInstance instance;
@@ -422,9 +420,9 @@ Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHan
     if (!report) {
         return report.error();
     }
-    if (state_->geometryRuns.end() > kMostRecords - wanted->partCount) {
+    if (state_->geometryRuns.end() > kMostGeometries - wanted->partCount) {
         return makeError("scene-geometries", where,
-                         "the scene's instances have more than 2^24 primitives altogether",
+                         "the scene's instances have more than 2^24 - 2 primitives altogether",
                          "join primitives of a material, or use fewer instances");
     }
     unplace(*state_, *entry);

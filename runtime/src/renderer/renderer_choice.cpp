@@ -186,8 +186,10 @@ std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, 
 }
 
 bool hasHalfPicture(const Package& package, const RendererOptions& options) {
+    // Modules that write such layers have both formats of images, which must stay two types.
     const bool hasWideLayers = std::ranges::any_of(package.layers(), [](const package::PackageLayer& layer) {
-        return layer.info->format == package::LayerFormat::Float4;
+        return layer.info->format == package::LayerFormat::Float4 ||
+               layer.info->format == package::LayerFormat::Half4;
     });
     const bool marches = options.screenMarch && package.shape().effects.screenStarts != 0;
     return options.picture == PictureFormat::Half && !options.accumulate && !marches && !hasWideLayers;

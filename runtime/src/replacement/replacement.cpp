@@ -148,8 +148,8 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::share
     if (!haveSameImages(state.size, next->size)) {
         return makeError(
             "package-frame", "",
-            "only one of the packages reads an environment map or looks for reflections in screen "
-            "space, so their frames have other images",
+            "the packages differ in layers, or only one of them reads an environment map or looks for "
+            "reflections in screen space, so their frames have other images",
             "make a renderer for the package");
     }
     next->package = std::move(package);

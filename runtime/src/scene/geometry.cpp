@@ -13,8 +13,6 @@ namespace {
 // Vectors of four floats get an alignment of their size, which suits every device.
 constexpr VkDeviceSize kAttributeAlignment = 16;
 constexpr std::size_t kMostShortVertices = std::size_t{1} << 16;
-// Custom indices have 24 bits. Packed records of samples have two numbers of them that stand for no geometry.
-constexpr std::size_t kMaxGeometries = (std::size_t{1} << 24) - 2;
 
 struct AttributeUpload {
     std::span<const std::uint8_t> bytes;
@@ -353,7 +351,7 @@ void placePart(const PartitionInput& input, const DeformedAddresses& deformed, s
 
 Diagnostic tooManyGeometries(std::string where) {
     return makeError("scene-geometries", std::move(where),
-                     "the scene's instances have more than 2^24 primitives altogether",
+                     "the scene's instances have more than 2^24 - 2 primitives altogether",
                      "join primitives of a material, or use fewer instances");
 }
 
@@ -461,14 +459,14 @@ Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scen
         for (const std::uint32_t part : parts.decided) {
             decided.emplace_back(part, i);
         }
-        if (layout.geometries.size() > kMaxGeometries) {
+        if (layout.geometries.size() > kMostGeometries) {
             return tooManyGeometries("instance " + std::to_string(i));
         }
     }
     for (const auto& [part, instance] : decided) {
         placePart(input, deformed, part, instance, false, layout);
     }
-    if (layout.geometries.size() > kMaxGeometries) {
+    if (layout.geometries.size() > kMostGeometries) {
         return tooManyGeometries("");
     }
     return layout;

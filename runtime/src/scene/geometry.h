@@ -20,6 +20,10 @@
 
 namespace glint {
 
+// The most geometry records of a scene. Custom indices have 24 bits. Packed records of samples have two
+// numbers of them that stand for no geometry.
+inline constexpr std::uint32_t kMostGeometries = (1U << 24) - 2;
+
 // A primitive's attributes in one buffer. The address of an attribute that it lacks is 0.
 struct GpuPrimitive {
     Buffer buffer;

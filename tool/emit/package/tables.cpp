@@ -336,7 +336,8 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     header.tracers = settings.tracers;
     header.shadows = settings.shadows;
     header.hitRecord = settings.hitRecord;
-    header.sampleRecord = settings.sampleRecord;
+    const bool hasSamples = settings.passes == package::Passes::Frame;
+    header.sampleRecord = hasSamples ? settings.sampleRecord : package::SampleRecordFormat::Full;
     header.environmentMap = settings.environmentMap ? 1 : 0;
     header.positionFetch = settings.positionFetch ? 1 : 0;
     header.lightSamples = settings.lightSamples.value_or(0);
