@@ -108,19 +108,14 @@ PathStep nextStep(Hit hit, Surface surface, Features features,
     return step;
 }
 
-// The ray goes straight on through a surface that does not affect it.
+// The ray goes straight on through a surface that does not affect it. Such a back stops samples of emissive triangles
+// within a volume (kShadowOfSharedWithin), so a density of 0 lets the ray bring all of their light.
 PathStep straightStep(Hit hit, vec3 arriving) {
     PathStep step = endOfPath();
     step.direction = -hit.view;
     step.throughput = arriving;
     step.coneSpread = hit.arrival.coneSpread;
     step.media = hit.arrival.media;
-#if GLINT_EMISSIVE_LIGHTS
-    // The surface that sent the ray shares its light. Its place is taken to be here, which is close.
-    LobeRay ray = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)];
-    step.density = ray.density;
-    step.receiver = ray.normal;
-#endif
 #if GLINT_SKY_LIGHT
     step.skyShare = storedSkyShare(hit.target);
 #endif
