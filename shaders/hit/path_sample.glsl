@@ -44,30 +44,17 @@ bool seesSkyFromBefore(Hit hit, Features features, bool passes) {
 }
 #endif
 
-#if GLINT_SIZED_LIGHTS
-// The direction of nextStep(), for lights that it meets.
+// Samples a direction of all lobes by one-sample multiple importance sampling: one lobe is chosen by its share of the
+// light, and the weight is the whole BSDF over the density of the mixture (Veach 1997).
 BsdfSample drawDirection(Hit hit, Surface surface, Features features) {
     vec2 u = hostRandomPair(hit.target, dimensionOfBounce(kPairPathDirection));
     vec2 choice = hostRandomPair(hit.target, dimensionOfBounce(kPairPathLobe));
     return sampleBsdf(surface.bsdf, features, vec3(u, choice.x));
 }
-#endif
 
-// Samples a direction of all lobes by one-sample multiple importance sampling: one lobe is chosen by its share of the
-// light, and the weight is the whole BSDF over the density of the mixture (Veach 1997). `arriving` is the throughput at
-// the hit.
-PathStep nextStep(Hit hit, Surface surface, Features features,
-#if GLINT_SIZED_LIGHTS
-                  BsdfSample drawn,
-#endif
-                  vec3 arriving) {
-#if !GLINT_SIZED_LIGHTS
-    vec2 u = hostRandomPair(hit.target, dimensionOfBounce(kPairPathDirection));
-#endif
+// The step in the direction of drawDirection(). `arriving` is the throughput at the hit.
+PathStep nextStep(Hit hit, Surface surface, Features features, BsdfSample drawn, vec3 arriving) {
     vec2 choice = hostRandomPair(hit.target, dimensionOfBounce(kPairPathLobe));
-#if !GLINT_SIZED_LIGHTS
-    BsdfSample drawn = sampleBsdf(surface.bsdf, features, vec3(u, choice.x));
-#endif
     PathStep step = endOfPath();
     step.throughput = arriving * drawn.weight;
     float largestShare = max(step.throughput.x, max(step.throughput.y, step.throughput.z));

@@ -296,7 +296,8 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     if (pathGoesOn()) {
         // An effect that has traced the transmitted light itself leaves none.
         surface.bsdf.transmitted *= sky.transmitted;
-        result.path = nextStep(hit, surface, features, arrivingShare(hit.arrival, hit.position));
+        BsdfSample drawn = drawDirection(hit, surface, features);
+        result.path = nextStep(hit, surface, features, drawn, arrivingShare(hit.arrival, hit.position));
     } else {
         result.radiance += ambientLight(surface, features, hit.view, ambientOfHit(hit, sky));
     }

@@ -30,7 +30,7 @@ struct PartOfMesh {
 struct Compaction {
     explicit Compaction(Context::State& context) : pool(context) {}
 
-    // Of the structures as they were built, and of what the recording needs. Members are destroyed in reverse
+    // It holds the structures as they were built, and what the recording needs. Members are destroyed in reverse
     // order: the pool's memory last.
     MemoryPool pool;
     UniqueQueryPool sizes;  // of the compacted copies: one for each BLAS of the upload
@@ -69,7 +69,7 @@ struct SceneUpload {
     static constexpr std::uint32_t kTlasStretch = 1;
 
     Context::State& context;
-    // Of staging, scratch, and what acceleration structures are built from. Members are destroyed in reverse
+    // It holds staging, scratch, and what acceleration structures are built from. Members are destroyed in reverse
     // order: the pool's memory last.
     MemoryPool pool;
     std::vector<Buffer> kept;
