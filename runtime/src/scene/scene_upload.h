@@ -30,8 +30,8 @@ struct PartOfMesh {
 struct Compaction {
     explicit Compaction(Context::State& context) : pool(context) {}
 
-    // It holds the structures as they were built, and what the recording needs. Members are destroyed in reverse
-    // order: the pool's memory last.
+    // It holds the structures as they were built, and what the recording needs. Members are destroyed in
+    // reverse order: the pool's memory last.
     MemoryPool pool;
     UniqueQueryPool sizes;  // of the compacted copies: one for each BLAS of the upload
     std::uint32_t count = 0;
@@ -69,8 +69,8 @@ struct SceneUpload {
     static constexpr std::uint32_t kTlasStretch = 1;
 
     Context::State& context;
-    // It holds staging, scratch, and what acceleration structures are built from. Members are destroyed in reverse
-    // order: the pool's memory last.
+    // It holds staging, scratch, and what acceleration structures are built from. Members are destroyed in
+    // reverse order: the pool's memory last.
     MemoryPool pool;
     std::vector<Buffer> kept;
     std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order
