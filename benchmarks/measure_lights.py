@@ -65,20 +65,28 @@ def floor_with_boxes(generator):
     return corners
 
 
+def light_field(generator, count):
+    """Place, intensity and colour of each light: between 0.5 m and 2.5 m above the floor."""
+    lights = []
+    for _ in range(count):
+        intensity = 400.0 / count * 2.0 * generator.random()
+        color = [generator.random(), 0.6, generator.random()]
+        place = [20 * generator.random() - 10, 0.5 + 2 * generator.random(), 20 * generator.random() - 10]
+        lights.append((place, intensity, color))
+    return lights
+
+
 def write_scene(path, count):
-    """The floor with boxes, and lights between 0.5 m and 2.5 m above it."""
+    """The floor with boxes, and the lights above it."""
     generator = random.Random(1)
     corners = floor_with_boxes(generator)
     positions = b"".join(struct.pack("<3f", *place) for place, _ in corners)
     normals = b"".join(struct.pack("<3f", *normal) for _, normal in corners)
     path.with_suffix(".bin").write_bytes(positions + normals)
     lights, nodes = [], [{"mesh": 0}]
-    for i in range(count):
-        lights.append({"type": "point", "intensity": 400.0 / count * 2.0 * generator.random(),
-                       "color": [generator.random(), 0.6, generator.random()]})
-        nodes.append({"translation": [20 * generator.random() - 10, 0.5 + 2 * generator.random(),
-                                      20 * generator.random() - 10],
-                      "extensions": {"KHR_lights_punctual": {"light": i}}})
+    for i, (place, intensity, color) in enumerate(light_field(generator, count)):
+        lights.append({"type": "point", "intensity": intensity, "color": color})
+        nodes.append({"translation": place, "extensions": {"KHR_lights_punctual": {"light": i}}})
     # 12 m above and 14 m before the middle, 40 degrees down.
     nodes.append({"camera": 0, "translation": [0, 12, 14],
                   "rotation": [-math.sin(math.radians(20)), 0, 0, math.cos(math.radians(20))]})
