@@ -335,13 +335,17 @@ Status uploadStill(GpuScene::State& state, const Package& package, const Package
         !s) {
         return s;
     }
-    if (Status s = scene.moves
-                       ? createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader)
-                       : buildTopLevel(state, upload, scene, layout);
-        !s) {
-        return s;
+    if (scene.moves) {
+        if (Status s = createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader);
+            !s) {
+            return s;
+        }
+    } else {
+        if (Status s = buildTopLevel(state, upload, scene, layout); !s) {
+            return s;
+        }
+        upload.deformer = std::move(deformer);
     }
-    upload.deformer = std::move(deformer);
     for (GpuPrimitive& primitive : state.primitives) {
         upload.keep(std::move(primitive.buildInput));
     }
