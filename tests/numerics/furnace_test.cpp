@@ -1,7 +1,7 @@
 // Tests energy and reciprocity of the BSDF in double precision, against analytic values and a quadrature that
 // shares no code with the shaders.
+#include "ggx_table.h"
 #include "materials.h"
-#include "support/models.h"
 #include "support/nightly.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -60,38 +58,15 @@ TEST(Ggx, SingleScatterAlbedoHasTheAnalyticValueAtAlphaOne) {
 }
 
 TEST(Ggx, SingleScatterAlbedoAgreesWithTheTable) {
-    const std::filesystem::path path =
-        test::modelsFolder().parent_path() / "reference/ggx_directional_albedo.csv";
-    std::ifstream table(path);
-    if (!table) {
-        GTEST_SKIP() << test::noModels(path);
+    if (!std::filesystem::exists(ggxTablePath())) {
+        GTEST_SKIP() << test::noModels(ggxTablePath());
     }
-    // The columns are roughness, alpha, then E_mu<cosine> each, then the mean.
-    std::string header;
-    std::getline(table, header);
-    std::vector<double> cosines;
-    std::istringstream names(header);
-    for (std::string name; std::getline(names, name, ',');) {
-        if (name.starts_with("E_mu")) {
-            cosines.push_back(std::stod(name.substr(4)));
-        }
+    const std::vector<GgxAlbedoEntry> table = readGgxTable();
+    EXPECT_FALSE(table.empty());
+    for (const GgxAlbedoEntry& entry : table) {
+        EXPECT_NEAR(singleScatterAlbedo(entry.alpha, entry.cosine, 20000), entry.albedo, 3e-4)
+            << "alpha " << entry.alpha << ", mu " << entry.cosine;
     }
-    ASSERT_FALSE(cosines.empty()) << header;
-    int rows = 0;
-    for (std::string line; std::getline(table, line); ++rows) {
-        std::istringstream cells(line);
-        double roughness = 0.0;
-        double alpha = 0.0;
-        double expected = 0.0;
-        char comma = 0;
-        cells >> roughness >> comma >> alpha;
-        for (const double mu : cosines) {
-            cells >> comma >> expected;
-            EXPECT_NEAR(singleScatterAlbedo(alpha, mu, 20000), expected, 3e-4)
-                << "alpha " << alpha << ", mu " << mu;
-        }
-    }
-    EXPECT_GT(rows, 0);
 }
 
 // Returns the share of a white sky that black microfacets (f0 = 0, f90 = 1) or white ones reflect once.

@@ -1,20 +1,13 @@
 #include "ladder_statistics.h"
 
+#include "support/quantile.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 namespace glint::numerics {
 namespace {
-
-// Interpolates between neighbours, like R's type 7 (Hyndman and Fan 1996, "Sample Quantiles in Statistical
-// Packages").
-double quantile(const std::vector<double>& sorted, double share) {
-    const double place = share * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return std::lerp(sorted[below], sorted[above], place - static_cast<double>(below));
-}
 
 // Returns how many of the smallest, and of the largest, values can be left out so that the interval of the
 // rest contains the population's median with a chance of 95 %. It is the largest number for which a binomial
@@ -41,8 +34,8 @@ std::size_t outside(std::size_t count) {
 Spread spreadOf(std::vector<double> values) {
     std::ranges::sort(values);
     const std::size_t cut = outside(values.size());
-    return {quantile(values, 0.5), values[cut], values[values.size() - 1 - cut], quantile(values, 0.25),
-            quantile(values, 0.75)};
+    return {test::quantile(values, 0.5), values[cut], values[values.size() - 1 - cut],
+            test::quantile(values, 0.25), test::quantile(values, 0.75)};
 }
 
 }  // namespace glint::numerics

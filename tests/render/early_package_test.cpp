@@ -2,8 +2,9 @@
 #include "base/files.h"
 #include "emit/package/early.h"
 #include "materials/packs.h"
-#include "render/harness.h"
+#include "render/edited_scene.h"
 #include "render/pixel_test.h"
+#include "render/replacement.h"
 #include "renderer/renderer_state.h"
 #include "support/shared_modules.h"
 #include "support/temporary_folder.h"
@@ -87,15 +88,11 @@ gltf::Scene paintedRoom(const materials::MaterialModel& model) {
     return scene;
 }
 
-compiler::CompileSettings roomSettings() {
-    compiler::CompileSettings settings;
-    settings.strategies = package::kStrategyVisibility;
-    const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
-    settings.tracers = queries ? package::kTracerRayQuery : package::kTracerRayPipeline;
+compiler::CompileSettings paintedSettings() {
+    // The draft of the fallback is the reference of what early packages show.
+    compiler::CompileSettings settings = roomSettings(package::kStrategyVisibility, true);
+    settings.tracers = tracerOfDevice();
     settings.emitHeader = false;
-    settings.plan.merge = compiler::MergePolicy::None;
-    settings.plan.fallback = true;  // whose draft is the reference of what early packages show
-    settings.effects = {false, compiler::builtinEffects({"reflection"})};
     return settings;
 }
 
@@ -129,7 +126,7 @@ Version makeVersion(const materials::MaterialModel* model, const Version* before
                                          {}};
     }
     Result<compiler::CompiledPackage> compiled =
-        compilePackage(std::span(version.scene.get(), 1), roomSettings(), &sharedModules(), {}, nullptr,
+        compilePackage(std::span(version.scene.get(), 1), paintedSettings(), &sharedModules(), {}, nullptr,
                        showing ? &*showing : nullptr);
     EXPECT_TRUE(compiled) << toString(compiled.error());
     if (compiled) {
@@ -139,7 +136,7 @@ Version makeVersion(const materials::MaterialModel* model, const Version* before
     return version;
 }
 
-class EarlyPackage : public ::testing::Test {
+class EarlyPackage : public ReplacementTest {
 protected:
     static void SetUpTestSuite() {
         folder_ = new glint::test::TemporaryFolder();
@@ -162,33 +159,25 @@ protected:
         ASSERT_NE(version(1).early, nullptr);
         ASSERT_NE(version(2).early, nullptr);
         setup_ = defaultSetup(*version(0).scene, 24, 24);
-        const bool queries = (sharedContext().handles().tracers & package::kTracerRayQuery) != 0;
-        options_.width = setup_.width;
-        options_.height = setup_.height;
-        options_.strategy = package::kStrategyVisibility;
-        options_.tracer = queries ? package::kTracerRayQuery : package::kTracerRayPipeline;
+        options_ = optionsOf(package::kStrategyVisibility, tracerOfDevice());
     }
     static const Version& version(std::size_t number) {
         return (*versions_)[number];
     }
 
     static std::unique_ptr<GpuScene> upload(const Version& version) {
-        scene_view::SceneViewData data = scene_view::makeSceneView(*version.scene);
-        scene_view::useLayoutOf(*version.whole, *version.scene, data);
-        auto uploaded = GpuScene::upload(sharedContext(), *version.whole, data.view());
-        EXPECT_TRUE(uploaded) << toString(uploaded.error());
-        return uploaded ? std::move(*uploaded) : nullptr;
+        return ReplacementTest::upload(*version.scene, *version.whole);
     }
-    static std::unique_ptr<Renderer> make(const Package& package, GpuScene& scene,
-                                          const RendererOptions& options) {
-        auto renderer = Renderer::create(sharedContext(), package, scene, options);
-        EXPECT_TRUE(renderer) << toString(renderer.error());
-        return renderer ? std::move(*renderer) : nullptr;
-    }
-    LinearImage draw(Renderer& renderer) const {
-        const Result<LinearImage> image = renderer.render(setup_.frame, setup_.samples);
-        EXPECT_TRUE(image) << toString(image.error());
-        return image ? *image : LinearImage{};
+    // Makes the test's renderer anew, with all its pipelines. It shows a package of the first version's
+    // scene. Returns null if that fails.
+    Renderer* start(const Package& package, const RendererOptions& options) {
+        renderer_.reset();
+        scene_ = upload(version(0));
+        renderer_ = scene_ ? make(package, *scene_, options) : nullptr;
+        if (renderer_) {
+            renderer_->waitForPipelines();
+        }
+        return renderer_.get();
     }
     // Returns the picture of a scene and a renderer of its own, or of its draft.
     LinearImage fresh(const Version& of, bool draft = false) const {
@@ -223,14 +212,12 @@ protected:
         EXPECT_LT(count, image.pixels.size() / 2);
         return image;
     }
-    static bool differ(const LinearImage& first, const LinearImage& second) {
-        return first.pixels != second.pixels;
-    }
 
     static inline glint::test::TemporaryFolder* folder_ = nullptr;
     static inline std::vector<Version>* versions_ = nullptr;
-    RenderSetup setup_;
     RendererOptions options_;
+    std::unique_ptr<GpuScene> scene_;
+    std::unique_ptr<Renderer> renderer_;
 };
 
 TEST_F(EarlyPackage, HasOneModuleMoreAndTheTablesOfThePackageBefore) {
@@ -257,10 +244,8 @@ TEST_F(EarlyPackage, TheEditIsADraftUntilTheWholePackageIsInUse) {
     for (const bool background : {false, true}) {
         RendererOptions options = options_;
         options.backgroundPipelines = background;
-        const std::unique_ptr<GpuScene> scene = upload(version(0));
-        const std::unique_ptr<Renderer> renderer = make(*version(0).whole, *scene, options);
+        Renderer* const renderer = start(*version(0).whole, options);
         ASSERT_NE(renderer, nullptr);
-        renderer->waitForPipelines();
         expectSameImage(draw(*renderer), old, "before");
         EXPECT_FALSE(renderer->replacementProgress().early);
 
@@ -291,8 +276,7 @@ TEST_F(EarlyPackage, TheEditIsADraftUntilTheWholePackageIsInUse) {
 
 // A program that starts while an edit is compiled may find an early package.
 TEST_F(EarlyPackage, ARendererMayBeginWithOne) {
-    const std::unique_ptr<GpuScene> scene = upload(version(0));
-    const std::unique_ptr<Renderer> renderer = make(*version(1).early, *scene, options_);
+    Renderer* const renderer = start(*version(1).early, options_);
     ASSERT_NE(renderer, nullptr);
     EXPECT_TRUE(renderer->replacementProgress().early);
     const LinearImage shown = draw(*renderer);
@@ -307,10 +291,8 @@ TEST_F(EarlyPackage, ARendererMayBeginWithOne) {
 TEST_F(EarlyPackage, ASecondEditTakesThePlaceOfTheFirst) {
     RendererOptions options = options_;
     options.backgroundPipelines = true;
-    const std::unique_ptr<GpuScene> scene = upload(version(0));
-    const std::unique_ptr<Renderer> renderer = make(*version(0).whole, *scene, options);
+    Renderer* const renderer = start(*version(0).whole, options);
     ASSERT_NE(renderer, nullptr);
-    renderer->waitForPipelines();
     ASSERT_TRUE(renderer->replacePackage(version(1).early));
     renderer->waitForPipelines();
     const LinearImage first = draw(*renderer);
@@ -338,8 +320,7 @@ TEST_F(EarlyPackage, ASecondEditTakesThePlaceOfTheFirst) {
 TEST_F(EarlyPackage, IsNotShownByARendererWithoutDrafts) {
     RendererOptions options = options_;
     options.draft = false;
-    const std::unique_ptr<GpuScene> scene = upload(version(0));
-    const std::unique_ptr<Renderer> renderer = make(*version(0).whole, *scene, options);
+    Renderer* const renderer = start(*version(0).whole, options);
     ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
     const Result<PackageReplacement> replaced = renderer->replacePackage(version(1).early);
@@ -376,7 +357,7 @@ TEST_F(EarlyPackage, OtherEditsTakeTheOrdinaryWay) {
     const compiler::EarlyShowing showing{
         &version(0).compiled, [&](const compiler::CompiledPackage&) { return shown = true; }, {}};
     ASSERT_TRUE(
-        compilePackage(std::span(&repainted, 1), roomSettings(), &sharedModules(), {}, nullptr, &showing));
+        compilePackage(std::span(&repainted, 1), paintedSettings(), &sharedModules(), {}, nullptr, &showing));
     EXPECT_FALSE(shown);
 }
 
@@ -390,8 +371,8 @@ TEST_F(EarlyPackage, AnOutdatedCompilationEnds) {
                                              [&](const compiler::CompiledPackage&) { return published; },
                                              [] { return true; }};
         const Result<compiler::CompiledPackage> compiled =
-            compilePackage(std::span(&scene, 1), roomSettings(), published ? nullptr : &sharedModules(), {},
-                           nullptr, &showing);
+            compilePackage(std::span(&scene, 1), paintedSettings(), published ? nullptr : &sharedModules(),
+                           {}, nullptr, &showing);
         EXPECT_EQ(compiled.ok(), !published);
         if (!compiled) {
             EXPECT_EQ(compiled.error().id, "outdated");

@@ -170,6 +170,10 @@ void TwoFrames::submit() {
     slot.frame = frame_;
 }
 
+void TwoFrames::waitForEarlier() {
+    wait(slots_[(frame_ + 1) % 2]);
+}
+
 void TwoFrames::drain() {
     for (Slot& slot : slots_) {
         wait(slot);

@@ -47,6 +47,8 @@ public:
         return completed_;
     }
     void submit();
+    // Waits for all frames but the last.
+    void waitForEarlier();
     void drain();
 
 private:

@@ -37,14 +37,8 @@ RenderSetup smallSetup(const gltf::Scene& scene) {
 
 // Returns the room behind panes of glass: one thin, one thick, both partly clear.
 gltf::Scene roomBehindGlass() {
-    gltf::Scene scene = roomOfMaterials();
-    materials::Material pane;
-    pane["metallicFactor"] = 0.0F;
-    pane["roughnessFactor"] = 0.1F;
-    pane["transmissionFactor"] = 0.8F;
-    pane.doubleSided = true;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
-                                               {0, 1, 0})));
+    gltf::Scene scene = roomBehindPane();
+    materials::Material pane = scene.materials.back();
     pane["transmissionFactor"] = 1.0F;
     pane["thicknessFactor"] = 0.2F;
     pane["attenuationDistance"] = 0.5F;

@@ -101,8 +101,7 @@ TEST_P(HardCases, AVeryBrightSurfaceKeepsItsValueInTheFile) {
     lamp.give("KHR_materials_emissive_strength");
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, lamp), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
-    RenderSetup setup = squareSetup(scene);
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const RenderSetup setup = darkSetup(scene);
     const LinearImage image = render(scene, setup);
     ASSERT_TRUE(allFinite(image));
     const test::TemporaryFolder folder;
@@ -369,9 +368,7 @@ TEST_P(HardCases, ConesShrinkWithTheSamplesThatAPixelAverages) {
 // The alpha test of the raster pass chooses its level by derivatives of the screen, with the same bias.
 TEST_P(HardCases, MasksShrinkWithTheSamplesThatAPixelAverages) {
     const gltf::Scene scene = checkeredScene(true);
-    RenderSetup setup = squareSetup(scene);
-    setup.width = setup.height = 8;
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    RenderSetup setup = darkSetup(scene, 8);
     const LoadedScene loaded(scene, compiler::CompileSettings{});
     ASSERT_TRUE(loaded.ok());
     const auto mean = [](const LinearImage& image) {

@@ -35,9 +35,7 @@ TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     addDirectionalLight(scene, {0, 0, -1}, 2.0F);
-    RenderSetup setup = squareSetup(scene);
-    setup.width = setup.height = 33;  // a pixel in the middle, whose ray is the axis
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const RenderSetup setup = darkSetup(scene, 33);  // a pixel in the middle, whose ray is the axis
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
     // For alpha = 1, D = 1/π and V = 1/4 at normal incidence.
@@ -63,9 +61,7 @@ float litWall(const gltf::Light& light,
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     scene.lights.push_back(light);
-    RenderSetup setup = squareSetup(scene);
-    setup.width = setup.height = 33;
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const RenderSetup setup = darkSetup(scene, 33);
     const LinearImage image = render(scene, setup);
     return image.pixels.empty() ? -1.0F : at(image, 16, 16)[0];
 }
@@ -175,8 +171,7 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
         light.position = {3.0F * side, -1.5F, -1.0F - 3.0F * side};
         scene.lights.push_back(light);
     }
-    RenderSetup setup = squareSetup(scene);
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    RenderSetup setup = darkSetup(scene);
     setup.samples = 128;
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
@@ -226,8 +221,7 @@ gltf::Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
 
 TEST_P(Lights, AShadowFallsOnAWall) {
     const gltf::Scene scene = shadowScene(false, 0);
-    RenderSetup setup = squareSetup(scene);
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const RenderSetup setup = darkSetup(scene);
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
     // The plate is at y = 3, z in [-1.5, -1]. The sun falls by 2.5 for each 1 in -z, so the shadow is on z =
@@ -239,8 +233,7 @@ TEST_P(Lights, AShadowFallsOnAWall) {
 
 TEST_P(Lights, AReflectedSurfaceHasItsShadow) {
     const gltf::Scene scene = shadowScene(true, 0);
-    RenderSetup setup = squareSetup(scene);
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const RenderSetup setup = darkSetup(scene);
     const LinearImage image = render(scene, setup);
     ASSERT_FALSE(image.pixels.empty());
     // The shadow is on z = 3 at y in [3 - 2.5 * 1.5, 3 - 2.5 * 0.8] = [-0.75, 1]. The ray of row r meets z =
@@ -252,8 +245,7 @@ TEST_P(Lights, AReflectedSurfaceHasItsShadow) {
 
 TEST_P(Lights, AlphaIsTestedOrForcedOpaqueAsThePackageSays) {
     const gltf::Scene scene = shadowScene(true, 1);
-    RenderSetup setup = squareSetup(scene);
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    const RenderSetup setup = darkSetup(scene);
     const LinearImage opaque = render(scene, setup, package::AlphaPolicy::Opaque);
     const LinearImage tested = render(scene, setup, package::AlphaPolicy::Tested);
     ASSERT_FALSE(opaque.pixels.empty() || tested.pixels.empty());

@@ -18,19 +18,6 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-// The room behind a pane, so that rays of all effects are sent. The lamp is an emissive triangle.
-gltf::Scene narrowScene() {
-    gltf::Scene scene = roomOfMaterials();
-    materials::Material pane;
-    pane["metallicFactor"] = 0.0F;
-    pane["roughnessFactor"] = 0.1F;
-    pane["transmissionFactor"] = 0.8F;
-    pane.doubleSided = true;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
-                                               {0, 1, 0})));
-    return scene;
-}
-
 compiler::CompileSettings narrowSettings() {
     compiler::CompileSettings settings;
     settings.effects = {false, package::kAllEffects};
@@ -85,7 +72,7 @@ double shareThatDiffers(const LinearImage& a, const LinearImage& b, float tolera
 
 // A frame whose samples hold their hits has no records of hits.
 TEST(PackedSamples, OfEveryWayAreOnePictureThatIsNearlyTheFullOne) {
-    const gltf::Scene scene = narrowScene();
+    const gltf::Scene scene = roomBehindPane();
     const RenderSetup setup = narrowSetup(scene, 2);
     compiler::CompileSettings settings = narrowSettings();
     const LinearImage packed = expectOnePicture(scene, settings, setup, 1);
@@ -102,7 +89,7 @@ TEST(PackedSamples, OfEveryWayAreOnePictureThatIsNearlyTheFullOne) {
 // Paths and emissive lights need the start of a ray when its hit is shaded, so hits have records of their
 // own.
 TEST(PackedSamples, OfPathsAreOnePicture) {
-    const gltf::Scene scene = narrowScene();
+    const gltf::Scene scene = roomBehindPane();
     compiler::CompileSettings settings = narrowSettings();
     settings.maxBounces = 3;
     settings.skyLight = compiler::SkyLight::On;
@@ -111,7 +98,7 @@ TEST(PackedSamples, OfPathsAreOnePicture) {
 }
 
 TEST(PackedSamples, WithDeferredShadowsInBandsAndInOneListAreTheSameToTheBit) {
-    const gltf::Scene scene = narrowScene();
+    const gltf::Scene scene = roomBehindPane();
     compiler::CompileSettings settings = narrowSettings();
     settings.strategies = package::orderedStrategies();
     settings.tracers = package::kTracerRayQuery;
@@ -135,7 +122,7 @@ TEST(PackedSamples, WithDeferredShadowsInBandsAndInOneListAreTheSameToTheBit) {
 }
 
 TEST(PackedSamples, SayHowPixelsFoundLight) {
-    const gltf::Scene scene = narrowScene();
+    const gltf::Scene scene = roomBehindPane();
     compiler::CompileSettings settings = narrowSettings();
     settings.strategies = package::kStrategyUber;
     settings.tracers = package::kTracerRayQuery;
@@ -189,7 +176,7 @@ TEST(PackedSamples, MarchOverTheScreenAsFullOnesDo) {
 // Half floats have 11 significant bits. The light of the primary surfaces is rounded before that of effects
 // is added, and a device may cut what it doesn't keep.
 TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
-    const gltf::Scene scene = narrowScene();
+    const gltf::Scene scene = roomBehindPane();
     compiler::CompileSettings settings = narrowSettings();
     settings.sampleRecord = package::SampleRecordFormat::Full;
     settings.strategies = package::kStrategyUber;

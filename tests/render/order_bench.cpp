@@ -3,6 +3,7 @@
 // so that other load on the machine slows all of them alike. Each run goes over several copies of the
 // problem, so that no cache keeps data from the previous run.
 #include "render/order_problems.h"
+#include "support/quantile.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -38,14 +39,6 @@ struct Arguments {
     std::string json;
     std::uint32_t warmUpMs = 300;
 };
-
-double quantile(std::vector<double> values, double q) {
-    std::ranges::sort(values);
-    const double place = q * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
 
 // The milliseconds of one ordering, with one value for each run.
 struct Times {
@@ -162,7 +155,7 @@ void printHead(const Context& context, const std::vector<Ordering>& orderings, c
 }
 
 void print(const Row& row, const std::vector<Ordering>& orderings) {
-    const double copy = quantile(row.plainCopy, 0.5);
+    const double copy = test::quantile(row.plainCopy, 0.5);
     fmt::print("| {} | {} | {} | {:.1f} |", row.hits, row.buckets, nameOf(row.spread), 1e3 * copy);
     for (const Ordering ordering : orderings) {
         const auto found = row.orderings.find(ordering);
@@ -171,17 +164,18 @@ void print(const Row& row, const std::vector<Ordering>& orderings) {
             continue;
         }
         const std::vector<double>& total = found->second.total;
-        fmt::print(" {:.1f} ({:.1f} to {:.1f}), {:.2f} |", 1e3 * quantile(total, 0.5),
-                   1e3 * quantile(total, 0.25), 1e3 * quantile(total, 0.75), quantile(total, 0.5) / copy);
+        fmt::print(" {:.1f} ({:.1f} to {:.1f}), {:.2f} |", 1e3 * test::quantile(total, 0.5),
+                   1e3 * test::quantile(total, 0.25), 1e3 * test::quantile(total, 0.75),
+                   test::quantile(total, 0.5) / copy);
     }
     fmt::print("\n");
     std::fflush(stdout);
 }
 
 nlohmann::json summary(const std::vector<double>& values) {
-    return {{"median", 1e3 * quantile(values, 0.5)},
-            {"low", 1e3 * quantile(values, 0.25)},
-            {"high", 1e3 * quantile(values, 0.75)}};
+    return {{"median", 1e3 * test::quantile(values, 0.5)},
+            {"low", 1e3 * test::quantile(values, 0.25)},
+            {"high", 1e3 * test::quantile(values, 0.75)}};
 }
 
 nlohmann::json toJson(const Row& row) {

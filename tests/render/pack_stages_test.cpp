@@ -92,9 +92,8 @@ gltf::Primitive tintedQuad(int material, gltf::Float3 corner, gltf::Float3 right
     return quad;
 }
 
-RenderSetup darkSetup(const gltf::Scene& scene) {
-    RenderSetup setup = defaultSetup(scene, 33, 33);
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+RenderSetup glossySetup(const gltf::Scene& scene) {
+    RenderSetup setup = darkSetup(scene, 33);
     setup.frame.maxReflectionRoughness = 1.0F;
     return setup;
 }
@@ -123,7 +122,7 @@ TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {-4, -0.5F, 2}, {-1, 0, 0}, {0, 1, 0})));
     // A primitive without the attribute does not have the feature.
     addInstance(scene, addMesh(scene, makeQuad(tinted, {-0.5F, 1, -2}, {1, 0, 0}, {0, 0.5F, 0})));
-    RenderSetup setup = darkSetup(scene);
+    RenderSetup setup = glossySetup(scene);
     setup.frame.time = 2.5F;
     const LoadedScene loaded(scene, separateCases());
     ASSERT_TRUE(loaded.ok());
@@ -188,7 +187,7 @@ TEST(PackStages, OpacityCutsRasterAndShadowsAlike) {
     const gltf::Scene scene = cutScene();
     const LoadedScene loaded(scene, separateCases(package::AlphaPolicy::Tested));
     ASSERT_TRUE(loaded.ok());
-    const LinearImage image = loaded.render(package::kStrategyVisibility, darkSetup(scene));
+    const LinearImage image = loaded.render(package::kStrategyVisibility, glossySetup(scene));
     ASSERT_FALSE(image.pixels.empty());
     // On the wall, x is (column - 16) / 16.5 * 4 metres. The quad covers x from -2 to 0, its shadow 0 to 1.
     expectColor(at(image, 12, 16), {0, 0, 0}, 1e-6F, "the part that is left");
@@ -214,7 +213,7 @@ TEST(PackStages, CoordinatesMoveTextures) {
     }
     const LoadedScene loaded(scene, separateCases());
     ASSERT_TRUE(loaded.ok());
-    const LinearImage image = loaded.render(package::kStrategyVisibility, darkSetup(scene));
+    const LinearImage image = loaded.render(package::kStrategyVisibility, glossySetup(scene));
     ASSERT_FALSE(image.pixels.empty());
     expectColor(at(image, 12, 13), {1, 0, 0}, 1e-6F, "left");
     expectColor(at(image, 20, 13), {0, 1, 0}, 1e-6F, "right");
@@ -244,7 +243,7 @@ gltf::Scene stagesRoom() {
 // The nightly sweep sets GLINT_NIGHTLY and takes all policies.
 TEST(PackStages, EveryStrategyTracerAndMergePolicyGivesOneImage) {
     const gltf::Scene scene = stagesRoom();
-    RenderSetup setup = darkSetup(scene);
+    RenderSetup setup = glossySetup(scene);
     setup.width = 40;
     setup.height = 24;
     setup.frame.time = 0.25F;

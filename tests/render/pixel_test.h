@@ -36,6 +36,15 @@ inline RenderSetup squareSetup(const gltf::Scene& scene) {
     return setup;
 }
 
+// The same with a black sky and that many pixels each way.
+inline RenderSetup darkSetup(const gltf::Scene& scene, std::uint32_t size = 32) {
+    RenderSetup setup = squareSetup(scene);
+    setup.width = size;
+    setup.height = size;
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    return setup;
+}
+
 // Renders with the strategy of the parameter.
 class PixelTest : public ::testing::TestWithParam<package::Strategy> {
 protected:

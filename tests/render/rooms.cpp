@@ -97,6 +97,18 @@ gltf::Scene roomOfMaterials() {
     return scene;
 }
 
+gltf::Scene roomBehindPane() {
+    gltf::Scene scene = roomOfMaterials();
+    materials::Material pane;
+    pane["metallicFactor"] = 0.0F;
+    pane["roughnessFactor"] = 0.1F;
+    pane["transmissionFactor"] = 0.8F;
+    pane.doubleSided = true;
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
+                                               {0, 1, 0})));
+    return scene;
+}
+
 gltf::Scene roomWithFence() {
     gltf::Scene scene = emptyScene();
     addCamera(scene);

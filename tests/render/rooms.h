@@ -9,6 +9,9 @@ namespace glint::testing {
 // own, under a sun and two lamps.
 gltf::Scene roomOfMaterials();
 
+// Returns that room behind a pane of thin glass, which is the last material and passes most light.
+gltf::Scene roomBehindPane();
+
 // Returns a mirror beside a fence with alpha masks, a mirrored instance and a wall of glass, under a lamp.
 gltf::Scene roomWithFence();
 

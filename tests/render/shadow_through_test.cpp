@@ -70,17 +70,9 @@ compiler::CompileSettings settingsFor(ShadowThrough through) {
     return settings;
 }
 
-RenderSetup darkSetup(const gltf::Scene& scene, std::uint32_t size = 16) {
-    RenderSetup setup = squareSetup(scene);
-    setup.width = size;
-    setup.height = size;
-    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    return setup;
-}
-
 LinearImage picture(const gltf::Scene& scene, ShadowThrough through) {
     const LoadedScene loaded(scene, settingsFor(through));
-    return loaded.ok() ? loaded.render(package::kStrategyUber, darkSetup(scene)) : LinearImage{};
+    return loaded.ok() ? loaded.render(package::kStrategyUber, darkSetup(scene, 16)) : LinearImage{};
 }
 
 // Expects that each pixel keeps this share of the light that it has without plates.
@@ -305,7 +297,7 @@ TEST(ShadowThrough, PathsCountTheLightOfRoughGlassOnce) {
         RendererOptions options;
         options.strategy = package::kStrategyUber;
         options.bounces = 3;
-        RenderSetup setup = darkSetup(scene);
+        RenderSetup setup = darkSetup(scene, 16);
         setup.samples = 256;
         double sum = 0.0;
         if (loaded.ok()) {

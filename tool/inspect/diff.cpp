@@ -2,8 +2,8 @@
 
 #include "base/files.h"
 #include "base/json.h"
-#include "base/json_depth.h"
 #include "base/text.h"
+#include "inspect/manifest_file.h"
 
 #include <glint/package.h>
 
@@ -106,28 +106,19 @@ void readTotals(const base::Json& manifest, DiffPackage& package) {
 }
 
 Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
-    const std::filesystem::path path = folder / package::kManifestFile;
-    const Result<base::Bytes> bytes = base::readFile(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const auto unreadable = [&](const std::string& why) {
-        return makeError("manifest-format", path.string(), "is no manifest that can be read: " + why,
-                         "compile the package again");
-    };
-    if (base::nestsTooDeep(*bytes)) {
-        return unreadable("nests too deep");
+    const Result<base::Json> manifest = readManifestFile(folder);
+    if (!manifest) {
+        return manifest.error();
     }
     try {
-        const base::Json manifest = base::Json::parse(bytes->begin(), bytes->end());
         DiffPackage package;
-        package.settings = settingsOf(manifest);
-        readCases(manifest, package);
-        readMaterials(manifest, package);
-        readTotals(manifest, package);
+        package.settings = settingsOf(*manifest);
+        readCases(*manifest, package);
+        readMaterials(*manifest, package);
+        readTotals(*manifest, package);
         return package;
     } catch (const std::exception& error) {
-        return unreadable(error.what());
+        return manifestError(folder, error.what());
     }
 }
 

@@ -1,12 +1,11 @@
 #include "inspect/lint.h"
 
 #include "base/files.h"
-#include "base/json_depth.h"
+#include "inspect/manifest_file.h"
 
 #include <glint/package_format.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstring>
@@ -21,7 +20,7 @@ namespace {
 
 constexpr const char* kExtension = ".spv";
 
-std::string textOf(const nlohmann::ordered_json& object, const char* member) {
+std::string textOf(const base::Json& object, const char* member) {
     const auto found = object.find(member);
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
@@ -32,7 +31,7 @@ class ManifestWalk {
 public:
     explicit ManifestWalk(fs::path folder) : folder_(std::move(folder)) {}
 
-    void visit(const nlohmann::ordered_json& value, const std::string& name) {
+    void visit(const base::Json& value, const std::string& name) {
         if (value.is_array()) {
             for (const auto& element : value) {
                 visit(element, name);
@@ -46,7 +45,7 @@ public:
     }
 
 private:
-    void visitObject(const nlohmann::ordered_json& object, std::string name) {
+    void visitObject(const base::Json& object, std::string name) {
         if (const std::string role = textOf(object, "role"); !role.empty()) {
             name = role;
         }
@@ -72,21 +71,13 @@ private:
 };
 
 Result<std::vector<LintFile>> filesOfPackage(const fs::path& folder) {
-    const fs::path path = folder / package::kManifestFile;
-    const Result<base::Bytes> bytes = base::readFile(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const auto json = base::nestsTooDeep(*bytes)
-                          ? nlohmann::ordered_json()
-                          : nlohmann::ordered_json::parse(bytes->begin(), bytes->end(), nullptr, false);
-    if (!json.is_object()) {
-        return makeError("manifest-format", path.string(), "is no manifest that can be read",
-                         "compile the package again");
+    const Result<base::Json> manifest = readManifestFile(folder);
+    if (!manifest) {
+        return manifest.error();
     }
     ManifestWalk walk(folder);
     // The list of all files comes after those that have a name.
-    walk.visit(json, "");
+    walk.visit(*manifest, "");
     return walk.take();
 }
 

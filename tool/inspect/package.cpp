@@ -1,14 +1,13 @@
 #include "inspect/package.h"
 
 #include "base/files.h"
-#include "base/json_depth.h"
 #include "base/suggest.h"
+#include "inspect/manifest_file.h"
 #include "spirv/compiler.h"
 
 #include <glint/package_format.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -83,20 +82,12 @@ Diagnostic unknownModule(const InspectedPackage& inspected, const std::string& w
 }  // namespace
 
 Result<Manifest> readManifest(const std::filesystem::path& folder) {
-    const std::filesystem::path path = folder / package::kManifestFile;
-    const Result<base::Bytes> bytes = base::readFile(path);
-    if (!bytes) {
-        return bytes.error();
+    const Result<base::Json> file = readManifestFile(folder);
+    if (!file) {
+        return file.error();
     }
-    const auto unreadable = [&](const std::string& why) {
-        return makeError("manifest-format", path.string(), "is no manifest that can be read: " + why,
-                         "compile the package again");
-    };
-    if (base::nestsTooDeep(*bytes)) {
-        return unreadable("nests too deep");
-    }
+    const base::Json& json = *file;
     try {
-        const auto json = nlohmann::json::parse(bytes->begin(), bytes->end());
         Manifest manifest;
         manifest.toolVersion = json.at("toolVersion").get<std::string>();
         manifest.merge = json.at("merge").get<std::string>();
@@ -129,7 +120,7 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
         }
         return manifest;
     } catch (const std::exception& error) {
-        return unreadable(error.what());
+        return manifestError(folder, error.what());
     }
 }
 

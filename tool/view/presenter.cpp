@@ -97,28 +97,14 @@ Status Presenter::createRenderPass() {
 Status Presenter::createFrames() {
     VkDevice device = context_.handles().device;
     for (InFlight& frame : inFlight_) {
-        VkCommandPoolCreateInfo pool{};
-        pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-        pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-        pool.queueFamilyIndex = context_.handles().queueFamily;
-        VkResult result = vkCreateCommandPool(device, &pool, nullptr, &frame.pool);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateCommandPool", result);
-        }
-        VkCommandBufferAllocateInfo commands{};
-        commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-        commands.commandPool = frame.pool;
-        commands.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-        commands.commandBufferCount = 1;
-        result = vkAllocateCommandBuffers(device, &commands, &frame.commands);
-        if (result != VK_SUCCESS) {
-            return callError("vkAllocateCommandBuffers", result);
+        if (Status made = createCommands(context_, frame.pool, frame.commands); !made) {
+            return made;
         }
         VkFenceCreateInfo fence{};
         fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         VkSemaphoreCreateInfo semaphore{};
         semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        result = vkCreateFence(device, &fence, nullptr, &frame.done);
+        VkResult result = vkCreateFence(device, &fence, nullptr, &frame.done);
         if (result == VK_SUCCESS) {
             result = vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired);
         }

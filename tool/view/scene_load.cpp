@@ -14,26 +14,13 @@ namespace glint::view {
 Result<OneTimeCommands> OneTimeCommands::create(const Context& context) {
     OneTimeCommands made;
     made.device_ = context.handles().device;
-    VkCommandPoolCreateInfo pool{};
-    pool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    pool.queueFamilyIndex = context.handles().queueFamily;
-    VkResult result = vkCreateCommandPool(made.device_, &pool, nullptr, &made.pool_);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateCommandPool", result);
-    }
-    VkCommandBufferAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocation.commandPool = made.pool_;
-    allocation.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocation.commandBufferCount = 1;
-    result = vkAllocateCommandBuffers(made.device_, &allocation, &made.commands_);
-    if (result != VK_SUCCESS) {
-        return callError("vkAllocateCommandBuffers", result);
+    if (Status created = createCommands(context, made.pool_, made.commands_); !created) {
+        return created.error();
     }
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    result = vkBeginCommandBuffer(made.commands_, &begin);
+    const VkResult result = vkBeginCommandBuffer(made.commands_, &begin);
     if (result != VK_SUCCESS) {
         return callError("vkBeginCommandBuffer", result);
     }

@@ -135,6 +135,24 @@ Result<DeviceImage> DeviceImage::create(const Context& context, std::uint32_t wi
                                 : callError("vkCreateImageView", result);
 }
 
+Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuffer& commands) {
+    VkCommandPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    poolInfo.queueFamilyIndex = context.handles().queueFamily;
+    VkResult result = vkCreateCommandPool(context.handles().device, &poolInfo, nullptr, &pool);
+    if (result != VK_SUCCESS) {
+        return callError("vkCreateCommandPool", result);
+    }
+    VkCommandBufferAllocateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    info.commandPool = pool;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    info.commandBufferCount = 1;
+    result = vkAllocateCommandBuffers(context.handles().device, &info, &commands);
+    return result == VK_SUCCESS ? okStatus() : Status(callError("vkAllocateCommandBuffers", result));
+}
+
 void recordBarrier(VkCommandBuffer commands) {
     VkMemoryBarrier2 barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;

@@ -72,6 +72,10 @@ private:
     std::size_t bytes_ = 0;
 };
 
+// Makes a pool of commands that are short-lived, and its command buffer. The caller destroys `pool`, also
+// after an error.
+Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuffer& commands);
+
 // Records that all commands so far are done, and visible, before all later ones.
 void recordBarrier(VkCommandBuffer commands);
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <type_traits>
 
 namespace glint {
 
@@ -28,6 +29,22 @@ private:
 
 // Calls record(commands) for a command buffer of its own, which it submits and waits for.
 Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record);
+
+// As runOnce(), for a record(commands) that returns a Result with a pointer to what it has made. That has a
+// function complete(), which is called for the frame 0.
+template <typename Record>
+std::invoke_result_t<Record, VkCommandBuffer> makeOnce(Context::State& context, const Record& record) {
+    std::invoke_result_t<Record, VkCommandBuffer> made(nullptr);
+    const Status status = runOnce(context, [&](VkCommandBuffer commands) -> Status {
+        made = record(commands);
+        return made ? okStatus() : Status(made.error());
+    });
+    if (!status) {
+        return status.error();
+    }
+    (*made)->complete(0);
+    return made;
+}
 
 // A dependency that covers all memory.
 struct MemoryDependency {

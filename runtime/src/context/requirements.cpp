@@ -114,35 +114,36 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
     accelerationStructure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
     rayQuery.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
     rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
+    positionFetch.sType = kPositionFetchFeatures;
+    pipelineExecutables.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
+    opacityMicromap.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_OPACITY_MICROMAP_FEATURES_EXT;
+    clock.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_CLOCK_FEATURES_KHR;
+    const auto chain = [&](auto& feature) {
+        feature.pNext = std::exchange(accelerationStructure.pNext, &feature);
+    };
+    const auto demand = [&](auto& feature, VkBool32& bit, const char* extension) {
+        chain(feature);
+        bit = VK_TRUE;
+        extensions.push_back(extension);
+    };
     if ((tracers & package::kTracerRayQuery) != 0) {
-        rayQuery.pNext = std::exchange(accelerationStructure.pNext, &rayQuery);
+        chain(rayQuery);
     }
     if ((tracers & package::kTracerRayPipeline) != 0) {
-        rayPipeline.pNext = std::exchange(accelerationStructure.pNext, &rayPipeline);
+        chain(rayPipeline);
     }
-    positionFetch.sType = kPositionFetchFeatures;
     if (fetchesPositions) {
-        positionFetch.pNext = std::exchange(accelerationStructure.pNext, &positionFetch);
-        positionFetch.rayTracingPositionFetch = VK_TRUE;
-        extensions.push_back(kPositionFetchExtension);
+        demand(positionFetch, positionFetch.rayTracingPositionFetch, kPositionFetchExtension);
     }
-    pipelineExecutables.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
     if (tellsOfPipelines) {
-        pipelineExecutables.pNext = std::exchange(accelerationStructure.pNext, &pipelineExecutables);
-        pipelineExecutables.pipelineExecutableInfo = VK_TRUE;
-        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        demand(pipelineExecutables, pipelineExecutables.pipelineExecutableInfo,
+               VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
     }
-    opacityMicromap.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_OPACITY_MICROMAP_FEATURES_EXT;
     if (usesMicromaps) {
-        opacityMicromap.pNext = std::exchange(accelerationStructure.pNext, &opacityMicromap);
-        opacityMicromap.micromap = VK_TRUE;
-        extensions.push_back(VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
+        demand(opacityMicromap, opacityMicromap.micromap, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
     }
-    clock.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_CLOCK_FEATURES_KHR;
     if (readsClock) {
-        clock.pNext = std::exchange(accelerationStructure.pNext, &clock);
-        clock.shaderSubgroupClock = VK_TRUE;
-        extensions.push_back(VK_KHR_SHADER_CLOCK_EXTENSION_NAME);
+        demand(clock, clock.shaderSubgroupClock, VK_KHR_SHADER_CLOCK_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
     // This is an umbrella bit. The specification requires it if its parts are used with SPIR-V 1.5 modules.

@@ -335,13 +335,17 @@ Status uploadStill(GpuScene::State& state, const Package& package, const Package
         !s) {
         return s;
     }
-    if (Status s = scene.moves
-                       ? createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader)
-                       : buildTopLevel(state, upload, scene, layout);
-        !s) {
-        return s;
+    if (scene.moves) {
+        if (Status s = createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader);
+            !s) {
+            return s;
+        }
+    } else {
+        if (Status s = buildTopLevel(state, upload, scene, layout); !s) {
+            return s;
+        }
+        upload.deformer = std::move(deformer);
     }
-    upload.deformer = std::move(deformer);
     for (GpuPrimitive& primitive : state.primitives) {
         upload.keep(std::move(primitive.buildInput));
     }
@@ -474,37 +478,26 @@ Result<std::unique_ptr<GpuScene>> GpuScene::record(Context& context, const Packa
 
 Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
                                                    const SceneView& scene) {
-    Result<CommandRunner> runner = CommandRunner::create(context.state());
-    if (!runner) {
-        return runner.error();
+    Result<std::unique_ptr<GpuScene>> uploaded =
+        makeOnce(context.state(), [&](VkCommandBuffer commands) -> Result<std::unique_ptr<GpuScene>> {
+            Result<std::unique_ptr<State>> state =
+                makeScene(context, package, scene, commands, 0, kMostStaged);
+            if (!state) {
+                return state.error();
+            }
+            return std::unique_ptr<GpuScene>(new GpuScene(std::move(*state)));
+        });
+    if (!uploaded || !(*uploaded)->state_->compaction) {
+        return uploaded;
     }
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    Result<std::unique_ptr<State>> state = makeScene(context, package, scene, *commands, 0, kMostStaged);
-    if (!state) {
-        return state.error();
-    }
-    std::unique_ptr<GpuScene> uploaded(new GpuScene(std::move(*state)));
-    if (Status s = runner->submitAndWait(); !s) {
-        return s.error();
-    }
-    uploaded->complete(0);
-    commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    const Result<bool> compacted = uploaded->recordCompaction(*commands, 0);
+    const Status compacted = runOnce(context.state(), [&](VkCommandBuffer commands) -> Status {
+        const Result<bool> recorded = (*uploaded)->recordCompaction(commands, 0);
+        return recorded ? okStatus() : Status(recorded.error());
+    });
     if (!compacted) {
         return compacted.error();
     }
-    if (*compacted) {
-        if (Status s = runner->submitAndWait(); !s) {
-            return s.error();
-        }
-        uploaded->complete(0);
-    }
+    (*uploaded)->complete(0);
     return uploaded;
 }
 

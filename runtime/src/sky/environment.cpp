@@ -170,20 +170,8 @@ Result<std::unique_ptr<Environment>> Environment::record(Context& context, const
 
 Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image,
                                                          const EnvironmentOptions& options) {
-    std::unique_ptr<Environment> environment;
-    const Status status = runOnce(context.state(), [&](VkCommandBuffer commands) -> Status {
-        Result<std::unique_ptr<Environment>> recorded = record(context, image, options, commands, 0);
-        if (!recorded) {
-            return recorded.error();
-        }
-        environment = std::move(*recorded);
-        return okStatus();
-    });
-    if (!status) {
-        return status.error();
-    }
-    environment->complete(0);
-    return environment;
+    return makeOnce(context.state(),
+                    [&](VkCommandBuffer commands) { return record(context, image, options, commands, 0); });
 }
 
 void Environment::complete(std::uint64_t frame) {

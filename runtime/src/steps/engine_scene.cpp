@@ -268,20 +268,8 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
 
 Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const Package& package,
                                                          const EngineSceneView& scene) {
-    std::unique_ptr<EngineScene> made;
-    const Status status = runOnce(context.state(), [&](VkCommandBuffer commands) -> Status {
-        Result<std::unique_ptr<EngineScene>> recorded = record(context, package, scene, commands, 0);
-        if (!recorded) {
-            return recorded.error();
-        }
-        made = std::move(*recorded);
-        return okStatus();
-    });
-    if (!status) {
-        return status.error();
-    }
-    made->complete(0);
-    return made;
+    return makeOnce(context.state(),
+                    [&](VkCommandBuffer commands) { return record(context, package, scene, commands, 0); });
 }
 
 void EngineScene::complete(std::uint64_t frame) {

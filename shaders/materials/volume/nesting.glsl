@@ -3,6 +3,7 @@
 #include "host/material.glsl"
 #include "materials/dispersion/dispersion.glsl"
 #include "materials/ior/ior.glsl"
+#include "materials/specular/specular.glsl"
 
 // The indices of the surface's own medium for red, green and blue light.
 vec3 mediumIors(Hit hit, Features features) {
@@ -39,7 +40,14 @@ void nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
     vec3 own = mediumIors(hit, features);
     b.eta = hit.frontFace ? own / outside : outside / own;
     if (around != 0u) {
-        // f0 follows from the two media; f90 is the specular factor of a dielectric (KHR_materials_specular).
-        b.f0 = vec3(dielectricF0(b.eta.y) * b.f90);
+        // KHR_materials_specular, with the index of the medium outside. f90 is its factor.
+        float f0 = dielectricF0(b.eta.y);
+        if (hasLobe(features, GLINT_SPECULAR)) {
+            vec3 specularColor = GLINT_MATERIAL_SPECULAR_COLOR_FACTOR(hit);
+            scaleByColorTexture(hit, features, specularColor);
+            b.f0 = min(f0 * specularColor, vec3(1.0)) * b.f90;
+        } else {
+            b.f0 = vec3(f0 * b.f90);
+        }
     }
 }

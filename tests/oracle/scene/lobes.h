@@ -21,6 +21,7 @@ struct Base {
     Vec3 color{0.0};
     double metallic = 0.0;
     double roughness = 1.0;
+    Vec3 specularColor{1.0};
 };
 
 // glTF 2.0, appendix B; KHR_materials_ior; KHR_materials_specular; KHR_materials_pbrSpecularGlossiness.
@@ -41,6 +42,7 @@ Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     const double ior = material["ior"];
     const double specular = material["specularFactor"] * inputs.texel("specularTexture").a;
     const Vec3 tint = toVec(material["specularColorFactor"]) * Vec3(inputs.texel("specularColorTexture"));
+    base.specularColor = tint;
     const Vec3 dielectric = glm::min(squared((ior - 1.0) / (ior + 1.0)) * tint, Vec3(1.0)) * specular;
     bsdf.diffuse = base.color * (1.0 - base.metallic);
     bsdf.f0 = dielectric;
@@ -192,11 +194,11 @@ struct SurfaceLobes {
             bsdf.diffuse *= 1.0 - share;
         }
         if (has(GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION) && material["thicknessFactor"] > 0.0F) {
-            applyVolume();
+            applyVolume(base);
         }
     }
 
-    void applyVolume() {
+    void applyVolume(const Base& base) {
         const materials::Material& material = inputs.material();
         lobes |= GLINT_VOLUME;
         Vec3 iors(material["ior"]);
@@ -214,8 +216,9 @@ struct SurfaceLobes {
         if (surroundings != nullptr) {
             bsdf.eta = side < 0.0 ? surroundings->ior / iors : iors / surroundings->ior;
             if (surroundings->nested) {
-                // f0 follows from the two media; f90 is the specular factor.
-                bsdf.f0 = Vec3(squared((bsdf.eta.y - 1.0) / (bsdf.eta.y + 1.0)) * bsdf.f90);
+                // KHR_materials_specular, with the index of the medium outside. f90 is its factor.
+                const double plain = squared((bsdf.eta.y - 1.0) / (bsdf.eta.y + 1.0));
+                bsdf.f0 = glm::min(plain * base.specularColor, Vec3(1.0)) * bsdf.f90;
             }
             return;
         }

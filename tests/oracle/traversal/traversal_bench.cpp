@@ -9,6 +9,7 @@
 #include "oracle/traversal/trace_kernel.h"
 #include "scene/traversal_order.h"
 #include "support/halved_tree.h"
+#include "support/quantile.h"
 
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/package.h>
@@ -64,14 +65,6 @@ constexpr Variant kVariants[] = {{"input", false, TraversalOrder::Input, nullptr
                                  {"shuffled, halving", true, TraversalOrder::Halving, nullptr}};
 constexpr std::size_t kHalving = 3;
 constexpr const char* kEmbree = "Embree";
-
-double quantile(std::vector<double> values, double q) {
-    std::ranges::sort(values);
-    const double place = q * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
 
 // Puts indices and instances into a random order. Afterwards spans of `data` point to them.
 struct Shuffled {
@@ -153,7 +146,7 @@ struct Measured {
         return both;
     }
     double rate(const std::string& variant) const {
-        return quantile(rates(variant), 0.5);
+        return test::quantile(rates(variant), 0.5);
     }
     // Returns the ratio of the two rates in each round.
     std::vector<double> ratios(const std::string& of, const std::string& to) const {
@@ -355,8 +348,8 @@ std::string thousands(double rate) {
 }
 
 std::string spread(const std::vector<double>& values) {
-    return fmt::format("{:.2f} ({:.2f} to {:.2f})", quantile(values, 0.5), quantile(values, 0.25),
-                       quantile(values, 0.75));
+    return fmt::format("{:.2f} ({:.2f} to {:.2f})", test::quantile(values, 0.5), test::quantile(values, 0.25),
+                       test::quantile(values, 0.75));
 }
 
 std::string head(const Context& context, const Arguments& arguments) {
@@ -409,8 +402,8 @@ std::string summary(const std::vector<Measured>& all) {
                 least = rate;
                 slowest = measured.name;
             }
-            toInput += std::log(quantile(measured.ratios(variant.name, "input"), 0.5));
-            toEmbree += std::log(quantile(measured.ratios(variant.name, kEmbree), 0.5));
+            toInput += std::log(test::quantile(measured.ratios(variant.name, "input"), 0.5));
+            toEmbree += std::log(test::quantile(measured.ratios(variant.name, kEmbree), 0.5));
             tree += std::log(measured.costs.at(variant.name) / measured.costs.at("input"));
             orderMs += measured.orderMs.at(variant.name);
         }
@@ -429,9 +422,9 @@ Json toJson(const Measured& measured) {
         for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
             const std::vector<double>& rates = kinds[kind].rates;
             entry[kind == 0 ? "camera" : "bounces"] = {{"rays", kinds[kind].rays},
-                                                       {"median", quantile(rates, 0.5)},
-                                                       {"low", quantile(rates, 0.25)},
-                                                       {"high", quantile(rates, 0.75)}};
+                                                       {"median", test::quantile(rates, 0.5)},
+                                                       {"low", test::quantile(rates, 0.25)},
+                                                       {"high", test::quantile(rates, 0.75)}};
         }
         if (const auto order = measured.orderMs.find(name); order != measured.orderMs.end()) {
             entry["orderMs"] = order->second;

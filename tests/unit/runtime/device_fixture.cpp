@@ -37,6 +37,13 @@ TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z)
     return {mesh, primitive, {{-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}}, {0, 1, 2, 0, 2, 3}};
 }
 
+TestScene squareScene() {
+    TestScene scene;
+    scene.meshes = {makeSquare(0, 0)};
+    scene.instances = {{0, kIdentity}};
+    return scene;
+}
+
 CameraView makeCamera(float z) {
     CameraView camera;
     camera.position = {0, 0, z};

@@ -46,6 +46,8 @@ private:
 
 // Returns a square of two triangles with side 2 in the plane z = `z`, counter-clockwise seen from +z.
 TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z = 0.0F);
+// Returns a scene of one such square, at z = 0.
+TestScene squareScene();
 
 using Rows = std::array<float, 12>;
 inline constexpr Rows kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};

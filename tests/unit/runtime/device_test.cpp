@@ -58,9 +58,7 @@ TEST_P(AdoptedContextTest, RendersAndTheDeviceOutlivesIt) {
     test::HostDevice host;
     ASSERT_TRUE(host.create(GetParam()));
     const Package package = load(test::makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     // Runs twice on one device, beside the headless context of the fixture; with labels and without.
     for (const bool debugUtils : {false, true}) {
         DeviceHandles handles = host.handles();
@@ -224,9 +222,7 @@ TEST_F(UploadTest, LargeMeshesAreSplit) {
 // A CPU's driver gets them in order where nothing else is asked for, other devices' as the scene has them.
 TEST_F(UploadTest, OrdersForCpus) {
     const Package package = load(test::makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     const auto orders = [&](VkPhysicalDeviceType type, TraversalOrder order) {
         context().state().limits.deviceType = type;
         scene.traversalOrder = order;

@@ -57,9 +57,7 @@ TEST_F(MemoryReports, HaveEveryBufferAndImageOnce) {
 
 TEST_F(MemoryReports, OfASceneGrowWithIt) {
     const Package package = load(makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {makeSquare(0, 0)};
-    scene.instances = {{0, kIdentity}};
+    TestScene scene = squareScene();
     const auto one = upload(package, scene);
     ASSERT_NE(one, nullptr);
     scene.instances.resize(100, {0, kIdentity});
@@ -82,9 +80,7 @@ TEST_F(MemoryReports, OfASceneGrowWithIt) {
 // The device of the tests builds no micromaps, so their buffers are planted.
 TEST_F(MemoryReports, ListMicromaps) {
     const Package package = load(makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {makeSquare(0, 0)};
-    scene.instances = {{0, kIdentity}};
+    TestScene scene = squareScene();
     const auto gpuScene = upload(package, scene);
     ASSERT_NE(gpuScene, nullptr);
     const std::vector<MemoryItem> before = gpuScene->memory();

@@ -132,9 +132,7 @@ using StatisticsOfARenderer = DeviceTest;
 
 TEST_F(StatisticsOfARenderer, NameEveryPipeline) {
     const Package package = load(makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {makeSquare(0, 0)};
-    scene.instances = {{0, kIdentity}};
+    TestScene scene = squareScene();
     const auto gpuScene = upload(package, scene);
     ASSERT_NE(gpuScene, nullptr);
     const auto renderer = makeRenderer(package, *gpuScene, package::kStrategyVisibility, 8, 8);
@@ -164,9 +162,7 @@ TEST_F(StatisticsOfARenderer, NameEveryPipeline) {
 
 TEST_F(StatisticsOfARenderer, AreRefusedWhereTheDeviceHasNone) {
     const Package package = load(makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {makeSquare(0, 0)};
-    scene.instances = {{0, kIdentity}};
+    TestScene scene = squareScene();
     const auto gpuScene = upload(package, scene);
     ASSERT_NE(gpuScene, nullptr);
     ASSERT_FALSE(context().handles().pipelineStatistics);  // not asked for

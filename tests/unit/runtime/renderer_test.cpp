@@ -124,9 +124,7 @@ TEST_P(RendererTest, RaysAgreeWithTheRaster) {
 
 TEST_P(RendererTest, SamplesAccumulateWithoutDrift) {
     const Package package = load(test::makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     const LinearImage image = render(package, scene, makeFrame(4.0F), 64);
     // The mean over jittered samples is the coverage: 2 x 2 metres of 4 x 2.4 in both channels.
     for (const std::size_t channel : {0, 1}) {
@@ -163,9 +161,7 @@ TEST_P(RendererTest, NearHidesFar) {
 
 TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     const Package package = load(test::makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     gpuScene_ = upload(package, scene);
     renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
     EXPECT_FALSE(renderer_->timings());
@@ -215,9 +211,7 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
 
 TEST_P(RendererTest, WithoutReflectionsThereAreNone) {
     const Package package = load(test::makeDeviceSpec());
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     FrameOptions frame = makeFrame(4.0F);
     render(package, scene, frame);
     frame.effects = 0;
@@ -244,9 +238,7 @@ TEST_P(RendererTest, MipsAreMeansInLinearLight) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.textures = {{0, 1}, {0, 0}};
     spec.samplers = {{0, 0, 0, 0, 0, 1}};
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     scene.images = {{2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}}};
     // For sRGB, half of the light, 0.5, is rounded to 188 of 255 in the format. Linear gives 127 or 128 of
     // 255.
@@ -264,9 +256,7 @@ TEST_P(RendererTest, MipsOfAnImageAreKept) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.textures = {{0, 0}, {1, 0}, {2, 0}};
     spec.samplers = {{0, 0, 0, 0, 0, 1}};
-    TestScene scene;
-    scene.meshes = {test::makeSquare(0, 0)};
-    scene.instances = {{0, test::kIdentity}};
+    TestScene scene = test::squareScene();
     const auto addLevels = [&](std::uint32_t size, const std::vector<std::uint8_t>& values,
                                ImageView::Format format) {
         const bool wide = format == ImageView::Format::Rgba16;

@@ -71,35 +71,43 @@ private:
         bool buildFailed = false;      // the last one; the picture is that of a build before it
     };
 
-    // --- window.cpp: frames ---
+    // --- window.cpp ---
+    static constexpr double kPollMs = 100.0;  // between two looks at the files
     Status openDevice();
-    Status frame();
-    Status drawFrame(const Presenter::Frame& frame);
-    Status followLook();
-    bool isLookCurrent() const;
-    void finishSamples();
-    Status takeBuilds();
-    Status install(std::size_t side, Build build);
-    void order(std::size_t side, bool reread);
-    Status followSettings(std::size_t side);
-    Status fitSize();
-    void pollFiles();
-    void animate(double seconds);
-    Status applyPose();
-    void startCamera();
-    double distanceToMiddle(const CameraView& view) const;
     void report(const Diagnostic& message);
     void say(const std::string& text);
     void fail(const Diagnostic& error);
-    bool isIdle() const;
-    bool hasWantedSize() const;
-    bool isComplete() const;
-    CameraView cameraView() const;
     Side& side() {
         return *sides_[edited_];
     }
 
-    // --- window_input.cpp: keys, mouse, files ---
+    // --- builds.cpp ---
+    void order(std::size_t side, bool reread);
+    void pollFiles();
+    Status takeBuilds();
+    Status install(std::size_t side, Build build);
+    Status followSettings(std::size_t side);
+
+    // --- frames.cpp ---
+    bool isComplete() const;
+    bool hasWantedSize() const;
+    bool isIdle() const;
+    std::array<std::uint32_t, 2> pictureExtent() const;
+    Status fitSize();
+    Status frame();
+    Status drawFrame(const Presenter::Frame& frame);
+    bool isLookCurrent() const;
+    Status followLook();
+    void finishSamples();
+
+    // --- motion.cpp ---
+    CameraView cameraView() const;
+    double distanceToMiddle(const CameraView& view) const;
+    void startCamera();
+    void animate(double seconds);
+    Status applyPose();
+
+    // --- input.cpp: keys, mouse, files ---
     void handleInput(double seconds);
     void handleKey(const KeyPress& press);
     void handleMouse();
@@ -108,17 +116,19 @@ private:
     void keepScene();
     void showTitle();
     void pickAt(double x, double y);
-    void measureExposure();
-    void saveScreenshot();
-    Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
     void compare(bool on);
-    void measureDifference();
     void togglePlaying();
     void nextCamera();
     void chooseLook(const Look& look);
+
+    // --- results.cpp ---
+    void measureExposure();
+    Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
+    void saveScreenshot();
+    void measureDifference();
     Status writeReport(const std::string& file);
 
-    // --- window_panels.cpp ---
+    // --- panels.cpp ---
     void drawInterface();
     void drawSidePanel(float x, float width, float height);
     void drawHead();

@@ -1,7 +1,7 @@
 // What the window draws over and beside the picture.
 #include "settings/table.h"
 #include "view/look_panel.h"
-#include "view/window.h"
+#include "view/window/window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <fmt/format.h>

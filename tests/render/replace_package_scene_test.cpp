@@ -1,0 +1,210 @@
+// Which packages a renderer takes over, and what its scene keeps of the values before.
+#include "render/pixel_test.h"
+#include "render/replacement.h"
+
+#include <glint/scene_view/scene_view.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+// The room, with a feature that no material had: records of materials are longer.
+gltf::Scene extendedRoom() {
+    gltf::Scene scene = roomScene();
+    scene.materials[kGlossy].give("KHR_materials_specular");
+    scene.materials[kGlossy]["specularFactor"] = 0.25F;
+    return scene;
+}
+
+class ReplacePackageScene : public ReplacementTest {
+protected:
+    void SetUp() override {
+        setup_ = defaultSetup(before_, 24, 24);
+    }
+
+    const gltf::Scene before_ = roomScene();
+};
+
+TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    const std::shared_ptr<const Package> original = packageOf(before_, uber);
+    const std::unique_ptr<GpuScene> scene = upload(before_, *original);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    const std::unique_ptr<Renderer> renderer = make(*original, *scene, options);
+    ASSERT_NE(renderer, nullptr);
+    const LinearImage old = draw(*renderer);
+    const auto expectError = [&](const std::shared_ptr<const Package>& package, const char* id) {
+        const Result<PackageReplacement> replaced = renderer->replacePackage(package);
+        ASSERT_FALSE(replaced) << id;
+        EXPECT_EQ(replaced.error().id, id) << toString(replaced.error());
+        EXPECT_FALSE(renderer->replacementProgress().pending) << id;
+    };
+    expectError(packageOf(before_, roomSettings(package::kStrategyVisibility)), "package-strategy");
+    gltf::Scene fewer = roomScene();
+    fewer.meshes[1].primitives.pop_back();
+    expectError(packageOf(fewer, uber), "scene-package");
+    gltf::Scene seen = roomScene();
+    seen.materials[kGlossy].doubleSided = true;
+    expectError(packageOf(seen, uber), "scene-package");
+    gltf::Scene textured = roomScene();
+    textured.materials[kGlossy].texture("baseColorTexture").texture =
+        addTexture(textured, 1, 1, {255, 255, 255, 255});
+    expectError(packageOf(textured, uber), "scene-package");
+    compiler::CompileSettings map = uber;
+    map.environmentMap = true;
+    expectError(packageOf(before_, map), "package-frame");
+    expectEqualImage(draw(*renderer), old, "after errors");
+    EXPECT_EQ(renderer->replacementProgress().inUse, 0U);
+    expectNoValidationMessages();
+}
+
+// A masked leaf whose left half is opaque, above a mirror: without rays nothing is tested. UVs keep clear of
+// the border, so that the states of all triangles are known.
+gltf::Scene maskedRoom() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
+    materials::Material leaf = glossyMaterial(kGreen);
+    leaf.alphaMode = materials::AlphaMode::Mask;
+    leaf.texture("baseColorTexture").texture =
+        addTexture(scene, 2, 1, {255, 255, 255, 255, 255, 255, 255, 100});
+    const int mask = addMaterial(scene, leaf);
+    for (const float left : {0.1F, 0.6F}) {
+        gltf::Primitive quad = makeQuad(mask, {left - 0.8F, -0.5F, -2}, {0.4F, 0, 0}, {0, 1, 0});
+        for (gltf::Float2& uv : quad.texCoords0) {
+            uv[0] = left + 0.3F * uv[0];
+        }
+        addInstance(scene, addMesh(scene, quad));
+    }
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
+                                               {0, 0, -8})));
+    return scene;
+}
+
+// What the upload has proved about triangles holds for a package with the same alpha only.
+TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
+    compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    uber.plan.keys.alpha = package::AlphaPolicy::Stochastic;
+    const std::shared_ptr<const Package> original = packageOf(maskedRoom(), uber);
+    ASSERT_NE(original, nullptr);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    struct Edit {
+        const char* what;
+        bool isRefused;
+        void (*change)(materials::Material& leaf);
+    };
+    const Edit edits[] = {
+        {"nothing", false, [](materials::Material&) {}},
+        {"the colour", false, [](materials::Material& leaf) { leaf["baseColorFactor"][0] = 0.7F; }},
+        {"the cutoff", true, [](materials::Material& leaf) { leaf["alphaCutoff"] = 0.3F; }},
+        {"the factor", true, [](materials::Material& leaf) { leaf["baseColorFactor"][3] = 0.9F; }},
+        {"the transform", true,
+         [](materials::Material& leaf) {
+             leaf.texture("baseColorTexture").transform.offset = {0.5F, 0.0F};
+         }},
+    };
+    const gltf::Scene still = maskedRoom();
+    for (const OpacityUse use : {OpacityUse::Proved, OpacityUse::Tested}) {
+        scene_view::SceneViewData data = scene_view::makeSceneView(still);
+        data.opacity = use;
+        scene_view::useLayoutOf(*original, still, data);
+        const Result<std::unique_ptr<GpuScene>> scene =
+            GpuScene::upload(sharedContext(), *original, data.view());
+        ASSERT_TRUE(scene) << toString(scene.error());
+        const bool isDecided = use == OpacityUse::Proved;
+        EXPECT_EQ((*scene)->statistics().provedOpaque, isDecided ? 2U : 0U);
+        EXPECT_EQ((*scene)->statistics().provedTransparent, isDecided ? 2U : 0U);
+        for (const Edit& edit : edits) {
+            gltf::Scene edited = maskedRoom();
+            edit.change(edited.materials[0]);
+            const std::shared_ptr<const Package> package = packageOf(edited, uber);
+            const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+            ASSERT_TRUE(package != nullptr && renderer != nullptr);
+            const Result<PackageReplacement> replaced = renderer->replacePackage(package);
+            if (!isDecided || !edit.isRefused) {
+                EXPECT_TRUE(replaced) << edit.what << ": " << toString(replaced.error());
+                continue;
+            }
+            ASSERT_FALSE(replaced) << edit.what;
+            EXPECT_EQ(replaced.error().id, "scene-package") << edit.what;
+            EXPECT_NE(replaced.error().message.find("proved"), std::string::npos)
+                << edit.what << ": " << toString(replaced.error());
+        }
+    }
+    expectNoValidationMessages();
+}
+
+TEST_F(ReplacePackageScene, AnEditableSceneKeepsItsPackage) {
+    const std::shared_ptr<const Package> original = packageOf(before_, roomSettings(package::kStrategyUber));
+    scene_view::SceneViewData data = scene_view::makeSceneView(before_);
+    scene_view::useLayoutOf(*original, before_, data);
+    SceneView view = data.view();
+    view.editable = true;
+    const Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(sharedContext(), *original, view);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+    ASSERT_NE(renderer, nullptr);
+    const LinearImage old = draw(*renderer);
+    const Result<PackageReplacement> replaced = renderer->replacePackage(original);
+    ASSERT_FALSE(replaced);
+    EXPECT_EQ(replaced.error().id, "scene-package");
+    expectEqualImage(draw(*renderer), old, "after the error");
+    expectNoValidationMessages();
+}
+
+TEST_F(ReplacePackageScene, AnotherRendererOfTheSceneSaysThatItIsStale) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    const std::shared_ptr<const Package> original = packageOf(before_, uber);
+    // Its records of materials have another size, so that they move to another buffer.
+    const std::shared_ptr<const Package> extended = packageOf(extendedRoom(), uber);
+    ASSERT_GT(extended->scene(0).materials.recordBytes, original->scene(0).materials.recordBytes);
+    const std::unique_ptr<GpuScene> scene = upload(before_, *original);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    const std::unique_ptr<Renderer> renderer = make(*original, *scene, options);
+    const std::unique_ptr<Renderer> other = make(*original, *scene, options);
+    ASSERT_TRUE(renderer->replacePackage(extended));
+    draw(*other);
+    const LinearImage image = draw(*renderer);
+    expectEqualImage(image, fresh(extendedRoom(), *extended, options), "longer records");
+    const Result<LinearImage> stale = other->render(setup_.frame);
+    ASSERT_FALSE(stale);
+    EXPECT_EQ(stale.error().id, "package-replaced");
+    const std::unique_ptr<Renderer> anew = make(*extended, *scene, options);
+    ASSERT_NE(anew, nullptr);
+    expectEqualImage(draw(*anew), image, "made anew");
+    expectNoValidationMessages();
+}
+
+// Values that the host has given stay, and the material's other values are the new package's.
+TEST_F(ReplacePackageScene, ValuesOfTheHostStay) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    const std::shared_ptr<const Package> original = packageOf(before_, uber);
+    gltf::Scene both = repaintedRoom();
+    both.materials[2]["baseColorFactor"] = {0.2F, 0.9F, 0.2F, 1.0F};
+    const std::shared_ptr<const Package> repainted = packageOf(both, uber);
+    const MaterialTable table = original->scene(0).materials;
+    const std::vector<std::uint8_t> kept(table.part(2, 1).bytes.begin(), table.part(2, 1).bytes.end());
+    const MaterialView views[] = {{2, kept}};
+    scene_view::SceneViewData data = scene_view::makeSceneView(before_);
+    scene_view::useLayoutOf(*original, before_, data);
+    SceneView view = data.view();
+    view.materials = views;
+    Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(sharedContext(), *original, view);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+    ASSERT_TRUE(renderer->replacePackage(repainted));
+    const std::shared_ptr<const Package> wanted = packageOf(repaintedRoom(), uber);
+    expectEqualImage(draw(*renderer), fresh(repaintedRoom(), *wanted, options), "the host's colour");
+    expectNoValidationMessages();
+}
+
+}  // namespace

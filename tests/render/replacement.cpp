@@ -1,0 +1,130 @@
+#include "render/replacement.h"
+
+#include "render/pixel_test.h"
+#include "render/scene_builder.h"
+#include "support/shared_modules.h"
+
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <utility>
+
+namespace glint::testing {
+
+compiler::CompileSettings roomSettings(std::uint32_t strategies, bool fallback) {
+    compiler::CompileSettings settings;
+    settings.strategies = strategies;
+    settings.tracers = package::kAllTracers;
+    settings.plan.merge = compiler::MergePolicy::None;
+    settings.plan.fallback = fallback;
+    settings.effects = {false, compiler::builtinEffects({"reflection"})};
+    return settings;
+}
+
+materials::Material glossyMaterial(gltf::Float3 color) {
+    materials::Material material;
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 0.5F;
+    return material;
+}
+
+void giveCoat(materials::Material& material) {
+    material.give("KHR_materials_clearcoat");
+    material["clearcoatFactor"] = 1.0F;
+    material["clearcoatRoughnessFactor"] = 0.1F;
+}
+
+void giveSheen(materials::Material& material) {
+    material.give("KHR_materials_sheen");
+    material["sheenColorFactor"] = {0.9F, 0.4F, 0.1F};
+    material["sheenRoughnessFactor"] = 0.5F;
+}
+
+gltf::Scene roomScene() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
+                                               {0, 0, -8})));
+    materials::Material coated = glossyMaterial(kGreen);
+    giveCoat(coated);
+    materials::Material sheen = glossyMaterial(kBlue);
+    giveSheen(sheen);
+    gltf::Mesh walls;
+    float x = -4.0F;
+    for (const materials::Material& material : {glossyMaterial(kRed), coated, sheen, unlitMaterial(kGreen)}) {
+        walls.primitives.push_back(
+            makeQuad(addMaterial(scene, material), {x, -0.9F, -5.0F}, {2, 0, 0}, {0, 4, 0}));
+        x += 2.0F;
+    }
+    scene.meshes.push_back(walls);
+    addInstance(scene, static_cast<int>(scene.meshes.size()) - 1);
+    addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
+    return scene;
+}
+
+gltf::Scene repaintedRoom() {
+    gltf::Scene scene = roomScene();
+    scene.materials[kGlossy]["baseColorFactor"] = {0.1F, 0.8F, 0.9F, 1.0F};
+    return scene;
+}
+
+void expectEqualImage(const LinearImage& image, const LinearImage& reference, const std::string& what) {
+    ASSERT_EQ(image.pixels.size(), reference.pixels.size()) << what;
+    ASSERT_FALSE(image.pixels.empty()) << what;
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        others += image.pixels[i] == reference.pixels[i] ? 0 : 1;
+    }
+    EXPECT_EQ(others, 0U) << what;
+}
+
+std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
+                                         const compiler::CompileSettings& settings) {
+    Result<Package> package = scene_view::compileAndLoad(scene, settings, &sharedModules());
+    if (!package) {
+        ADD_FAILURE() << toString(package.error());
+        return nullptr;
+    }
+    return std::make_shared<const Package>(std::move(*package));
+}
+
+RendererOptions ReplacementTest::optionsOf(package::Strategy strategy,
+                                           std::optional<package::Tracer> tracer) const {
+    RendererOptions options;
+    options.width = setup_.width;
+    options.height = setup_.height;
+    options.strategy = strategy;
+    options.tracer = tracer;
+    return options;
+}
+
+std::unique_ptr<GpuScene> ReplacementTest::upload(const gltf::Scene& scene, const Package& package) {
+    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    scene_view::useLayoutOf(package, scene, data);
+    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package, data.view());
+    EXPECT_TRUE(uploaded) << toString(uploaded.error());
+    return uploaded ? std::move(*uploaded) : nullptr;
+}
+
+std::unique_ptr<Renderer> ReplacementTest::make(const Package& package, GpuScene& scene,
+                                                const RendererOptions& options) {
+    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(sharedContext(), package, scene, options);
+    EXPECT_TRUE(renderer) << toString(renderer.error());
+    return renderer ? std::move(*renderer) : nullptr;
+}
+
+LinearImage ReplacementTest::draw(Renderer& renderer) const {
+    const Result<LinearImage> image = renderer.render(setup_.frame, setup_.samples);
+    EXPECT_TRUE(image) << toString(image.error());
+    return image ? *image : LinearImage{};
+}
+
+LinearImage ReplacementTest::fresh(const gltf::Scene& scene, const Package& package,
+                                   const RendererOptions& options) const {
+    const std::unique_ptr<GpuScene> uploaded = upload(scene, package);
+    const std::unique_ptr<Renderer> renderer = uploaded ? make(package, *uploaded, options) : nullptr;
+    return renderer ? draw(*renderer) : LinearImage{};
+}
+
+}  // namespace glint::testing

@@ -1,0 +1,250 @@
+// Frames of the window: samples of its pictures, and what is shown of them.
+#include "view/window/window.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace glint::view {
+
+namespace {
+
+constexpr double kRestMs = 120.0;         // a size that stays this long is rendered
+constexpr std::uint32_t kLeastSize = 16;  // pixels each way of a picture
+constexpr double kLookMs = 100.0;         // between two views of a picture that is not complete
+
+}  // namespace
+
+bool Window::isComplete() const {
+    for (std::size_t i = 0; i < kPictures; ++i) {
+        if (sides_[i] && (builder_->isBusy(i) || sides_[i]->loading != nullptr ||
+                          (sides_[i]->picture.isReady() && !sides_[i]->picture.isComplete()))) {
+            return false;
+        }
+    }
+    const bool isSettled = base::millisecondsSince(resized_) > 2.0 * kRestMs;
+    return (sides_[0]->picture.isReady() || error_) && isSettled && !wantsShot_ && !exposureIsNew_ &&
+           isLookCurrent();
+}
+
+// A size that the panel asks for is there once the window has it.
+bool Window::hasWantedSize() const {
+    const Side& one = *sides_[0];
+    return !one.picture.isReady() || (one.wanted.renderer.width == one.picture.settings().renderer.width &&
+                                      one.wanted.renderer.height == one.picture.settings().renderer.height);
+}
+
+bool Window::isIdle() const {
+    return isComplete() && !plays_ && wakes_ <= 0;
+}
+
+// Returns the width and height that pictures have in the window as it is.
+std::array<std::uint32_t, 2> Window::pictureExtent() const {
+    return {std::max(static_cast<std::uint32_t>(area_.width / divisor_), kLeastSize),
+            std::max(static_cast<std::uint32_t>(area_.height / divisor_), kLeastSize)};
+}
+
+// Makes the picture as large as its part of the window, once the window keeps its size.
+Status Window::fitSize() {
+    if (area_.width <= 0 || area_.height <= 0) {
+        return okStatus();
+    }
+    const auto [width, height] = pictureExtent();
+    if (display_->image().width == width && display_->image().height == height) {
+        return okStatus();
+    }
+    if (base::millisecondsSince(resized_) < kRestMs && display_->image().width > 0) {
+        return okStatus();
+    }
+    if (Status waited = presenter_->waitForFrames(); !waited) {
+        return waited;
+    }
+    if (Result<bool> resized = display_->resize(width, height); !resized) {
+        return resized.error();
+    }
+    pick_.reset();
+    for (std::size_t i = 0; i < kPictures; ++i) {
+        if (sides_[i]) {
+            sides_[i]->wanted.renderer.width = width;
+            sides_[i]->wanted.renderer.height = height;
+            if (Status followed = followSettings(i); !followed) {
+                return followed;
+            }
+        }
+    }
+    cameraIsNew_ = cameraIsNew_ || !camera_.moved();
+    return okStatus();
+}
+
+Status Window::frame() {
+    const double seconds = std::min(base::millisecondsSince(lastFrame_) / 1000.0, 0.25);
+    lastFrame_ = base::Clock::now();
+    Presenter::Frame frame;
+    const Result<bool> begun = presenter_->begin(frame);
+    if (!begun || !*begun) {
+        ++frames_;
+        return begun ? okStatus() : Status(begun.error());
+    }
+    finishSamples();
+    --wakes_;
+    interface_->begin();
+    controls_.beginFrame();
+    handleInput(seconds);
+    drawInterface();
+    interface_->end();
+    animate(seconds);
+    for (const Status& status : {fitSize(), applyPose()}) {
+        if (!status) {
+            return status;
+        }
+    }
+    if (cameraIsNew_) {
+        startCamera();
+    }
+    ++frames_;
+    return drawFrame(frame);
+}
+
+Status Window::drawFrame(const Presenter::Frame& frame) {
+    if (Status followed = followLook(); !followed) {
+        return followed;
+    }
+    bool sampled = false;
+    if (measuresPasses_ && !isComplete()) {
+        if (Status waited = presenter_->waitForFrames(); !waited) {
+            return waited;
+        }
+        finishSamples();
+    }
+    for (std::unique_ptr<Side>& one : sides_) {
+        if (!one || !one->picture.isReady() || one->picture.isComplete()) {
+            continue;
+        }
+        const Timing timing = measuresPasses_ ? Timing::Passes : Timing::Frame;
+        const Status recorded =
+            one->picture.record(frame.commands, cameraView(), timing, presenter_->submitted() + 1);
+        if (!recorded) {
+            fail(recorded.error());
+            one->picture.skip();
+            continue;
+        }
+        sampled = true;
+        ++samples_;
+    }
+    Presenter::Area area;
+    if (!look_.isPicture() && view_ && display_->recordCopy(frame.commands)) {
+        area = area_;
+    } else if (sides_[0]->picture.isReady() && display_->image().width > 0 &&
+               sides_[0]->picture.renderer().recordings() > 0) {
+        const bool hasSecond =
+            sides_[1] && sides_[1]->picture.isReady() && sides_[1]->picture.renderer().recordings() > 0;
+        DisplayOptions options;
+        options.scale = std::exp2(exposure_);
+        options.shown = hasSecond ? shown_ : Shown::First;
+        options.border = border_;
+        options.gain = gain_;
+        display_->record(frame.commands, sides_[0]->picture.renderer().outputView(),
+                         hasSecond ? sides_[1]->picture.renderer().outputView() : VK_NULL_HANDLE, options);
+        area = area_;
+    }
+    presenter_->beginDrawing(frame, area.width > 0 ? &display_->image() : nullptr, area);
+    interface_->record(frame.commands);
+    if (Status ended = presenter_->end(frame); !ended) {
+        return ended;
+    }
+    if (sampled) {
+        sampleTimes_.push_back(base::millisecondsSince(lastSample_) / 1000.0);
+        lastSample_ = base::Clock::now();
+        if (sampleTimes_.size() > 32) {
+            sampleTimes_.pop_front();
+        }
+        wakes_ = std::max(wakes_, 2);
+    }
+    const bool complete = sides_[0]->picture.isReady() && sides_[0]->picture.isComplete();
+    const bool isNew = complete && !wasComplete_;
+    wasComplete_ = complete;
+    if (autoExposure_ && sides_[0]->picture.isReady() && (isNew || exposureIsNew_)) {
+        measureExposure();
+    }
+    if (wantsShot_ && complete && isLookCurrent()) {
+        saveScreenshot();
+    }
+    return okStatus();
+}
+
+bool Window::isLookCurrent() const {
+    const Picture& picture = sides_[edited_]->picture;
+    return look_.isPicture() || !picture.isReady() || picture.samples() == 0 ||
+           (viewedFrame_ == picture.recordedIn() && viewedSide_ == edited_ && viewedLook_ == look_ &&
+            viewedExposure_ == exposure_);
+}
+
+// Makes the view or layer that is shown follow the picture's last sample.
+Status Window::followLook() {
+    if (isLookCurrent()) {
+        return okStatus();
+    }
+    Picture& picture = side().picture;
+    const bool isFirst = !view_ || viewedLook_ != look_ || viewedSide_ != edited_;
+    if (!isFirst && !picture.isComplete() && base::millisecondsSince(viewed_) < kLookMs) {
+        return okStatus();
+    }
+    if (Status waited = presenter_->waitForFrames(); !waited) {
+        return waited;
+    }
+    finishSamples();
+    Result<measure::View> made = makeLook(look_, picture, static_cast<double>(exposure_));
+    viewedLook_ = look_;
+    viewedSide_ = edited_;
+    viewedFrame_ = picture.recordedIn();
+    viewedExposure_ = exposure_;
+    viewed_ = base::Clock::now();
+    wakes_ = std::max(wakes_, 2);
+    if (!made) {
+        view_.reset();
+        lookNote_ = toString(made.error());
+        return okStatus();
+    }
+    lookNote_.clear();
+    view_ = std::move(*made);
+    return display_->keep(view_->picture);
+}
+
+// Reads times and counts of samples that the device has completed.
+void Window::finishSamples() {
+    for (std::unique_ptr<Side>& one : sides_) {
+        if (!one || !one->picture.isReady()) {
+            continue;
+        }
+        one->picture.completed(presenter_->completed());
+        if (one->picture.takeAllLevels(presenter_->completed())) {
+            request_.observer->detail(fmt::format("all levels of the textures {:.0f} ms after the start",
+                                                  base::millisecondsSince(start_)));
+        }
+        const std::uint64_t recorded = one->picture.recordedIn();
+        if (recorded == 0 || recorded == one->timedFrame || recorded > presenter_->completed()) {
+            continue;
+        }
+        one->timedFrame = recorded;
+        if (const Result<FrameCounters> counters = one->picture.renderer().counters(); counters) {
+            one->counters = *counters;
+        }
+        if (const Result<std::vector<PassTiming>> passes = one->picture.renderer().timings(); passes) {
+            // Rounds of rays are parts of the frame's own time, and would count twice.
+            std::vector<PassTiming> kept;
+            std::ranges::copy_if(*passes, std::back_inserter(kept),
+                                 [](const PassTiming& pass) { return pass.pass != Pass::Hits; });
+            one->history.add(kept);
+        }
+        if (!firstPictureMs_) {
+            firstPictureMs_ = base::millisecondsSince(start_);
+            request_.observer->detail(
+                fmt::format("first sample {:.0f} ms after the start", *firstPictureMs_));
+        }
+    }
+}
+
+}  // namespace glint::view

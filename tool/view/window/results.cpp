@@ -1,0 +1,204 @@
+// What the window measures and writes: exposure, differences, screenshots and reports.
+#include "base/files.h"
+#include "base/json.h"
+#include "base/text.h"
+#include "image/compare.h"
+#include "image/flip.h"
+#include "image/image_file.h"
+#include "image/tone.h"
+#include "settings/table.h"
+#include "view/shot_command.h"
+#include "view/window/window.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <unistd.h>
+
+namespace glint::view {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Resident memory of this process; 0 where the system does not say.
+std::uint64_t residentBytes() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t total = 0;
+    std::uint64_t resident = 0;
+    file >> total >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+void Window::measureExposure() {
+    Picture& picture = sides_[0]->picture;
+    if (picture.samples() == 0) {
+        return;
+    }
+    const Result<LinearImage> image = picture.renderer().readOutput();
+    const Result<std::vector<std::uint8_t>> surfaces = picture.renderer().readSurfaces();
+    if (!image || !surfaces) {
+        report(image ? surfaces.error() : image.error());
+        return;
+    }
+    exposure_ = static_cast<float>(image::automaticExposure(*image, *surfaces));
+    exposureIsNew_ = false;
+    wakes_ = 4;
+}
+
+Status Window::writeShot(const std::string& file, const Look& shown, const LinearImage& image) {
+    const auto exposure = static_cast<double>(exposure_);
+    if (!shown.view.empty()) {
+        return image::writeImage(file, measure::withLegend(*view_));
+    }
+    std::vector<image::ExrLayer> layers;
+    if (!shown.layer.empty()) {
+        Result<image::ExrLayer> layer = layerForFile(shown, side().picture);
+        if (!layer) {
+            return layer.error();
+        }
+        layers.push_back(std::move(*layer));
+    }
+    return image::writeImage(file, image, exposure, layers);
+}
+
+void Window::saveScreenshot() {
+    wantsShot_ = false;
+    Picture& picture = side().picture;
+    const Result<LinearImage> image = picture.renderer().readOutput();
+    if (!image) {
+        report(image.error());
+        return;
+    }
+    fs::path file;
+    const std::string stem = fs::path(scene_).stem().string();
+    // A layer needs a file that holds its numbers.
+    const Look shown = view_ ? look_ : Look();
+    const char* const extension = shown.layer.empty() ? "png" : "exr";
+    std::error_code error;
+    do {
+        file = fs::path(request_.folder) / fmt::format("{}-{:03}.{}", stem, ++shots_, extension);
+    } while (fs::exists(file, error));
+    if (Status written = writeShot(file, shown, *image); !written) {
+        report(written.error());
+        return;
+    }
+    const std::string animation = animationChoice_ >= static_cast<int>(picture.scene().animations.size())
+                                      ? std::string("all")
+                                      : std::to_string(animationChoice_);
+    compiler::Settings settings = picture.settings();
+    // A camera that frames everything was placed for another moment.
+    const bool isPlaced = poses_ && scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera);
+    const std::string camera = isPlaced ? scene_view::toText(camera_.placed()) : camera_.name();
+    const std::vector<std::string> words =
+        shotWords(settings, {scene_, file.string(), camera, static_cast<double>(exposure_),
+                             poses_ ? fmt::format("{}", time_) : std::string(), animation, shown.view,
+                             shown.layer.empty() ? std::string() : layerWord(shown.layer)});
+    fs::path command = file;
+    command.replace_extension(".sh");
+    const std::string line = base::shellWords(words);
+    if (Status written =
+            base::writeFile(command, "# Makes the picture beside this file again.\n" + line + "\n");
+        !written) {
+        report(written.error());
+        return;
+    }
+    say("wrote " + file.string());
+    report(Diagnostic{Severity::Note, "window-shot", file.string(), "shows the picture; this makes it again",
+                      line});
+}
+
+void Window::measureDifference() {
+    if (!sides_[1] || !sides_[1]->picture.isReady()) {
+        return;
+    }
+    const Result<LinearImage> first = sides_[0]->picture.renderer().readOutput();
+    const Result<LinearImage> second = sides_[1]->picture.renderer().readOutput();
+    if (!first || !second) {
+        report(first ? second.error() : first.error());
+        return;
+    }
+    const Result<image::ImageDifference> linear = image::compareImages(*second, *first, "B", "A");
+    if (!linear) {
+        report(linear.error());
+        return;
+    }
+    const auto exposure = static_cast<double>(exposure_);
+    const double flip = image::flipMean(
+        image::flipMap(image::displayedImage(*second, exposure), image::displayedImage(*first, exposure)));
+    difference_ = fmt::format("FLIP {:.4f}, RMSE {:.3g}, most {:.3g} at {}, {}", flip, linear->rmse,
+                              linear->absolute.value, linear->absolute.x, linear->absolute.y);
+}
+
+Status Window::writeReport(const std::string& file) {
+    Side& one = side();
+    base::Json settings = base::Json::object();
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if ((row.commands & compiler::kOfRender) != 0) {
+            settings[std::string(row.name)] = row.values.text(one.wanted);
+        }
+    }
+    base::Json messages = base::Json::array();
+    for (const Diagnostic& message : messages_) {
+        messages.push_back(toString(message));
+    }
+    base::Json picked = nullptr;
+    if (pick_) {
+        picked = base::Json{{"x", pick_->x}, {"y", pick_->y}, {"fields", base::Json::object()}};
+        for (const Field& field : pick_->fields) {
+            picked["fields"][field.label] = field.text;
+        }
+    }
+    base::Json passes = base::Json::object();
+    for (std::size_t i = 0; i < one.history.names().size(); ++i) {
+        passes[one.history.names()[i]] = one.history.median(i);
+    }
+    base::Json looks = base::Json::array();
+    for (const Look& look : one.picture.isReady() ? looksOf(one.picture.build()) : std::vector<Look>()) {
+        looks.push_back((look.view.empty() ? "layer " : "view ") + look.name());
+    }
+    const double samples = static_cast<double>(sampleTimes_.size());
+    const double seconds = std::accumulate(sampleTimes_.begin(), sampleTimes_.end(), 0.0);
+    const bool isReady = one.picture.isReady();
+    const base::Json json{
+        {"scene", scene_},
+        {"camera", camera_.name()},
+        {"exposure", exposure_},
+        {"settings", settings},
+        {"compares", sides_[1] != nullptr},
+        {"shown", static_cast<std::uint32_t>(shown_)},
+        {"difference", difference_},
+        {"width", isReady ? one.picture.settings().renderer.width : 0},
+        {"height", isReady ? one.picture.settings().renderer.height : 0},
+        {"samples", isReady ? one.picture.samples() : 0},
+        {"missingLevels", one.picture.missingLevels()},
+        {"strategy", isReady ? std::string(package::nameOf(*one.picture.settings().strategy)) : ""},
+        {"lastChange", one.picture.lastChange()},
+        {"time", poses_ ? base::Json(time_) : base::Json(nullptr)},
+        {"plays", plays_},
+        {"flies", flies_},
+        {"panel", showsPanel_},
+        {"help", showsHelp_},
+        {"frames", frames_},
+        {"samplesDrawn", samples_},
+        {"samplesPerSecond", seconds > 0.0 ? samples / seconds : 0.0},
+        {"firstPictureMs", firstPictureMs_ ? base::Json(*firstPictureMs_) : base::Json(nullptr)},
+        {"residentBytes", residentBytes()},
+        {"rendererBytes", isReady ? one.picture.renderer().footprint().allocatedBytes : 0},
+        {"sceneBytes", isReady ? one.picture.gpuScene().allocatedBytes() : 0},
+        {"passes", passes},
+        {"look", look_.name()},
+        {"looks", looks},
+        {"view", view_ ? measure::toJson(*view_) : base::Json(nullptr)},
+        {"lookNote", lookNote_},
+        {"pick", picked},
+        {"error", error_ ? base::Json(toString(*error_)) : base::Json(nullptr)},
+        {"messages", messages}};
+    return base::writeFile(file, base::toText(json));
+}
+
+}  // namespace glint::view

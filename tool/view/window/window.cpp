@@ -1,0 +1,265 @@
+// The window: how it opens, runs and ends.
+#include "view/window/window.h"
+
+#include "settings/table.h"
+
+#include <glint/measure/observer.h>
+#include <glint/measure/render_settings.h>
+
+#define GLFW_INCLUDE_NONE
+#include <fmt/format.h>
+
+#include <GLFW/glfw3.h>
+#include <utility>
+
+namespace glint::view {
+
+namespace {
+
+constexpr std::size_t kMessages = 200;  // that are kept
+
+Window& windowOf(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+Diagnostic windowError(const std::string& message) {
+    return makeError("window-open", "", message, "run this where there is a display, or use glint render");
+}
+
+}  // namespace
+
+Window::Window(const Request& request) : request_(request), scene_(request.scene) {}
+
+Window::~Window() {
+    builder_.reset();
+    for (const std::unique_ptr<Side>& one : sides_) {
+        if (one) {
+            one->picture.cancelLoad();
+        }
+    }
+    if (context_) {
+        vkDeviceWaitIdle(context_->handles().device);
+        request_.closing(*context_);
+    }
+    script_.reset();
+    for (std::unique_ptr<Side>& one : sides_) {
+        one.reset();
+    }
+    display_.reset();
+    interface_.reset();
+    presenter_.reset();
+    context_.reset();
+    if (window_ != nullptr) {
+        glfwDestroyWindow(window_);
+    }
+    glfwTerminate();
+}
+
+Status Window::openDevice() {
+    HeadlessOptions options = measure::deviceOptions(request_.settings);
+    std::uint32_t count = 0;
+    const char** const extensions = glfwGetRequiredInstanceExtensions(&count);
+    if (extensions == nullptr) {
+        return windowError("there is no Vulkan driver that shows pictures in windows");
+    }
+    options.instanceExtensions.assign(extensions, extensions + count);
+    options.deviceExtensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+    // What packages may need is there from the start, where the device has it.
+    const HeadlessOptions asked = options;
+    std::optional<Result<std::unique_ptr<Context>>> made;
+    constexpr unsigned kClock = 1;
+    constexpr unsigned kHalf = 2;
+    constexpr unsigned kFetch = 4;
+    constexpr unsigned kEverything = 7;
+    for (unsigned tried :
+         {kEverything, kHalf | kClock, kFetch | kClock, kFetch | kHalf, kClock, kHalf, kFetch}) {
+        // The validation layers of Debian 12 don't know position fetch.
+        tried &= asked.validation == Validation::Off ? kEverything : ~kFetch;
+        options.positionFetch = asked.positionFetch || (tried & kFetch) != 0;
+        options.shaderFloat16 = asked.shaderFloat16 || (tried & kHalf) != 0;
+        options.shaderClock = asked.shaderClock || (tried & kClock) != 0;
+        made = Context::createHeadless(options);
+        if (*made || made->error().id != "device-features") {
+            break;
+        }
+    }
+    if (!*made && made->error().id == "device-features") {
+        made = Context::createHeadless(asked);
+    }
+    if (!*made) {
+        return made->error();
+    }
+    context_ = std::move(**made);
+    request_.opened(*context_);
+    return okStatus();
+}
+
+Status Window::open() {
+    glfwInitHint(GLFW_JOYSTICK_HAT_BUTTONS, GLFW_FALSE);
+    if (glfwInit() == GLFW_FALSE) {
+        const char* text = nullptr;
+        glfwGetError(&text);
+        return windowError(text != nullptr ? fmt::format("no window can be opened ({})", text)
+                                           : std::string("no window can be opened"));
+    }
+    if (Status opened = openDevice(); !opened) {
+        return opened;
+    }
+    showsPanel_ = request_.showsPanel;
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+    const int panel = showsPanel_ ? static_cast<int>(kPanelWidth) : 0;
+    window_ = glfwCreateWindow(
+        static_cast<int>(request_.settings.renderer.width) + panel,
+        static_cast<int>(request_.settings.renderer.height) + static_cast<int>(kStatusHeight),
+        ("glint view: " + scene_).c_str(), nullptr, nullptr);
+    if (window_ == nullptr) {
+        return windowError("the window could not be opened");
+    }
+    glfwSetWindowUserPointer(window_, this);
+    // Dear ImGui's callbacks, which are set later, call these.
+    glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+        windowOf(window).onKey(key, action, modifiers);
+    });
+    glfwSetScrollCallback(window_,
+                          [](GLFWwindow* window, double, double y) { windowOf(window).onScroll(y); });
+    glfwSetCharCallback(window_, [](GLFWwindow* window, unsigned) { windowOf(window).onChange(false); });
+    glfwSetMouseButtonCallback(window_,
+                               [](GLFWwindow* window, int, int, int) { windowOf(window).onChange(false); });
+    glfwSetCursorPosCallback(window_,
+                             [](GLFWwindow* window, double, double) { windowOf(window).onChange(false); });
+    glfwSetFramebufferSizeCallback(window_,
+                                   [](GLFWwindow* window, int, int) { windowOf(window).onChange(true); });
+    glfwSetWindowRefreshCallback(window_, [](GLFWwindow* window) { windowOf(window).onChange(false); });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
+        for (int i = 0; i < count; ++i) {
+            windowOf(window).onDrop(files[i]);
+        }
+    });
+    Result<std::unique_ptr<Presenter>> presenter = Presenter::create(*context_, window_);
+    if (!presenter) {
+        return presenter.error();
+    }
+    presenter_ = std::move(*presenter);
+    Result<std::unique_ptr<Interface>> interface = Interface::create(*context_, window_, *presenter_);
+    if (!interface) {
+        return interface.error();
+    }
+    interface_ = std::move(*interface);
+    Result<std::unique_ptr<Display>> display = Display::create(*context_);
+    if (!display) {
+        return display.error();
+    }
+    display_ = std::move(*display);
+    builder_ = std::make_unique<Builder>(request_, *context_);
+    sides_[0] = std::make_unique<Side>(*context_);
+    side().wanted = request_.settings;
+    autoExposure_ = request_.exposure == "auto";
+    if (!autoExposure_) {
+        double stops = 0.0;
+        compiler::parseReal(request_.exposure, -32.0, 32.0, stops);
+        exposure_ = static_cast<float>(stops);
+    }
+    if (!request_.time.empty()) {
+        poses_ = true;
+        compiler::parseReal(request_.time, 0.0, 1e6, time_);
+    }
+    plays_ = request_.plays;
+    poses_ = poses_ || plays_;
+    order(0, false);
+    if (!request_.script.empty()) {
+        const ScriptHost host{window_,
+                              &controls_,
+                              [this] { return isComplete() && hasWantedSize(); },
+                              [this] { return error_.has_value(); },
+                              [this](const std::string& file) { onDrop(file); },
+                              [this](const std::string& file) { return writeReport(file); },
+                              [this] { return frames_; },
+                              [this](const std::string& text) { request_.observer->detail(text); }};
+        Result<std::unique_ptr<Script>> script = Script::read(request_.script, host);
+        if (!script) {
+            return script.error();
+        }
+        script_ = std::move(*script);
+        glfwFocusWindow(window_);
+    }
+    return okStatus();
+}
+
+void Window::onChange(bool size) {
+    wakes_ = 4;
+    if (size) {
+        presenter_->sizeChanged();
+        resized_ = base::Clock::now();
+    }
+}
+
+void Window::report(const Diagnostic& message) {
+    request_.observer->report(message);
+    messages_.push_back(message);
+    ++unread_;
+    if (messages_.size() > kMessages) {
+        messages_.pop_front();
+    }
+    wakes_ = 4;
+}
+
+void Window::fail(const Diagnostic& error) {
+    error_ = error;
+    report(error);
+    status_ = "failed, the picture stays as it was";
+}
+
+void Window::say(const std::string& text) {
+    status_ = text;
+    request_.observer->detail(text);
+    wakes_ = 4;
+}
+
+Status Window::run() {
+    while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
+        if (isIdle() && !script_) {
+            glfwWaitEventsTimeout(kPollMs / 1000.0);
+        } else {
+            glfwPollEvents();
+        }
+        if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) {
+            glfwWaitEventsTimeout(kPollMs / 1000.0);
+            ++frames_;
+        } else if (!isIdle() || script_) {
+            if (Status drawn = frame(); !drawn) {
+                return drawn;
+            }
+        }
+        pollFiles();
+        if (Status taken = takeBuilds(); !taken) {
+            return taken;
+        }
+        if (script_) {
+            if (Status stepped = script_->step(); !stepped) {
+                return stepped;
+            }
+            if (script_->isDone()) {
+                script_.reset();
+            }
+        }
+        const std::vector<std::string> validation = context_->validationMessages();
+        for (; validationSeen_ < validation.size(); ++validationSeen_) {
+            messages_.push_back(makeWarning("validation", "", validation[validationSeen_]));
+            ++unread_;
+        }
+    }
+    if (Status waited = presenter_->waitForFrames(); !waited) {
+        return waited;
+    }
+    return measure::checkValidation(*request_.observer, *context_);
+}
+
+Status showWindow(const Request& request) {
+    Window window(request);
+    if (Status opened = window.open(); !opened) {
+        return opened;
+    }
+    return window.run();
+}
+
+}  // namespace glint::view
