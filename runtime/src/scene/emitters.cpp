@@ -1,13 +1,15 @@
 #include "scene/emitters.h"
 
-#include "scene/emission_texels.h"
 #include "scene/instance_math.h"
 #include "scene/material_table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -34,82 +36,6 @@ Double3 pointAt(const std::array<float, 12>& rows, const std::array<float, 3>& p
     return result;
 }
 
-// The luminance of what a record says, in linear Rec. 709, as in bsdf/constants.glsl.
-double emittedLuminance(const std::uint8_t* record, const EmissionEntry& entry) {
-    std::array<float, 3> color{};
-    float strength = 1.0F;
-    if (entry.factor != EmissionEntry::kNone) {
-        std::memcpy(color.data(), record + entry.factor, sizeof color);
-    }
-    if (entry.strength != EmissionEntry::kNone) {
-        std::memcpy(&strength, record + entry.strength, sizeof strength);
-    }
-    const double sum = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
-    return std::isfinite(sum * strength) ? std::max(sum * strength, 0.0) : 0.0;
-}
-
-// Finds how bright the texture of an emissive material is on triangles.
-class TexelFinder {
-public:
-    TexelFinder(const EmissionEntry& emission, const PackageScene& known, const SceneView& scene)
-        : emission_(emission), known_(known), scene_(scene) {
-        for (const MaterialView& material : scene.materials) {
-            if (scene.moves) {
-                changing_.insert(material.material);
-            }
-        }
-    }
-
-    // `corners` are vertices of the primitive.
-    double mean(const package::PrimitiveEntry& entry, const PrimitiveView& view,
-                const std::array<std::uint32_t, 3>& corners) {
-        if ((entry.featureInputs & emission_.textureInput) == 0 ||
-            emission_.texture == EmissionEntry::kNone) {
-            return 1.0;
-        }
-        const gpu::TextureRecord texture =
-            textureAt(known_.materials, entry.materialIndex, emission_.texture);
-        const EmissionTexels& texels = texelsOf(texture.textureIndex);
-        // As readsSecondSet() of hit/texture.glsl chooses.
-        const bool second = (entry.featureInputs & emission_.texCoord1Input) != 0 &&
-                            ((entry.featureInputs & emission_.texCoord0Input) == 0 || texture.texCoord == 1);
-        const std::span<const std::array<float, 2>> set = second ? view.texCoords1 : view.texCoords0;
-        // An animation may move the texture.
-        if (set.empty() || changing_.contains(entry.materialIndex)) {
-            return texels.mean();
-        }
-        TexelBox box{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-        for (const std::uint32_t corner : corners) {
-            const double u = set[corner][0];
-            const double v = set[corner][1];
-            const double at[2] = {texture.rowU.x * u + texture.rowU.y * v + texture.rowU.z,
-                                  texture.rowV.x * u + texture.rowV.y * v + texture.rowV.z};
-            for (std::size_t axis = 0; axis < 2; ++axis) {
-                box.lower[axis] = std::min(box.lower[axis], at[axis]);
-                box.upper[axis] = std::max(box.upper[axis], at[axis]);
-            }
-        }
-        const package::SamplerEntry& sampler = known_.samplers[texture.samplerIndex];
-        return texels.mean(box, sampler.wrapU, sampler.wrapV);
-    }
-
-private:
-    const EmissionTexels& texelsOf(std::uint32_t texture) {
-        const auto found = texels_.find(texture);
-        if (found != texels_.end()) {
-            return found->second;
-        }
-        const package::TextureEntry& entry = known_.textures[texture];
-        return texels_.try_emplace(texture, scene_.images[entry.image], entry.srgb != 0).first->second;
-    }
-
-    const EmissionEntry& emission_;
-    const PackageScene& known_;
-    const SceneView& scene_;
-    std::set<std::uint32_t> changing_;
-    std::map<std::uint32_t, EmissionTexels> texels_;  // by texture
-};
-
 EmitterBounds boundsOf(const std::array<Double3, 3>& corners, bool twoSided, bool mirrored,
                        double luminance) {
     EmitterBounds bounds;
@@ -135,88 +61,59 @@ EmitterBounds boundsOf(const std::array<Double3, 3>& corners, bool twoSided, boo
 
 }  // namespace
 
-Emitters::Emitters(const Package& package, const PackageScene& known, const SceneView& scene,
-                   const SceneLayout& layout, const DeformedAddresses& deformed,
-                   std::span<const std::vector<std::uint32_t>> ordered,
-                   std::span<const std::uint8_t> materials) {
-    if (package.emission() == nullptr) {
-        return;
+double emittedLuminance(std::span<const std::uint8_t> record, const EmissionEntry& emission) {
+    std::array<float, 3> color{};
+    float strength = 1.0F;
+    if (emission.factor != EmissionEntry::kNone) {
+        std::memcpy(color.data(), &record[emission.factor], sizeof color);
     }
-    emission_ = *package.emission();
-    for (std::size_t i = 0; i < known.materials.size(); ++i) {
-        luminances_.push_back(emittedLuminance(&materials[i * known.materials.recordBytes], emission_));
+    if (emission.strength != EmissionEntry::kNone) {
+        std::memcpy(&strength, &record[emission.strength], sizeof strength);
     }
-    TexelFinder texels(emission_, known, scene);
-    firsts.assign(layout.geometries.size(), gpu::kNoEmitter);
-    for (const PartInstance& placed : layout.partInstances) {
-        std::uint32_t geometry = placed.customIndex;
-        for (const TriangleRange& range : layout.parts[placed.part].ranges) {
-            const PrimitiveView& view = scene.primitives[range.primitive];
-            const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
-            const std::uint32_t own = geometry++;
-            if ((entry.geometryFlags & gpu::kGeometryEmitter) == 0) {
-                continue;
-            }
-            const MotionBounds* shapes = nullptr;
-            if (deformed.contains({placed.instance, range.primitive})) {
-                std::unique_ptr<MotionBounds>& bounds = shapes_[view.mesh];
-                if (bounds == nullptr) {
-                    const PrimitiveRange mesh = primitivesOf(scene.primitives, view.mesh);
-                    bounds = std::make_unique<MotionBounds>(
-                        scene.primitives.subspan(mesh.first, mesh.end - mesh.first));
-                }
-                shapes = bounds.get();
-            }
-            addPart(entry, placed.instance, own, shapes);
-            parts_.back().count = range.count;
-            const std::span<const std::uint32_t> indices = ordered.empty() || ordered[range.primitive].empty()
-                                                               ? view.indices
-                                                               : std::span(ordered[range.primitive]);
-            for (std::uint32_t i = 0; i < range.count; ++i) {
-                Triangle triangle;
-                std::array<std::uint32_t, 3> corners{};
-                for (std::size_t corner = 0; corner < 3; ++corner) {
-                    corners[corner] = indices[std::size_t{3} * (range.first + i) + corner];
-                    triangle.corners[corner] = view.positions[corners[corner]];
-                }
-                triangle.texels = static_cast<float>(texels.mean(entry, view, corners));
-                triangles_.push_back(triangle);
-                records.push_back({own, i, gpu::kNoEmitter});
-            }
+    const double sum = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+    return std::isfinite(sum * strength) ? std::max(sum * strength, 0.0) : 0.0;
+}
+
+Emitters::Emitters(const EmissionEntry& emission, std::vector<EmitterPart> parts)
+    : emission_(emission), parts_(std::move(parts)) {
+    std::ranges::sort(parts_, {}, [](const EmitterPart& part) {
+        return std::tuple(part.instance, part.primitive, part.first);
+    });
+    for (const EmitterPart& part : parts_) {
+        for (std::uint32_t i = 0; i < part.count; ++i) {
+            records.push_back({part.geometry, i, gpu::kNoEmitter});
         }
     }
 }
 
-void Emitters::addPart(const package::PrimitiveEntry& entry, std::uint32_t instance, std::uint32_t geometry,
-                       const MotionBounds* shapes) {
-    Part part;
-    part.instance = instance;
-    part.material = entry.materialIndex;
-    part.first = static_cast<std::uint32_t>(records.size());
-    part.twoSided = (entry.geometryFlags & gpu::kGeometryDoubleSided) != 0;
-    part.shapes = shapes;
-    firsts[geometry] = part.first;
-    parts_.push_back(part);
+std::vector<std::uint32_t> Emitters::firstsOf(std::size_t geometries) const {
+    std::vector<std::uint32_t> firsts(geometries, gpu::kNoEmitter);
+    std::uint32_t next = 0;
+    for (const EmitterPart& part : parts_) {
+        firsts[part.geometry] = next;
+        next += part.count;
+    }
+    return firsts;
 }
 
 std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> instances) const {
     std::vector<EmitterBounds> all;
     all.reserve(records.size());
-    for (const Part& part : parts_) {
+    for (const EmitterPart& part : parts_) {
         const InstanceView& instance = instances[part.instance];
         const std::array<float, 12>& rows = instance.objectToWorld;
         const bool shown = instance.visible && isInvertible(rows);
         const bool mirrored = (makeInstanceRecord(rows).flags & gpu::kInstanceMirrored) != 0;
-        const Box box = part.shapes != nullptr ? part.shapes->at(instance) : Box::nothing();
-        for (std::uint32_t i = 0; i < part.count; ++i) {
-            const Triangle& triangle = triangles_[part.first + i];
+        const Box box = part.motion != nullptr ? part.motion->at(instance) : Box::nothing();
+        for (std::size_t i = part.first; i < std::size_t{part.first} + part.count; ++i) {
             std::array<Double3, 3> corners{};
             for (std::size_t corner = 0; corner < 3; ++corner) {
-                corners[corner] = pointAt(rows, triangle.corners[corner]);
+                corners[corner] = pointAt(rows, part.shape->positions[part.shape->indices[3 * i + corner]]);
             }
-            const double luminance = shown ? luminances_[part.material] * triangle.texels : 0.0;
+            const double texels = part.texels != nullptr ? (*part.texels)[i] : 1.0;
+            const double luminance = shown ? part.luminance * texels : 0.0;
             all.push_back(boundsOf(corners, part.twoSided, mirrored, luminance));
-            if (part.shapes != nullptr) {
+            if (part.motion != nullptr) {
                 // Only the device knows where in the box the triangle is, and where it faces.
                 all.back().lower = box.min;
                 all.back().upper = box.max;
@@ -228,14 +125,19 @@ std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> inst
 }
 
 void Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
-    for (const ChangingMaterial& one : changing) {
-        if (one.material < luminances_.size()) {
-            luminances_[one.material] = emittedLuminance(one.record.data(), emission_);
+    for (EmitterPart& part : parts_) {
+        const auto found =
+            std::ranges::lower_bound(changing, part.material, {}, &ChangingMaterial::material);
+        if (found != changing.end() && found->material == part.material) {
+            part.luminance = emittedLuminance(found->record, emission_);
         }
     }
 }
 
 void Emitters::setLeaves(const LightTree& tree) {
+    for (gpu::EmitterRecord& record : records) {
+        record.leaf = gpu::kNoEmitter;
+    }
     for (std::uint32_t node = 0; node < tree.treeNodes; ++node) {
         const std::uint32_t next = tree.nodes[node].next;
         if ((next & gpu::kLightLeaf) != 0 && (next & gpu::kLightEmitter) != 0) {
@@ -248,6 +150,113 @@ void Emitters::setLeaves(std::span<const EmitterBounds> bounds) {
     for (std::size_t i = 0; i < records.size(); ++i) {
         records[i].leaf = bounds[i].intensity > 0.0 ? 0 : gpu::kNoEmitter;
     }
+}
+
+namespace {
+
+// Makes the parts of a scene that is not edited.
+class PartsOfScene {
+public:
+    PartsOfScene(const EmissionEntry& emission, const PackageScene& known, const SceneView& scene,
+                 std::span<const std::vector<std::uint32_t>> ordered, std::span<const std::uint8_t> materials)
+        : emission_(emission),
+          known_(known),
+          scene_(scene),
+          ordered_(ordered),
+          materials_(tableWith(known.materials, materials)) {
+        for (const MaterialView& material : scene.materials) {
+            if (scene.moves) {
+                changing_.insert(material.material);
+            }
+        }
+    }
+
+    EmitterPart part(const TriangleRange& range, const package::PrimitiveEntry& entry, bool deforms) {
+        EmitterPart part;
+        part.primitive = entry.primitive;
+        part.material = entry.materialIndex;
+        part.first = range.first;
+        part.count = range.count;
+        part.twoSided = (entry.geometryFlags & gpu::kGeometryDoubleSided) != 0;
+        part.luminance = emittedLuminance(
+            materials_.bytes.subspan(std::size_t{entry.materialIndex} * materials_.recordBytes,
+                                     materials_.recordBytes),
+            emission_);
+        std::shared_ptr<const EmitterShape>& shape = shapes_[range.primitive];
+        if (shape == nullptr) {
+            const PrimitiveView& view = scene_.primitives[range.primitive];
+            const bool sorted = !ordered_.empty() && !ordered_[range.primitive].empty();
+            shape = std::make_shared<EmitterShape>(
+                emission_, view, sorted ? std::span(ordered_[range.primitive]) : view.indices);
+        }
+        part.shape = shape;
+        part.texels = means_.find(shape, entry.materialIndex, textureOf(entry));
+        if (deforms) {
+            std::shared_ptr<const MotionBounds>& bounds = motions_[entry.mesh];
+            if (bounds == nullptr) {
+                const PrimitiveRange mesh = primitivesOf(scene_.primitives, entry.mesh);
+                bounds = std::make_shared<MotionBounds>(
+                    scene_.primitives.subspan(mesh.first, mesh.end - mesh.first));
+            }
+            part.motion = bounds;
+        }
+        return part;
+    }
+
+private:
+    std::optional<EmitterTexture> textureOf(const package::PrimitiveEntry& entry) {
+        if ((entry.featureInputs & emission_.textureInput) == 0 ||
+            emission_.texture == EmissionEntry::kNone) {
+            return std::nullopt;
+        }
+        const gpu::TextureRecord record = textureAt(materials_, entry.materialIndex, emission_.texture);
+        std::shared_ptr<const EmissionTexels>& texels = texels_[record.textureIndex];
+        if (texels == nullptr) {
+            const package::TextureEntry& texture = known_.textures[record.textureIndex];
+            texels = std::make_shared<EmissionTexels>(scene_.images[texture.image], texture.srgb != 0);
+        }
+        std::optional<EmitterTexture> result =
+            emitterTexture(emission_, entry.featureInputs, record, known_.samplers, texels);
+        // An animation may move the texture.
+        result->animated = changing_.contains(entry.materialIndex);
+        return result;
+    }
+
+    const EmissionEntry& emission_;
+    const PackageScene& known_;
+    const SceneView& scene_;
+    std::span<const std::vector<std::uint32_t>> ordered_;
+    MaterialTable materials_;
+    std::set<std::uint32_t> changing_;
+    std::map<std::uint32_t, std::shared_ptr<const EmitterShape>> shapes_;    // by primitive of the scene
+    std::map<std::uint32_t, std::shared_ptr<const EmissionTexels>> texels_;  // by texture
+    std::map<std::uint32_t, std::shared_ptr<const MotionBounds>> motions_;   // by mesh
+    EmitterMeans means_;
+};
+
+}  // namespace
+
+Emitters emittersOf(const Package& package, const PackageScene& known, const SceneView& scene,
+                    const SceneLayout& layout, const DeformedAddresses& deformed,
+                    std::span<const std::vector<std::uint32_t>> ordered,
+                    std::span<const std::uint8_t> materials) {
+    PartsOfScene maker(*package.emission(), known, scene, ordered, materials);
+    std::vector<EmitterPart> parts;
+    for (const PartInstance& placed : layout.partInstances) {
+        std::uint32_t geometry = placed.customIndex;
+        for (const TriangleRange& range : layout.parts[placed.part].ranges) {
+            const std::uint32_t own = geometry++;
+            const PrimitiveView& view = scene.primitives[range.primitive];
+            const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
+            if ((entry.geometryFlags & gpu::kGeometryEmitter) != 0) {
+                parts.push_back(
+                    maker.part(range, entry, deformed.contains({placed.instance, range.primitive})));
+                parts.back().geometry = own;
+                parts.back().instance = placed.instance;
+            }
+        }
+    }
+    return {*package.emission(), std::move(parts)};
 }
 
 }  // namespace glint

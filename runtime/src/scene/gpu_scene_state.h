@@ -65,8 +65,10 @@ struct GpuScene::State {
     // In packages that choose lights by a hierarchy:
     LightTree lightTree;
     Buffer lightNodes;
-    // In packages with emissive lights:
+    // In packages with emissive lights. The triangles of a scene that neither moves nor is edited are on the
+    // device alone.
     Emitters emitters;
+    std::uint32_t emitterCount = 0;
     Buffer emitterRecords;
     Buffer firstEmitters;
     std::vector<DeviceImage> textures;
