@@ -186,6 +186,7 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
         masks = {0, plan.primaryAlways | plan.primarySometimes};
         result.coveredByLayers = (masks.back() & covers) != 0;
     }
+    result.read = covers;
     for (const char* const name :
          {"emissiveTexture", "emissiveStrength", "texCoord0", "texCoord1", "textureTransform"}) {
         result.read |= model.mask(name);
