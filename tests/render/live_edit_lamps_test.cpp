@@ -42,8 +42,7 @@ public:
         edited.meshes.push_back({mesh->mesh, 0, {1}, false});
         const Result<AddedInstance> instance = edited.editor().addInstance({mesh->mesh, kAbove});
         EXPECT_TRUE(instance) << (instance ? "" : toString(instance.error()));
-        edited.instances.push_back(
-            {instance->instance, edited.meshes.size() - 1, {}, kAbove, true, false});
+        edited.instances.push_back({instance->instance, edited.meshes.size() - 1, {}, kAbove, true, false});
         return edited.instances.back();
     }
 
@@ -181,7 +180,8 @@ TEST_F(LiveEditLamps, OtherEditsLeaveTheHierarchyAlone) {
     edited().scene.materials[1]["baseColorFactor"] = {0.2F, 0.3F, 0.4F, 1.0F};
     edited().scene.materials[3]["roughnessFactor"] = 0.7F;
     for (const std::uint32_t kind : {1U, 3U}) {
-        ASSERT_TRUE(editor().setMaterialValues(edited().materials[kind].handle, edited().source(kind).record));
+        ASSERT_TRUE(
+            editor().setMaterialValues(edited().materials[kind].handle, edited().source(kind).record));
     }
     ASSERT_TRUE(editor().replaceTexture(edited().textures[0].handle, edited().textures[0].view()));
     EXPECT_FALSE(state.emittersDirty);
@@ -199,8 +199,7 @@ TEST(LiveEditLampKeys, AKeyMakesAMaterialALight) {
     // Of a coated material, which no light of the package is.
     lamps.edited.scene.materials[2]["emissiveFactor"] = {4.0F, 4.0F, 4.0F};
     const MaterialHandle coated = lamps.edited.materials[2].handle;
-    const Result<EditReport> set =
-        lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view());
+    const Result<EditReport> set = lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view());
     ASSERT_TRUE(set) << toString(set.error());
     ASSERT_TRUE(lamps.edited.editor().setInstanceMaterial(lamps.edited.instances[1].handle, 0, coated));
     const LinearImage edited = lamps.edited.picture();
@@ -217,7 +216,8 @@ TEST(LiveEditLampKeys, AKeyMakesAMaterialALight) {
         data.instances[kKinds + 3].objectToWorld = lamps.edited.instances[1].objectToWorld;
     });
     ASSERT_TRUE(loaded.ok());
-    expectSameImage(edited, loaded.render(options.renderer, defaultSetup(known, options.width, options.height)),
+    expectSameImage(edited,
+                    loaded.render(options.renderer, defaultSetup(known, options.width, options.height)),
                     "compiled with the lamp");
 }
 
@@ -229,7 +229,8 @@ TEST(LiveEditLampKeys, OtherLightsNeedAFallback) {
     edited.scene.materials[2]["emissiveFactor"] = {4.0F, 4.0F, 4.0F};
     const Result<MaterialHandle> coated = edited.editor().addMaterial(edited.source(2).view());
     ASSERT_TRUE(coated) << toString(coated.error());
-    const Result<EditReport> set = edited.editor().setInstanceMaterial(edited.instances[0].handle, 0, *coated);
+    const Result<EditReport> set =
+        edited.editor().setInstanceMaterial(edited.instances[0].handle, 0, *coated);
     ASSERT_FALSE(set);
     EXPECT_EQ(set.error().id, "scene-edit-case");
     EXPECT_NE(set.error().message.find("clearcoat"), std::string::npos) << set.error().message;

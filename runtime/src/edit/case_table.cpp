@@ -114,13 +114,13 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
         // Nothing is read at these coordinates.
         read &= ~inputs(emission->texCoord0Input | emission->texCoord1Input) | emission->always;
     }
-    const std::uint64_t unlike =
-        (emission->always & ~key.features) | (key.features & read & ~(emission->always | emission->sometimes));
+    const std::uint64_t unlike = (emission->always & ~key.features) |
+                                 (key.features & read & ~(emission->always | emission->sometimes));
     if (unlike != 0) {
-        return makeError("scene-edit-case", where,
-                         "the package has no shader that samples lights that differ from its own in: " +
-                             namesOf(unlike),
-                         "compile the package with --fallback, or from a scene that has such a light");
+        return makeError(
+            "scene-edit-case", where,
+            "the package has no shader that samples lights that differ from its own in: " + namesOf(unlike),
+            "compile the package with --fallback, or from a scene that has such a light");
     }
     return okStatus();
 }

@@ -229,8 +229,8 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
     if (!made) {
         return made.error();
     }
-    const TextureHandle texture = state_->textures.add(
-        {image.width, image.height, srgb, 0, emissionTexels(*state_, image, srgb)});
+    const TextureHandle texture =
+        state_->textures.add({image.width, image.height, srgb, 0, emissionTexels(*state_, image, srgb)});
     scene.textures.resize(std::max<std::size_t>(scene.textures.size(), state_->textures.end()));
     scene.textures[texture.index] = std::move(*made);
     state_->setDirty = true;

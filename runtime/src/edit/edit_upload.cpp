@@ -49,8 +49,8 @@ Status addTextures(SceneEditor::State& state, const PackageScene& known, const S
         }
         scene.textures.push_back(std::move(*made));
         const bool srgb = entry.srgb != 0;
-        state.firstTextures.push_back(state.textures.add(
-            {image.width, image.height, srgb, 0, emissionTexels(state, image, srgb)}));
+        state.firstTextures.push_back(
+            state.textures.add({image.width, image.height, srgb, 0, emissionTexels(state, image, srgb)}));
     }
     scene.statistics.narrowedTextures = countNarrowed(scene.context, known.textures, view.images);
     return okStatus();
@@ -200,9 +200,8 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
     if (Status status = recordEdits(state, commands, upload.frame); !status) {
         return status;
     }
-    for (RecordStore* const store :
-         {&state.geometries, &state.instances, &state.materials, &state.lights, &state.lightNodes,
-          &state.emitters, &state.firstEmitters}) {
+    for (RecordStore* const store : {&state.geometries, &state.instances, &state.materials, &state.lights,
+                                     &state.lightNodes, &state.emitters, &state.firstEmitters}) {
         store->firstCapacity = store->capacity;
     }
     state.firstTlasCapacity = state.tlasCapacity;

@@ -33,7 +33,7 @@ struct EditedTexture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool srgb = false;
-    std::uint32_t uses = 0;  // by materials
+    std::uint32_t uses = 0;                          // by materials
     std::shared_ptr<const EmissionTexels> texels{};  // of a colour, if emission may have textures
 };
 
@@ -86,10 +86,10 @@ struct SceneEditor::State {
     BlasCapacity capacity;
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
     VertexForm vertices = VertexForm::Compact;
-    bool dataAccess = false;      // BLASes let shaders read positions
-    bool passesLight = false;     // a ray meets each triangle at most once
-    bool buildsTree = false;      // the package chooses lights by a hierarchy
-    bool trustsTextures = false;  // Package::trustTextures()
+    bool dataAccess = false;                           // BLASes let shaders read positions
+    bool passesLight = false;                          // a ray meets each triangle at most once
+    bool buildsTree = false;                           // the package chooses lights by a hierarchy
+    bool trustsTextures = false;                       // Package::trustTextures()
     const package::EmissionEntry* emission = nullptr;  // null without emissive lights
 
     Slots<EditedTexture, TextureHandle> textures;

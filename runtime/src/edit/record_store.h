@@ -47,8 +47,7 @@ public:
     template <typename T>
     void replace(std::span<const T> records) {
         static_assert(std::is_trivially_copyable_v<T>);
-        replaceBytes(
-            std::span(reinterpret_cast<const std::uint8_t*>(records.data()), records.size_bytes()));
+        replaceBytes(std::span(reinterpret_cast<const std::uint8_t*>(records.data()), records.size_bytes()));
     }
     void replaceBytes(std::span<const std::uint8_t> records);
     // Forgets the records from `count` on.

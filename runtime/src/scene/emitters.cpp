@@ -126,8 +126,7 @@ std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> inst
 
 void Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
     for (EmitterPart& part : parts_) {
-        const auto found =
-            std::ranges::lower_bound(changing, part.material, {}, &ChangingMaterial::material);
+        const auto found = std::ranges::lower_bound(changing, part.material, {}, &ChangingMaterial::material);
         if (found != changing.end() && found->material == part.material) {
             part.luminance = emittedLuminance(found->record, emission_);
         }
