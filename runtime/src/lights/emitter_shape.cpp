@@ -1,4 +1,4 @@
-#include "scene/emitter_shape.h"
+#include "lights/emitter_shape.h"
 
 #include <algorithm>
 #include <cmath>

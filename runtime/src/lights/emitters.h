@@ -1,10 +1,10 @@
 // Triangles that emit light, as lights: which they are, where, and how bright.
 #pragma once
 
+#include "lights/emitter_shape.h"
+#include "lights/light_tree.h"
 #include "motion/motion_bounds.h"
-#include "scene/emitter_shape.h"
 #include "scene/geometry.h"
-#include "scene/light_tree.h"
 #include "scene/scene_materials.h"
 
 #include <glint/package.h>

@@ -1,4 +1,4 @@
-#include "scene/emitters.h"
+#include "lights/emitters.h"
 
 #include "scene/instance_math.h"
 #include "scene/material_table.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "interop/scene.h"
-#include "scene/emission_texels.h"
+#include "lights/emission_texels.h"
 
 #include <glint/package.h>
 #include <glint/scene_view.h>

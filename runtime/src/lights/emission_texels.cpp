@@ -1,4 +1,4 @@
-#include "scene/emission_texels.h"
+#include "lights/emission_texels.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scene/light_tree.h"
+#include "lights/light_tree.h"
 
 #include <algorithm>
 #include <array>
