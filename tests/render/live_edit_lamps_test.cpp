@@ -15,8 +15,9 @@
 namespace glint::testing {
 namespace {
 
-constexpr std::array<float, 12> kAbove{1, 0, 0, -0.6F, 0, 1, 0, 0.3F, 0, 0, 1, -2.2F};
-constexpr std::array<float, 12> kAside{1, 0, 0, 0.9F, 0, 1, 0, 0.1F, 0, 0, 1, -2.8F};
+// In front of the tent, which it shines at.
+constexpr std::array<float, 12> kAbove{-1, 0, 0, -0.4F, 0, 1, 0, 0.4F, 0, 0, -1, -1.3F};
+constexpr std::array<float, 12> kAside{-1, 0, 0, 0.9F, 0, 1, 0, 0.3F, 0, 0, -1, -1.6F};
 
 double sumOf(const LinearImage& image) {
     double sum = 0.0;
@@ -235,6 +236,26 @@ TEST(LiveEditLampKeys, OtherLightsNeedAFallback) {
     EXPECT_EQ(set.error().id, "scene-edit-case");
     EXPECT_NE(set.error().message.find("clearcoat"), std::string::npos) << set.error().message;
     EXPECT_TRUE(edited.editor().removeMaterial(*coated));
+}
+
+// A lamp that takes the place of one that was removed comes after those that were there before. Without a
+// hierarchy, the order of the lights decides which random numbers they get.
+TEST(LiveEditLampKeys, LampsComeInTheOrderInWhichTheyWereAdded) {
+    LampEdits lamps(EditedSceneOptions::withLamps(0));
+    ASSERT_TRUE(lamps.edited.ok());
+    EditedScene& edited = lamps.edited;
+    for (int i = 0; i < 3; ++i) {
+        EditedScene::Instance& lamp = lamps.addLamp();
+        lamp.objectToWorld[3] += 0.5F * static_cast<float>(i);
+        ASSERT_TRUE(edited.editor().moveInstance(lamp.handle, lamp.objectToWorld));
+    }
+    edited.expectSameAsFresh("three lamps");
+    const InstanceHandle gone = edited.instances[2].handle;
+    ASSERT_TRUE(edited.editor().removeInstance(gone));
+    edited.instances.erase(edited.instances.begin() + 2);
+    const EditedScene::Instance& last = lamps.addLamp();
+    EXPECT_EQ(last.handle.index, gone.index);
+    edited.expectSameAsFresh("one was exchanged");
 }
 
 // All content is added.

@@ -263,7 +263,9 @@ private:
 
     // Turned about the vertical, sometimes mirrored, and rarely flat.
     std::array<float, 12> anywhere() {
-        const float angle = between(-1.2F, 1.2F);
+        // Lamps shine at what is behind them, too.
+        const float most = lamps_ ? 3.0F : 1.2F;
+        const float angle = between(-most, most);
         const float size = below(12) == 0 ? 0.0F : between(0.5F, 1.5F);
         const float mirror = below(4) == 0 ? -1.0F : 1.0F;
         const float c = size * std::cos(angle);
