@@ -74,6 +74,15 @@ gltf::Mesh shapeWith(std::uint32_t shape, std::span<const std::uint32_t> kinds) 
     return mesh;
 }
 
+gltf::Scene sceneFor(const EditedSceneOptions& options) {
+    gltf::Scene scene = catalogueScene();
+    scene.trustsTextures = options.trustsTextures;
+    if (options.lamps) {
+        makeLamps(scene);
+    }
+    return scene;
+}
+
 template <typename Function, typename... Arguments>
 void call(const Function& function, const Arguments&... arguments) {
     EXPECT_EQ(function(arguments...), VK_SUCCESS);
@@ -100,6 +109,15 @@ gltf::Scene catalogueScene() {
     }
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
     return scene;
+}
+
+void makeLamps(gltf::Scene& scene) {
+    scene.materials[1]["emissiveFactor"] = {4.0F, 3.0F, 2.0F};
+    materials::Material& textured = scene.materials[3];
+    textured["emissiveFactor"] = {3.0F, 3.0F, 3.0F};
+    std::vector<std::uint8_t> texels = chequers(8, 10);
+    std::fill_n(texels.begin(), texels.size() / 2, std::uint8_t{0});
+    textured.texture("emissiveTexture").texture = addTexture(scene, 8, 8, texels);
 }
 
 TwoFrames::TwoFrames(Context& context) : context_(context) {
@@ -194,8 +212,18 @@ EditedSceneOptions::EditedSceneOptions(package::Strategy strategy, package::Trac
     renderer.tracer = tracer;
 }
 
-EditedScene::EditedScene(EditedSceneOptions options) : scene(catalogueScene()), options_(std::move(options)) {
-    scene.trustsTextures = options_.trustsTextures;
+EditedSceneOptions EditedSceneOptions::withLamps(std::uint32_t samples) {
+    EditedSceneOptions options;
+    options.lamps = true;
+    options.settings.emissiveLights = compiler::EmissiveLights::On;
+    options.settings.lightSamples = samples;
+    options.settings.maxBounces = 2;
+    options.renderer.bounces = 2;
+    return options;
+}
+
+EditedScene::EditedScene(EditedSceneOptions options)
+    : scene(sceneFor(options)), original(scene), options_(std::move(options)) {
     loaded_ = std::make_unique<LoadedScene>(scene, options_.settings);
     if (!loaded_->ok()) {
         return;
@@ -268,7 +296,16 @@ scene_view::MaterialSourceData EditedScene::source(std::uint32_t kind) const {
     for (const Texture& texture : textures) {
         handles.push_back({texture.handle, {}});
     }
-    return scene_view::makeMaterialSource(package(), layout_, scene, scene.materials[kind], handles);
+    materials::Material material = scene.materials[kind];
+    scene_view::MaterialSourceData data =
+        scene_view::makeMaterialSource(package(), layout_, scene, material, handles);
+    if (options_.lamps && (kind == 1 || kind == 3)) {
+        material["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
+        std::vector<std::uint8_t> record = std::move(data.record);
+        data = scene_view::makeMaterialSource(package(), layout_, scene, material, handles);
+        data.record = std::move(record);
+    }
+    return data;
 }
 
 void EditedScene::frame() {

@@ -26,6 +26,8 @@ constexpr std::size_t primitivesOfShape(std::uint32_t shape) {
 }
 // Returns a scene with a mesh for each shape with each choice of materials, in front of a camera.
 gltf::Scene catalogueScene();
+// Makes the kinds 1 and 3 of the catalogue lights, the latter with a texture of its own.
+void makeLamps(gltf::Scene& scene);
 // Returns the number of a mesh of the catalogue. `kinds` has one kind for each primitive.
 std::uint32_t meshOfCatalogue(std::uint32_t shape, std::span<const std::uint32_t> kinds);
 
@@ -73,9 +75,12 @@ struct EditedSceneOptions {
     // Compiles and renders with a strategy, with a case for each key and alpha tests.
     explicit EditedSceneOptions(package::Strategy strategy = package::kStrategyUber,
                                 package::Tracer tracer = tracerOfDevice());
+    // With emissive lights, of which surfaces choose `samples` by the hierarchy; 0: they take all.
+    static EditedSceneOptions withLamps(std::uint32_t samples);
     compiler::CompileSettings settings;
     RendererOptions renderer;
     bool trustsTextures = false;
+    bool lamps = false;  // makeLamps(), and paths of two bounces with emissive lights
     std::uint32_t width = 32;
     std::uint32_t height = 18;
 };
@@ -126,7 +131,8 @@ public:
     std::vector<Instance> instances;
     std::vector<Light> lights;
     std::vector<Texture> textures;
-    gltf::Scene scene;  // its materials have the present values of the kinds
+    gltf::Scene scene;           // its materials have the present values of the kinds
+    const gltf::Scene original;  // that was compiled
 
     SceneEditor& editor() {
         return *gpuScene_->editor();
@@ -138,7 +144,7 @@ public:
         return loaded_->package();
     }
     PrimitiveView primitive(std::uint32_t shape, std::size_t index) const;
-    // The source of a material of a kind with the kind's present values.
+    // The source of a material of a kind with the kind's present values. A lamp that is dark keeps its keys.
     scene_view::MaterialSourceData source(std::uint32_t kind) const;
 
     // Records the edits and a frame, and submits both.

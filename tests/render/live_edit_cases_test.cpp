@@ -265,19 +265,6 @@ TEST(LiveEditUpload, RefusesScenesThatMove) {
     expectError((*editable)->updateAndWait({}), "scene-still");
 }
 
-TEST(LiveEditUpload, RefusesEmissiveLights) {
-    gltf::Scene scene = catalogueScene();
-    scene.materials[1]["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
-    compiler::CompileSettings settings = EditedSceneOptions().settings;
-    settings.emissiveLights = compiler::EmissiveLights::On;
-    const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
-    SceneView view;
-    view.editable = true;
-    view.packageScene = kNoPackageScene;
-    expectError(GpuScene::upload(sharedContext(), loaded.package(), view), "scene-edit-emission");
-}
-
 TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
     EditedSceneOptions options;
     options.settings.plan.fallback = true;

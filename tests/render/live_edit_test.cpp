@@ -19,7 +19,8 @@ namespace {
 // Makes one random edit after another.
 class RandomEdits {
 public:
-    RandomEdits(EditedScene& edited, std::uint32_t seed) : edited_(edited), random_(seed) {}
+    RandomEdits(EditedScene& edited, std::uint32_t seed)
+        : edited_(edited), random_(seed), lamps_(edited.package().emission() != nullptr) {}
 
     void next() {
         const std::function<void()> edits[] = {
@@ -65,7 +66,7 @@ public:
                 edited_.lights.erase(edited_.lights.begin() + static_cast<std::ptrdiff_t>(i));
             }
         }
-        const gltf::Scene original = catalogueScene();
+        const gltf::Scene& original = edited_.original;
         for (std::size_t i = 0; i < edited_.textures.size(); ++i) {
             EditedScene::Texture& texture = edited_.textures[i];
             texture.width = static_cast<std::uint32_t>(original.images[i].width);
@@ -102,6 +103,10 @@ private:
         changed["baseColorFactor"] = {between(0.1F, 0.9F), between(0.1F, 0.9F), between(0.1F, 0.9F), 1.0F};
         if (kind != 0 && kind != 4) {
             changed["roughnessFactor"] = between(0.2F, 0.8F);
+        }
+        if (lamps_ && (kind == 1 || kind == 3)) {
+            const float strength = below(3) == 0 ? 0.0F : between(1, 8);
+            changed["emissiveFactor"] = {strength, strength * between(0, 1), strength * between(0, 1)};
         }
         const scene_view::MaterialSourceData source = edited_.source(kind);
         for (const EditedScene::Material& one : edited_.materials) {
@@ -258,7 +263,9 @@ private:
 
     // Turned about the vertical, sometimes mirrored, and rarely flat.
     std::array<float, 12> anywhere() {
-        const float angle = between(-1.2F, 1.2F);
+        // Lamps shine at what is behind them, too.
+        const float most = lamps_ ? 3.0F : 1.2F;
+        const float angle = between(-most, most);
         const float size = below(12) == 0 ? 0.0F : between(0.5F, 1.5F);
         const float mirror = below(4) == 0 ? -1.0F : 1.0F;
         const float c = size * std::cos(angle);
@@ -410,6 +417,7 @@ private:
 
     EditedScene& edited_;
     std::mt19937 random_;
+    bool lamps_;  // the kinds 1 and 3 are lights
 };
 
 std::vector<std::string> memoryOf(const GpuScene& scene) {
@@ -463,6 +471,18 @@ TEST(LiveEdit, TheLightHierarchyFollowsTheLights) {
     EditedScene edited(options);
     ASSERT_TRUE(edited.ok());
     runEdits(edited, test::nightly() ? 1000 : 120, 2);
+}
+
+TEST(LiveEdit, EmissiveTrianglesFollowEdits) {
+    EditedScene edited(EditedSceneOptions::withLamps(2));
+    ASSERT_TRUE(edited.ok());
+    runEdits(edited, test::nightly() ? 2000 : 100, 3);
+}
+
+TEST(LiveEdit, EmissiveTrianglesWithoutAHierarchyFollowEdits) {
+    EditedScene edited(EditedSceneOptions::withLamps(0));
+    ASSERT_TRUE(edited.ok());
+    runEdits(edited, test::nightly() ? 1000 : 40, 4);
 }
 
 }  // namespace

@@ -167,7 +167,7 @@ Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const Com
     return why->empty() ? SizedLights::On : SizedLights::Off;
 }
 
-EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan) {
+EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan, bool fallback) {
     const materials::MaterialModel& model = *plan.model;
     materials::FeatureMask covers = 0;
     for (const materials::FeatureCode& code : model.code) {
@@ -182,18 +182,22 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan)
             result.coveredByLayers = result.coveredByLayers || (masks.back() & covers) != 0;
         }
     }
-    materials::FeatureMask read = 0;
+    if (fallback) {
+        masks = {0, plan.primaryAlways | plan.primarySometimes};
+        result.coveredByLayers = (masks.back() & covers) != 0;
+    }
+    result.read = covers;
     for (const char* const name :
          {"emissiveTexture", "emissiveStrength", "texCoord0", "texCoord1", "textureTransform"}) {
-        read |= model.mask(name);
+        result.read |= model.mask(name);
     }
     if (result.coveredByLayers) {
-        read = ~materials::FeatureMask{0};
+        result.read = ~materials::FeatureMask{0};
     }
     materials::FeatureMask any = 0;
-    result.always = masks.empty() ? 0 : read;
+    result.always = masks.empty() ? 0 : result.read;
     for (const materials::FeatureMask mask : masks) {
-        any |= mask & read;
+        any |= mask & result.read;
         result.always &= mask;
     }
     result.sometimes = any & ~result.always;

@@ -50,13 +50,15 @@ Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSe
 Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
 
 // Returns the features that decide what the triangles emit: those that all of them have, and those that some
-// have. If a layer covers the emission of one, they are all features.
+// have. If a layer covers the emission of one, they are all features. In a package with a fallback any
+// material of the plan's features may become a light, so none is taken for granted.
 struct EmitterFeatures {
+    materials::FeatureMask read = 0;  // that emission may depend on
     materials::FeatureMask always = 0;
     materials::FeatureMask sometimes = 0;
     bool coveredByLayers = false;
 };
-EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan);
+EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan, bool fallback);
 
 // Returns CompileSettings::shadowThrough for a package, or Alpha if it would change nothing: without shadows,
 // and where no material has what light would pass otherwise.

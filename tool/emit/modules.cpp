@@ -192,7 +192,7 @@ materials::FeatureMask emitterMask(const gltf::SceneList& scenes, const Plan& pl
     if (settings.emissiveLights != EmissiveLights::On) {
         return 0;
     }
-    const EmitterFeatures features = emitterFeatures(scenes, plan);
+    const EmitterFeatures features = emitterFeatures(scenes, plan, settings.plan.fallback);
     return features.always | features.sometimes;
 }
 

@@ -78,8 +78,8 @@ std::string bindingDefines(const package::Bindings& bindings) {
 }
 
 // The features that decide what emissive lights emit.
-std::string emitterDefines(const gltf::SceneList& scenes, const Plan& plan) {
-    const EmitterFeatures features = emitterFeatures(scenes, plan);
+std::string emitterDefines(const gltf::SceneList& scenes, const Plan& plan, bool fallback) {
+    const EmitterFeatures features = emitterFeatures(scenes, plan, fallback);
     std::string text = "// Emissive lights\n";
     defineFeatures(text, "GLINT_EMITTER", features.always, features.sometimes);
     text += fmt::format("#define GLINT_EMITTER_LAYERS {}\n", features.coveredByLayers ? 1 : 0);
@@ -141,7 +141,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += "// Some lights are found by rays of lobes, too.\n";
     text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky || sized));
     if (emissive) {
-        text += emitterDefines(scenes, plan);
+        text += emitterDefines(scenes, plan, settings.plan.fallback);
     }
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",

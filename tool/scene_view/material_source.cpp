@@ -1,10 +1,12 @@
 #include "emit/package/tables.h"
+#include "plan/effects.h"
 #include "plan/plan.h"
 
 #include <glint/scene_view/material_source.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <interop/scene.h>
 
 namespace glint::scene_view {
 
@@ -40,6 +42,9 @@ MaterialKey keyFor(const Package& package, const materials::Material& material, 
     key.hitFeatures = compiler::makeKey(material, inputs, options);
     key.geometryFlags =
         compiler::geometryFlags(material, inputs, key.hitFeatures, package.alpha(), package.shadowThrough());
+    if (package.emission() != nullptr && compiler::isEmitter(material, inputs)) {
+        key.geometryFlags |= gpu::kGeometryEmitter;
+    }
     return key;
 }
 

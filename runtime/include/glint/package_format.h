@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 18;
+inline constexpr std::uint32_t kVersion = 19;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -292,6 +292,12 @@ struct EmissionEntry {
     std::uint32_t textureInput;
     std::uint32_t texCoord0Input;
     std::uint32_t texCoord1Input;
+    // Features, inputs in the high half and lobes in the low one. Shaders that compute what a triangle emits
+    // ask for no others than `read`. They take those of `always` for granted, and decide about those of
+    // `sometimes` by the key.
+    std::uint64_t read;
+    std::uint64_t always;
+    std::uint64_t sometimes;
 };
 
 // What the runtime has to know of a material's record to prove where its alpha test lets rays through.
@@ -337,7 +343,7 @@ static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);
 static_assert(sizeof(AttributeEntry) == 40);
 static_assert(sizeof(EffectEntry) == 24);
-static_assert(sizeof(EmissionEntry) == 24);
+static_assert(sizeof(EmissionEntry) == 48);
 static_assert(sizeof(FeatureEntry) == 16);
 static_assert(sizeof(OpacityEntry) == 40);
 

@@ -127,7 +127,8 @@ struct PlacedMesh {
 // and those of memory and Vulkan's calls. Errors of those that give a primitive a material: "scene-edit-key"
 // (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the package has no
 // code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the package has the
-// key, and the package has no fallback); the message has the names of the features.
+// key, or no code samples lights with the key, and the package has no fallback); the message has the names of
+// the features.
 class SceneEditor {
 public:
     ~SceneEditor();
@@ -156,7 +157,8 @@ public:
     // scene's instances if the keys of its primitives change.
     Result<EditReport> setMaterial(MaterialHandle material, const MaterialSource& source);
     // Replaces the values of a material, whose keys and textures stay. The caller makes sure that the values
-    // agree with the keys. Texture transforms are values.
+    // agree with the keys. Texture transforms are values. In packages with emissive lights, a material is a
+    // light if its key has kGeometryEmitter and its values emit light.
     Status setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record);
     Status removeMaterial(MaterialHandle material);
 
@@ -183,7 +185,7 @@ public:
     Status removeInstance(InstanceHandle instance);
 
     // Lights keep their order when one is removed. In packages with a light hierarchy, record() builds it
-    // anew if a light has changed. Error "scene-light".
+    // anew if a light or an emissive triangle that is one has changed. Error "scene-light".
     Result<LightHandle> addLight(const LightView& light);
     Status setLight(LightHandle light, const LightView& view);
     Status removeLight(LightHandle light);

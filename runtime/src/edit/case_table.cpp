@@ -102,8 +102,34 @@ Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) c
     return okStatus();
 }
 
+Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where) const {
+    const package::EmissionEntry* const emission = package_.emission();
+    if (emission == nullptr || (key.geometryFlags & gpu::kGeometryEmitter) == 0) {
+        return okStatus();
+    }
+    const auto inputs = [](std::uint32_t bits) { return std::uint64_t{bits} << 32U; };
+    std::uint64_t read = emission->read;
+    const bool layered = read == ~std::uint64_t{0};
+    if (!layered && (key.features & inputs(emission->textureInput)) == 0) {
+        // Nothing is read at these coordinates.
+        read &= ~inputs(emission->texCoord0Input | emission->texCoord1Input) | emission->always;
+    }
+    const std::uint64_t unlike = (emission->always & ~key.features) |
+                                 (key.features & read & ~(emission->always | emission->sometimes));
+    if (unlike != 0) {
+        return makeError(
+            "scene-edit-case", where,
+            "the package has no shader that samples lights that differ from its own in: " + namesOf(unlike),
+            "compile the package with --fallback, or from a scene that has such a light");
+    }
+    return okStatus();
+}
+
 Result<Shading> CaseTable::find(const MaterialKey& key, const std::string& where) const {
     if (Status status = checkKnown(key, where); !status) {
+        return status.error();
+    }
+    if (Status status = checkEmitter(key, where); !status) {
         return status.error();
     }
     Shading shading{key.features, key.geometryFlags, 0, false};

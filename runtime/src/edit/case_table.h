@@ -43,6 +43,8 @@ public:
 
 private:
     Status checkKnown(const MaterialKey& key, const std::string& where) const;
+    // Checks that shaders compute what a light with this key emits.
+    Status checkEmitter(const MaterialKey& key, const std::string& where) const;
 
     const Package& package_;
     bool fallback_;

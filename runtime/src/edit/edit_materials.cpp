@@ -229,7 +229,8 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
     if (!made) {
         return made.error();
     }
-    const TextureHandle texture = state_->textures.add({image.width, image.height, srgb, 0});
+    const TextureHandle texture =
+        state_->textures.add({image.width, image.height, srgb, 0, emissionTexels(*state_, image, srgb)});
     scene.textures.resize(std::max<std::size_t>(scene.textures.size(), state_->textures.end()));
     scene.textures[texture.index] = std::move(*made);
     state_->setDirty = true;
@@ -255,6 +256,8 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     state_->setDirty = true;
     entry->width = image.width;
     entry->height = image.height;
+    entry->texels = emissionTexels(*state_, image, entry->srgb);
+    replaceEmission(*state_, texture);
     // Records have the sizes of their textures.
     state_->materialSlots.forEach([&](MaterialHandle handle, const EditedMaterial& material) {
         for (const TextureUse& use : material.textures) {
@@ -338,7 +341,7 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
     countUses(*state_, entry->textures, false);
     entry->keys.assign(source.keys.begin(), source.keys.end());
     entry->textures.assign(source.textures.begin(), source.textures.end());
-    state_->materials.writeBytes(material.index, *record);
+    writeMaterial(*state_, material.index, *record);
     if (changes) {
         state_->instanceSlots.forEach([&](InstanceHandle handle, const EditedInstance& instance) {
             for (std::size_t i = 0; i < state_->meshes.find(instance.mesh)->primitives.size(); ++i) {
@@ -363,7 +366,7 @@ Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const s
     const std::span<const std::uint8_t> old = state_->materials.at(material.index);
     std::vector<std::uint8_t> taken(old.begin(), old.end());
     takeValues(record, state_->layout, taken);
-    state_->materials.writeBytes(material.index, taken);
+    writeMaterial(*state_, material.index, taken);
     return okStatus();
 }
 

@@ -98,6 +98,9 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, const
     }
     made.device = std::move(*device);
     made.attributes = attributesOf(package, view);
+    if (state.emission != nullptr) {
+        made.shape = std::make_shared<EmitterShape>(*state.emission, view, indices);
+    }
     for (std::uint32_t first = 0; first < made.device.triangleCount;) {
         const auto count = static_cast<std::uint32_t>(
             std::min<std::uint64_t>(made.device.triangleCount - first, state.capacity.triangles));
@@ -237,6 +240,7 @@ void writeGeometries(SceneEditor::State& state, InstanceHandle handle, const Edi
                 index++, makeGeometryRecord(entry, primitive.device, part.triangles.first, handle.index));
         }
     }
+    noteEmitters(state, handle, instance);
     state.tlasDirty = true;
     state.drawsDirty = true;
 }
@@ -390,6 +394,7 @@ Status SceneEditor::moveInstance(InstanceHandle instance, const std::array<float
     const bool turned = state_->instances.read<gpu::InstanceRecord>(instance.index).flags != record.flags;
     entry->objectToWorld = objectToWorld;
     state_->instances.write(instance.index, record);
+    moveEmitters(*state_, instance);
     state_->tlasDirty = true;
     state_->drawsDirty = state_->drawsDirty || turned || wasShown != entry->isShown();
     return okStatus();
@@ -402,6 +407,7 @@ Status SceneEditor::showInstance(InstanceHandle instance, bool visible) {
     }
     if (entry->visible != visible) {
         entry->visible = visible;
+        moveEmitters(*state_, instance);
         state_->tlasDirty = true;
         state_->drawsDirty = true;
     }
@@ -431,6 +437,7 @@ Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHan
     place(*state_, *entry);
     writeGeometries(*state_, instance, *entry);
     state_->geometries.shrink(state_->geometryRuns.end());
+    state_->firstEmitters.shrink(state_->geometryRuns.end());
     return report;
 }
 
@@ -466,8 +473,10 @@ Status SceneEditor::removeInstance(InstanceHandle instance) {
         return unknownHandle("instance");
     }
     const EditedInstance gone = state_->instanceSlots.take(instance);
+    moveEmitters(*state_, instance, true);
     unplace(*state_, gone);
     state_->geometries.shrink(state_->geometryRuns.end());
+    state_->firstEmitters.shrink(state_->geometryRuns.end());
     state_->instances.shrink(state_->instanceSlots.end());
     return okStatus();
 }

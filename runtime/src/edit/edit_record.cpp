@@ -20,10 +20,13 @@ using Placed = VkAccelerationStructureInstanceKHR;
 constexpr VkDeviceSize kPlacedAlignment = 16;  // of the array of instances that a TLAS is built from
 constexpr VkBufferUsageFlags kRecordUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+// An array of records on the device. Those that the package's shaders don't read have no buffer.
 struct Array {
     RecordStore& store;
     Buffer& device;
+    bool isRead = true;
 };
+constexpr std::size_t kArrays = 7;
 
 // Everything that a recording needs to allocate. What was not handed over is discarded with it.
 struct Prepared {
@@ -41,8 +44,8 @@ struct Prepared {
     Prepared& operator=(const Prepared&) = delete;
 
     MemoryPool& pool;
-    std::array<Buffer, 5> arrays;  // for those arrays that get another size
-    std::array<std::uint32_t, 5> capacities{};
+    std::array<Buffer, kArrays> arrays;  // for those arrays that get another size
+    std::array<std::uint32_t, kArrays> capacities{};
     Buffer staging;
     Scratch scratch;
     AccelerationStructure tlas;
@@ -62,7 +65,12 @@ public:
           prepared_(state.scene.pool) {}
 
     Status record(std::uint64_t frame) {
-        if (state_.lightsDirty) {
+        if (state_.emittersDirty) {
+            emitters_ = gatherEmitters(state_);
+            state_.firstEmitters.replace(
+                std::span<const std::uint32_t>(emitters_.firstsOf(state_.geometries.count())));
+        }
+        if (lightsChange()) {
             writeLights();
         }
         if (state_.tlasDirty) {
@@ -85,29 +93,37 @@ public:
     }
 
 private:
-    std::array<Array, 5> arrays() {
+    std::array<Array, kArrays> arrays() {
         return {{{state_.geometries, scene_.geometries},
                  {state_.instances, scene_.instances},
                  {state_.materials, scene_.materials},
                  {state_.lights, scene_.lights},
-                 {state_.lightNodes, scene_.lightNodes}}};
+                 {state_.lightNodes, scene_.lightNodes, state_.buildsTree},
+                 {state_.emitters, scene_.emitterRecords, state_.emission != nullptr},
+                 {state_.firstEmitters, scene_.firstEmitters, state_.emission != nullptr}}};
     }
 
-    // Writes records of all lights, and the hierarchy over them.
+    bool lightsChange() const {
+        return state_.lightsDirty || state_.emittersDirty;
+    }
+
+    // Writes records of all lights, and the hierarchy over them and the emissive triangles.
     void writeLights() {
         std::vector<gpu::LightRecord> records;
         for (const LightHandle handle : state_.lightOrder) {
             records.push_back(makeLightRecord(*state_.lightSlots.find(handle)));
-            state_.lights.write(static_cast<std::uint32_t>(records.size() - 1), records.back());
         }
-        state_.lights.shrink(static_cast<std::uint32_t>(records.size()));
+        state_.lights.replace(std::span<const gpu::LightRecord>(records));
+        Emitters& emitters = state_.emittersDirty ? emitters_ : scene_.emitters;
+        const std::vector<EmitterBounds> bounds = emitters.boundsAt(emissiveViews(state_));
         if (state_.buildsTree) {
-            tree_ = buildLightTree(records);
-            for (std::uint32_t i = 0; i < tree_.nodes.size(); ++i) {
-                state_.lightNodes.write(i, tree_.nodes[i]);
-            }
-            state_.lightNodes.shrink(static_cast<std::uint32_t>(tree_.nodes.size()));
+            tree_ = buildLightTree(records, bounds);
+            state_.lightNodes.replace(std::span<const gpu::LightNode>(tree_.nodes));
+            emitters.setLeaves(tree_);
+        } else {
+            emitters.setLeaves(bounds);
         }
+        state_.emitters.replace(std::span<const gpu::EmitterRecord>(emitters.records));
     }
 
     // Makes the array that the TLAS is built from.
@@ -184,11 +200,10 @@ private:
 
     Status prepareArrays() {
         std::size_t i = 0;
-        for (const auto& [store, device] : arrays()) {
+        for (const auto& [store, device, isRead] : arrays()) {
             const std::uint32_t capacity = capacityFor(store.count(), store.capacity, store.firstCapacity);
             prepared_.capacities[i] = capacity;
-            const bool unread = &store == &state_.lightNodes && !state_.buildsTree;
-            if (capacity != store.capacity && !unread) {
+            if (capacity != store.capacity && isRead) {
                 Result<Buffer> buffer =
                     createBuffer(context_, scene_.pool, capacity * store.stride(), kRecordUsage);
                 if (!buffer) {
@@ -239,7 +254,7 @@ private:
     Status prepareStaging() {
         recordsFrom_ = placed_.size() * sizeof(Placed) + kPlacedAlignment;
         VkDeviceSize bytes = recordsFrom_;
-        for (const auto& [store, device] : arrays()) {
+        for (const auto& [store, device, isRead] : arrays()) {
             for (const IndexRange& range : store.dirty()) {
                 bytes += (range.end - range.first) * store.stride();
             }
@@ -317,7 +332,7 @@ private:
     void recordResizes() {
         std::size_t i = 0;
         bool copied = false;
-        for (const auto& [store, device] : arrays()) {
+        for (const auto& [store, device, isRead] : arrays()) {
             Buffer& resized = prepared_.arrays[i];
             if (resized.handle.get() != VK_NULL_HANDLE) {
                 const std::uint32_t kept = std::min({store.capacity, prepared_.capacities[i], store.count()});
@@ -340,7 +355,7 @@ private:
 
     void recordCopies() {
         VkDeviceSize from = recordsFrom_;
-        for (const auto& [store, device] : arrays()) {
+        for (const auto& [store, device, isRead] : arrays()) {
             std::vector<VkBufferCopy> regions;
             for (const IndexRange& range : store.dirty()) {
                 const VkDeviceSize bytes = (range.end - range.first) * store.stride();
@@ -397,9 +412,13 @@ private:
         }
         state_.retired.add(std::move(prepared_.staging));
         state_.retired.add(std::move(prepared_.scratch.buffer));
-        if (state_.lightsDirty) {
+        if (lightsChange()) {
             scene_.lightCount = state_.lights.count();
             scene_.lightTree = std::move(tree_);
+        }
+        if (state_.emittersDirty) {
+            scene_.emitters = std::move(emitters_);
+            scene_.emitterCount = state_.emitters.count();
         }
         scene_.statistics.instances = static_cast<std::uint32_t>(state_.instanceSlots.count());
         for (SceneEditor::State::PendingBuild& built : state_.builds) {
@@ -409,6 +428,7 @@ private:
         state_.tlasDirty = false;
         state_.drawsDirty = false;
         state_.lightsDirty = false;
+        state_.emittersDirty = false;
         state_.setDirty = false;
         state_.trims = false;
     }
@@ -420,6 +440,7 @@ private:
     Prepared prepared_;
     std::vector<Placed> placed_;
     LightTree tree_;
+    Emitters emitters_;
     VkDeviceSize recordsFrom_ = 0;
     VkDeviceSize scratchBytes_ = 0;
 };

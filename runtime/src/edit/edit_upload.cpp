@@ -12,7 +12,7 @@
 namespace glint {
 namespace {
 
-Status checkEditable(const Package& package, const SceneView& view) {
+Status checkEditable(const SceneView& view) {
     const bool deforms = std::ranges::any_of(view.instances, [](const InstanceView& instance) {
         return !instance.joints.empty() || !instance.morphWeights.empty();
     });
@@ -20,11 +20,6 @@ Status checkEditable(const Package& package, const SceneView& view) {
         return makeError("scene-edit-moves", "",
                          "the scene moves by GpuScene::update(), or has a mesh that changes its shape",
                          "edit the transforms of instances instead, or leave SceneView::editable out");
-    }
-    if (package.emission() != nullptr) {
-        return makeError("scene-edit-emission", "",
-                         "the package has emissive lights, which edits can't keep up to date",
-                         "compile the package with --emissive-lights off");
     }
     return okStatus();
 }
@@ -53,7 +48,9 @@ Status addTextures(SceneEditor::State& state, const PackageScene& known, const S
             return made.error();
         }
         scene.textures.push_back(std::move(*made));
-        state.firstTextures.push_back(state.textures.add({image.width, image.height, entry.srgb != 0, 0}));
+        const bool srgb = entry.srgb != 0;
+        state.firstTextures.push_back(
+            state.textures.add({image.width, image.height, srgb, 0, emissionTexels(state, image, srgb)}));
     }
     scene.statistics.narrowedTextures = countNarrowed(scene.context, known.textures, view.images);
     return okStatus();
@@ -162,7 +159,7 @@ Status addMeshes(SceneEditor::State& state, const PackageScene& known, const Sce
 
 Status uploadEditable(GpuScene::State& scene, const Package& package, const PackageScene& known,
                       const SceneView& view, SceneUpload& upload, VkCommandBuffer commands) {
-    if (Status status = checkEditable(package, view); !status) {
+    if (Status status = checkEditable(view); !status) {
         return status;
     }
     auto owned = std::make_unique<SceneEditor::State>(scene, package, view);
@@ -203,8 +200,8 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
     if (Status status = recordEdits(state, commands, upload.frame); !status) {
         return status;
     }
-    for (RecordStore* const store :
-         {&state.geometries, &state.instances, &state.materials, &state.lights, &state.lightNodes}) {
+    for (RecordStore* const store : {&state.geometries, &state.instances, &state.materials, &state.lights,
+                                     &state.lightNodes, &state.emitters, &state.firstEmitters}) {
         store->firstCapacity = store->capacity;
     }
     state.firstTlasCapacity = state.tlasCapacity;

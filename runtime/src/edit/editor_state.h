@@ -21,6 +21,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,7 +33,8 @@ struct EditedTexture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool srgb = false;
-    std::uint32_t uses = 0;  // by materials
+    std::uint32_t uses = 0;                          // by materials
+    std::shared_ptr<const EmissionTexels> texels{};  // of a colour, if emission may have textures
 };
 
 // A material. Its record is in State::materials at the handle's index.
@@ -55,6 +57,7 @@ struct EditedMeshPrimitive {
     AttributeMask attributes = 0;
     MaterialHandle material;
     std::vector<EditedPart> parts;
+    std::shared_ptr<const EmitterShape> shape;  // in packages with emissive lights
 };
 
 struct EditedMesh {
@@ -83,10 +86,11 @@ struct SceneEditor::State {
     BlasCapacity capacity;
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
     VertexForm vertices = VertexForm::Compact;
-    bool dataAccess = false;      // BLASes let shaders read positions
-    bool passesLight = false;     // a ray meets each triangle at most once
-    bool buildsTree = false;      // the package chooses lights by a hierarchy
-    bool trustsTextures = false;  // Package::trustTextures()
+    bool dataAccess = false;                           // BLASes let shaders read positions
+    bool passesLight = false;                          // a ray meets each triangle at most once
+    bool buildsTree = false;                           // the package chooses lights by a hierarchy
+    bool trustsTextures = false;                       // Package::trustTextures()
+    const package::EmissionEntry* emission = nullptr;  // null without emissive lights
 
     Slots<EditedTexture, TextureHandle> textures;
     Slots<EditedMaterial, MaterialHandle> materialSlots;
@@ -109,7 +113,14 @@ struct SceneEditor::State {
     RecordStore materials;
     RecordStore lights{sizeof(gpu::LightRecord)};
     RecordStore lightNodes{sizeof(gpu::LightNode)};
+    RecordStore emitters{sizeof(gpu::EmitterRecord)};
+    RecordStore firstEmitters{sizeof(std::uint32_t)};  // of each geometry record
     RunAllocator geometryRuns;
+
+    // Instances with a material that is a light, by generation: in the order in which they were added.
+    std::map<std::uint32_t, InstanceHandle> emissiveInstances;
+    std::set<std::uint32_t> emissiveMaterials;  // of those that were shown at the last recording
+    EmitterMeans emitterMeans;
 
     // What record() has to do.
     std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
@@ -122,6 +133,7 @@ struct SceneEditor::State {
     bool tlasDirty = true;
     bool drawsDirty = true;
     bool lightsDirty = true;
+    bool emittersDirty = false;
     bool setDirty = false;
     bool trims = false;
 
@@ -159,6 +171,24 @@ Result<EditedMesh> makeMesh(SceneEditor::State& state, std::span<const Primitive
 InstanceHandle placeInstance(SceneEditor::State& state, EditedInstance instance);
 // Finds the sampler, or makes it. Error "scene-edit-room".
 Result<std::uint32_t> samplerIndex(SceneEditor::State& state, const package::SamplerEntry& entry);
+// Writes a material's record. Lights follow if what it emits has changed.
+void writeMaterial(SceneEditor::State& state, std::uint32_t material, std::span<const std::uint8_t> record);
+
+// --- Emissive triangles (edit_emitters.cpp) ---
+
+// Returns the texels of a texture that may be an emission, or null.
+std::shared_ptr<const EmissionTexels> emissionTexels(const SceneEditor::State& state, const ImageView& image,
+                                                     bool srgb);
+// Notes that an instance, whose geometry records have been written, is or was a light.
+void noteEmitters(SceneEditor::State& state, InstanceHandle handle, const EditedInstance& instance);
+// Notes that an instance is elsewhere, shown or hidden; `removed`: that it is gone.
+void moveEmitters(SceneEditor::State& state, InstanceHandle handle, bool removed = false);
+// Notes that the image of a texture is another one.
+void replaceEmission(SceneEditor::State& state, TextureHandle texture);
+// Returns the emissive triangles of all instances that are shown, and these instances.
+Emitters gatherEmitters(SceneEditor::State& state);
+std::vector<InstanceView> emissiveViews(const SceneEditor::State& state);
+
 // Records what is pending, for a frame that is not before the last one.
 Status recordEdits(SceneEditor::State& state, VkCommandBuffer commands, std::uint64_t frame);
 

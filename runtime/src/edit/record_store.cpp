@@ -46,25 +46,53 @@ void RecordStore::writeBytes(std::uint32_t index, std::span<const std::uint8_t> 
         bytes_.resize(place + stride_);
     }
     std::ranges::copy(record, bytes_.begin() + static_cast<std::ptrdiff_t>(place));
-    dirty_.push_back(index);
+    if (!dirty_.empty() && dirty_.back().end == index) {
+        ++dirty_.back().end;
+    } else {
+        dirty_.push_back({index, index + 1});
+    }
+}
+
+void RecordStore::replaceBytes(std::span<const std::uint8_t> records) {
+    const auto wanted = static_cast<std::uint32_t>(records.size() / stride_);
+    const std::uint32_t both = std::min(wanted, count());
+    const auto isSame = [&](std::uint32_t index) {
+        return std::ranges::equal(records.subspan(index * stride_, stride_), at(index));
+    };
+    std::uint32_t first = 0;
+    while (first < both && isSame(first)) {
+        ++first;
+    }
+    std::uint32_t end = wanted;
+    while (wanted == both && end > first && isSame(end - 1)) {
+        --end;
+    }
+    shrink(wanted);
+    bytes_.assign(records.begin(), records.end());
+    if (end > first) {
+        dirty_.push_back({first, end});
+    }
 }
 
 void RecordStore::shrink(std::uint32_t count) {
     if (count < this->count()) {
         bytes_.resize(count * stride_);
-        std::erase_if(dirty_, [&](std::uint32_t index) { return index >= count; });
+        std::erase_if(dirty_, [&](const IndexRange& range) { return range.first >= count; });
+        for (IndexRange& range : dirty_) {
+            range.end = std::min(range.end, count);
+        }
     }
 }
 
 std::vector<IndexRange> RecordStore::dirty() const {
-    std::vector<std::uint32_t> sorted = dirty_;
-    std::ranges::sort(sorted);
+    std::vector<IndexRange> sorted = dirty_;
+    std::ranges::sort(sorted, {}, &IndexRange::first);
     std::vector<IndexRange> runs;
-    for (const std::uint32_t index : sorted) {
-        if (!runs.empty() && index <= runs.back().end) {
-            runs.back().end = std::max(runs.back().end, index + 1);
+    for (const IndexRange& range : sorted) {
+        if (!runs.empty() && range.first <= runs.back().end) {
+            runs.back().end = std::max(runs.back().end, range.end);
         } else {
-            runs.push_back({index, index + 1});
+            runs.push_back(range);
         }
     }
     return runs;

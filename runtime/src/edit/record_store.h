@@ -43,6 +43,13 @@ public:
         static_assert(std::is_trivially_copyable_v<T>);
         writeBytes(index, std::span(reinterpret_cast<const std::uint8_t*>(&record), sizeof record));
     }
+    // Makes the records these, and writes from the first that differs to the last.
+    template <typename T>
+    void replace(std::span<const T> records) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        replaceBytes(std::span(reinterpret_cast<const std::uint8_t*>(records.data()), records.size_bytes()));
+    }
+    void replaceBytes(std::span<const std::uint8_t> records);
     // Forgets the records from `count` on.
     void shrink(std::uint32_t count);
 
@@ -77,7 +84,7 @@ public:
 private:
     std::size_t stride_;
     std::vector<std::uint8_t> bytes_;
-    std::vector<std::uint32_t> dirty_;
+    std::vector<IndexRange> dirty_;  // may overlap
 };
 
 }  // namespace glint

@@ -28,7 +28,9 @@ SceneEditor::State::State(GpuScene::State& owner, const Package& package, const 
       passesLight(package.shadowThrough() == package::ShadowThrough::Glass),
       buildsTree(package.lightSamples() > 0),
       trustsTextures(package.trustTextures()),
+      emission(package.emission()),
       materials(layout.recordBytes),
+      emittersDirty(package.emission() != nullptr),
       retired(owner.pool) {}
 
 SceneEditor::SceneEditor(std::unique_ptr<State> state) : state_(std::move(state)) {}

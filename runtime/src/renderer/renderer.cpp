@@ -122,7 +122,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.lightsApart = state.scene.lightTree.apart;
     constants.emitters = state.scene.emitterRecords.address;
     constants.firstEmitters = state.scene.firstEmitters.address;
-    constants.emitterCount = static_cast<std::uint32_t>(state.scene.emitters.records.size());
+    constants.emitterCount = state.scene.emitterCount;
     constants.lastBounce = bouncesOf(state.size, options);
     constants.accumulates = (state.size.accumulates ? gpu::kPictureHasResidual : 0U) |
                             (state.size.halfPicture ? gpu::kPictureIsHalf : 0U);

@@ -41,8 +41,9 @@ Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const
 // Makes the hierarchy over lights and emissive triangles, in packages that have one, and the records of the
 // triangles, in packages that have those.
 Status uploadLightTree(GpuScene::State& state, const Package& package, const SceneView& scene,
-                       Uploader& uploader, std::span<const gpu::LightRecord> lights) {
+                       Uploader& uploader, std::span<const gpu::LightRecord> lights, std::size_t geometries) {
     const std::vector<EmitterBounds> bounds = state.emitters.boundsAt(scene.instances);
+    state.emitterCount = static_cast<std::uint32_t>(bounds.size());
     if (package.lightSamples() > 0) {
         state.lightTree = buildLightTree(lights, bounds, scene.moves);
         const std::span<const gpu::LightNode> nodes(state.lightTree.nodes);
@@ -60,8 +61,11 @@ Status uploadLightTree(GpuScene::State& state, const Package& package, const Sce
     if (Status s = uploadRecords(state, uploader, records, state.emitterRecords); !s) {
         return s;
     }
-    const std::span<const std::uint32_t> firsts(state.emitters.firsts);
-    return uploadRecords(state, uploader, firsts, state.firstEmitters);
+    const std::vector<std::uint32_t> firsts = state.emitters.firstsOf(geometries);
+    if (!scene.moves) {
+        state.emitters = {};
+    }
+    return uploadRecords(state, uploader, std::span<const std::uint32_t>(firsts), state.firstEmitters);
 }
 
 // Makes one image for each TextureEntry, in their order. There is at least one image, so that the array is
@@ -217,8 +221,11 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (Status s = uploadRecords(state, uploader, Lights(lights), state.lights); !s) {
         return s;
     }
-    state.emitters = Emitters(package, known, scene, layout, state.deformed.addresses, ordered, materials);
-    if (Status s = uploadLightTree(state, package, scene, uploader, lights); !s) {
+    if (package.emission() != nullptr) {
+        state.emitters =
+            emittersOf(package, known, scene, layout, state.deformed.addresses, ordered, materials);
+    }
+    if (Status s = uploadLightTree(state, package, scene, uploader, lights, layout.geometries.size()); !s) {
         return s;
     }
     if (Status s = uploadTextures(state, uploader, known.textures, scene.images); !s) {

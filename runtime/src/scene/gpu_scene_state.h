@@ -2,14 +2,14 @@
 #pragma once
 
 #include "context/resources.h"
+#include "lights/emitters.h"
+#include "lights/light_tree.h"
 #include "motion/scene_motion.h"
 #include "opacity/micromap_build.h"
 #include "renderer/draw_batches.h"
 #include "replacement/scene_package.h"
 #include "scene/acceleration.h"
-#include "scene/emitters.h"
 #include "scene/geometry.h"
-#include "scene/light_tree.h"
 #include "scene/scene_materials.h"
 #include "scene/scene_upload.h"
 #include "scene/traversal_order.h"
@@ -65,8 +65,10 @@ struct GpuScene::State {
     // In packages that choose lights by a hierarchy:
     LightTree lightTree;
     Buffer lightNodes;
-    // In packages with emissive lights:
+    // In packages with emissive lights. The triangles of a scene that neither moves nor is edited are on the
+    // device alone.
     Emitters emitters;
+    std::uint32_t emitterCount = 0;
     Buffer emitterRecords;
     Buffer firstEmitters;
     std::vector<DeviceImage> textures;

@@ -114,7 +114,7 @@ Result<std::vector<std::uint32_t>> runSceneKernel(SceneKernel::State& kernel, gp
     constants.lightCount = scene.lightCount;
     constants.emitters = scene.emitterRecords.address;
     constants.firstEmitters = scene.firstEmitters.address;
-    constants.emitterCount = static_cast<std::uint32_t>(scene.emitters.records.size());
+    constants.emitterCount = scene.emitterCount;
     constants.rays = buffers.input.address;
     constants.orderedHits = buffers.input.address;
     constants.counters = buffers.output.address;

@@ -82,5 +82,28 @@ TEST(EditStorage, RecordsAreDirtyUntilTheyAreCopied) {
     EXPECT_EQ(store.read<int>(0), 7);
 }
 
+TEST(EditStorage, ReplacedRecordsAreDirtyFromTheFirstThatDiffers) {
+    RecordStore store(sizeof(int));
+    const auto replace = [&](const std::vector<int>& records) {
+        store.clearDirty();
+        store.replace(std::span<const int>(records));
+        EXPECT_EQ(store.count(), records.size());
+        return store.dirty();
+    };
+    ASSERT_EQ(replace({1, 2, 3, 4}).size(), 1U);
+    EXPECT_TRUE(replace({1, 2, 3, 4}).empty());
+    const std::vector<IndexRange> middle = replace({1, 5, 6, 4});
+    ASSERT_EQ(middle.size(), 1U);
+    EXPECT_EQ(middle[0].first, 1U);
+    EXPECT_EQ(middle[0].end, 3U);
+    EXPECT_EQ(store.read<int>(2), 6);
+    const std::vector<IndexRange> longer = replace({1, 5, 6, 4, 9});
+    ASSERT_EQ(longer.size(), 1U);
+    EXPECT_EQ(longer[0].first, 4U);
+    EXPECT_EQ(longer[0].end, 5U);
+    EXPECT_TRUE(replace({1, 5}).empty());
+    EXPECT_TRUE(replace({}).empty());
+}
+
 }  // namespace
 }  // namespace glint

@@ -1,5 +1,5 @@
 // Tests the means of emissive textures, without a device.
-#include "scene/emission_texels.h"
+#include "lights/emission_texels.h"
 
 #include <gtest/gtest.h>
 
@@ -63,6 +63,22 @@ TEST(EmissionTexels, IsNeverBlackWhereATexelIsNot) {
             << size;
     }
     EXPECT_GT(texels.mean(), 0.0);
+}
+
+// Of a large image only coarser levels are kept, which lose no texel either.
+TEST(EmissionTexels, LargeImagesAreKeptCoarsely) {
+    constexpr std::uint32_t kWidth = 1030;
+    constexpr std::uint32_t kHeight = 515;
+    std::vector<std::uint8_t> pixels = whiteColumns(1024, 512, 512, 1023);
+    const EmissionTexels half = texelsOf(1024, 512, pixels);
+    EXPECT_NEAR(half.mean(), 0.5, 1e-6);
+    EXPECT_NEAR(half.mean({{0.6, 0.1}, {0.9, 0.3}}, kClamp, kClamp), 1.0, 1e-6);
+    EXPECT_EQ(half.mean({{0.1, 0.1}, {0.4, 0.3}}, kClamp, kClamp), 0.0);
+    pixels = whiteColumns(kWidth, kHeight, 1, 0);
+    pixels[4 * (std::size_t{514} * kWidth + 1029)] = 1;
+    const EmissionTexels one = texelsOf(kWidth, kHeight, pixels);
+    EXPECT_GT(one.mean({{0.9995, 0.9995}, {1.0, 1.0}}, kClamp, kClamp), 0.0);
+    EXPECT_GT(one.mean(), 0.0);
 }
 
 TEST(EmissionTexels, ColoursAreLinearised) {

@@ -287,8 +287,6 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-attribute", kError, "The runtime was given attributes of different lengths."},
     {"scene-edit-case", kError,
      "The runtime was given a material for which the package has neither a shader nor a fallback."},
-    {"scene-edit-emission", kError,
-     "The runtime was asked to edit a scene of a package with emissive lights."},
     {"scene-edit-feature", kError,
      "The runtime was given a material with a feature that no material of the package has."},
     {"scene-edit-frame", kError, "The runtime was given the frames of edits in another order."},

@@ -1,5 +1,6 @@
 #include "emit/package/tables.h"
 
+#include "emit/lights.h"
 #include "emit/sources.h"
 #include "scene/deformed.h"
 
@@ -142,7 +143,7 @@ std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, St
     return entries;
 }
 
-EmissionEntry emissionOf(const MaterialLayout& layout) {
+EmissionEntry emissionOf(const MaterialLayout& layout, const EmitterFeatures& features) {
     const materials::MaterialModel& model = *layout.model;
     const auto offsetOf = [&](std::string_view name) {
         const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
@@ -157,7 +158,10 @@ EmissionEntry emissionOf(const MaterialLayout& layout) {
             slot < 0 ? EmissionEntry::kNone : static_cast<std::uint32_t>(slot),
             inputOf("emissiveTexture"),
             inputOf("texCoord0"),
-            inputOf("texCoord1")};
+            inputOf("texCoord1"),
+            features.read,
+            features.always,
+            features.sometimes};
 }
 
 // Returns nothing if records lack what an alpha test reads: no material is tested.
@@ -319,7 +323,8 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Effects, effects);
     writer.add(SectionKind::Features, features);
     if (settings.emissiveLights == EmissiveLights::On) {
-        writer.add(SectionKind::Emission, std::vector{emissionOf(layout)});
+        const EmitterFeatures emitted = emitterFeatures(scenes, plan, settings.plan.fallback);
+        writer.add(SectionKind::Emission, std::vector{emissionOf(layout, emitted)});
     }
     if (!plan.layers.empty()) {
         writer.add(SectionKind::Layers, plan.layers);

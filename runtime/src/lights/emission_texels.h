@@ -16,7 +16,8 @@ struct TexelBox {
     std::array<double, 2> upper{};
 };
 
-// Luminances of an image, and of its halves.
+// Luminances of an image and of its halves, from 256 texels along the longer axis on. Takes at most 0.35 MB,
+// and time in proportion to the image's texels.
 class EmissionTexels {
 public:
     // `isColor`: the values are in sRGB.
@@ -38,6 +39,9 @@ private:
     };
     static Level halfOf(const Level& level);
 
+    std::uint32_t width_ = 0;  // of the image
+    std::uint32_t height_ = 0;
+    std::uint32_t skipped_ = 0;  // levels of the image before the first of `levels_`
     std::vector<Level> levels_;
 };
 

@@ -1,4 +1,4 @@
-#include "scene/emission_texels.h"
+#include "lights/emission_texels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +10,8 @@ namespace {
 
 // A triangle's texels are looked up on a level where its box has no more than so many in each axis.
 constexpr std::uint32_t kMostCells = 16;
+// Levels that are larger than this along an axis are not kept.
+constexpr std::uint32_t kMostKept = 256;
 // SamplerEntry::wrapU.
 constexpr std::uint32_t kWrapRepeat = 0;
 constexpr std::uint32_t kWrapClamp = 1;
@@ -76,7 +78,8 @@ EmissionTexels::Level EmissionTexels::halfOf(const Level& level) {
     return half;
 }
 
-EmissionTexels::EmissionTexels(const ImageView& image, bool isColor) {
+EmissionTexels::EmissionTexels(const ImageView& image, bool isColor)
+    : width_(image.width), height_(image.height) {
     const bool isWide = image.format == ImageView::Format::Rgba16;
     const std::span<const std::uint8_t> pixels = isBlockFormat(image.format) ? image.decoded : image.pixels;
     const std::vector<float> values = channelValues(isWide, isColor);
@@ -88,11 +91,26 @@ EmissionTexels::EmissionTexels(const ImageView& image, bool isColor) {
         std::memcpy(&number, &pixels[2 * index], sizeof number);
         return values[number];
     };
-    const std::size_t texels = std::size_t{image.width} * image.height;
-    Level level{image.width, image.height, std::vector<float>(texels)};
-    for (std::size_t i = 0; i < texels; ++i) {
-        level.values[i] =
-            0.2126F * channelAt(4 * i) + 0.7152F * channelAt(4 * i + 1) + 0.0722F * channelAt(4 * i + 2);
+    while (((std::max(width_, height_) - 1) >> skipped_) >= kMostKept) {
+        ++skipped_;
+    }
+    const std::uint32_t side = 1U << skipped_;
+    Level level{((width_ - 1) >> skipped_) + 1, ((height_ - 1) >> skipped_) + 1, {}};
+    level.values.reserve(std::size_t{level.width} * level.height);
+    for (std::uint32_t top = 0; top < height_; top += side) {
+        const std::uint32_t rows = std::min(side, height_ - top);
+        std::vector<double> sums(level.width);
+        for (std::uint32_t y = top; y < top + rows; ++y) {
+            for (std::uint32_t x = 0; x < width_; ++x) {
+                const std::size_t texel = 4 * (std::size_t{y} * width_ + x);
+                sums[x >> skipped_] += 0.2126F * channelAt(texel) + 0.7152F * channelAt(texel + 1) +
+                                       0.0722F * channelAt(texel + 2);
+            }
+        }
+        for (std::uint32_t x = 0; x < level.width; ++x) {
+            const std::uint32_t columns = std::min(side, width_ - (x << skipped_));
+            level.values.push_back(static_cast<float>(sums[x] / (static_cast<double>(rows) * columns)));
+        }
     }
     while (level.values.size() > 1) {
         Level half = halfOf(level);
@@ -103,14 +121,14 @@ EmissionTexels::EmissionTexels(const ImageView& image, bool isColor) {
 }
 
 double EmissionTexels::mean(const TexelBox& box, std::uint32_t wrapU, std::uint32_t wrapV) const {
-    const TexelRange u = rangeOf(box.lower[0], box.upper[0], levels_.front().width, wrapU);
-    const TexelRange v = rangeOf(box.lower[1], box.upper[1], levels_.front().height, wrapV);
-    std::uint32_t number = 0;
+    const TexelRange u = rangeOf(box.lower[0], box.upper[0], width_, wrapU);
+    const TexelRange v = rangeOf(box.lower[1], box.upper[1], height_, wrapV);
+    std::uint32_t number = skipped_;
     while ((u.last >> number) - (u.first >> number) >= kMostCells ||
            (v.last >> number) - (v.first >> number) >= kMostCells) {
         ++number;
     }
-    const Level& level = levels_[number];
+    const Level& level = levels_[number - skipped_];
     double sum = 0.0;
     int count = 0;
     for (std::uint32_t y = v.first >> number; y <= v.last >> number; ++y) {

@@ -1,4 +1,4 @@
-#include "scene/light_tree.h"
+#include "lights/light_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -37,24 +37,31 @@ struct Cone {
     double angle = kLightPi;
 };
 
-// What is known of a set of lights.
-struct LightBounds {
+// What the cost of a set of lights depends on.
+struct LightExtent {
     Double3 lower{};
     Double3 upper{};
-    Double3 mean{};          // of the positions, weighted by intensity
-    Double3 variance{};      // of the positions, by axis
     Cone axes;               // holds the axes of all
     double emission = 0.0;   // the most angle between a light's axis and a direction in which it shines
     double intensity = 0.0;  // sum, candela
-    double reach = 0.0;      // metres; infinite if a light has no range
-    bool twoSided = false;   // a light shines along its axis and against it
     bool isEmpty = true;
+};
+
+// What is known of a set of lights.
+struct LightBounds : LightExtent {
+    Double3 mean{};         // of the positions, weighted by intensity
+    Double3 variance{};     // of the positions, by axis
+    double reach = 0.0;     // metres; infinite if a light has no range
+    bool twoSided = false;  // a light shines along its axis and against it
 };
 
 // Returns a cone that holds both: pbrt-v4, "Direction Cone" (DirectionCone::Union).
 Cone unite(const Cone& a, const Cone& b) {
     if (a.angle < b.angle) {
         return unite(b, a);
+    }
+    if (a.angle >= kLightPi) {
+        return a;
     }
     const double between = std::acos(std::clamp(dotOf(a.axis, b.axis), -1.0, 1.0));
     if (std::min(between + b.angle, kLightPi) <= a.angle) {
@@ -77,27 +84,37 @@ Cone unite(const Cone& a, const Cone& b) {
     return cone;
 }
 
+void extend(LightExtent& all, const LightExtent& other) {
+    if (all.isEmpty || other.isEmpty) {
+        all = all.isEmpty ? other : all;
+        return;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        all.lower[i] = std::min(all.lower[i], other.lower[i]);
+        all.upper[i] = std::max(all.upper[i], other.upper[i]);
+    }
+    all.axes = unite(all.axes, other.axes);
+    all.emission = std::max(all.emission, other.emission);
+    all.intensity += other.intensity;
+}
+
 LightBounds unite(const LightBounds& a, const LightBounds& b) {
     if (a.isEmpty || b.isEmpty) {
         return a.isEmpty ? b : a;
     }
     LightBounds both;
+    static_cast<LightExtent&>(both) = a;
+    extend(both, b);
     const double whole = a.intensity + b.intensity;
     const double share = whole > 0.0 ? b.intensity / whole : 0.5;
     for (std::size_t i = 0; i < 3; ++i) {
-        both.lower[i] = std::min(a.lower[i], b.lower[i]);
-        both.upper[i] = std::max(a.upper[i], b.upper[i]);
         const double apart = b.mean[i] - a.mean[i];
         both.mean[i] = a.mean[i] + share * apart;
         both.variance[i] =
             (1.0 - share) * a.variance[i] + share * b.variance[i] + share * (1.0 - share) * apart * apart;
     }
-    both.axes = unite(a.axes, b.axes);
-    both.emission = std::max(a.emission, b.emission);
-    both.intensity = a.intensity + b.intensity;
     both.reach = std::max(a.reach, b.reach);
     both.twoSided = a.twoSided || b.twoSided;
-    both.isEmpty = false;
     return both;
 }
 
@@ -195,7 +212,7 @@ struct LightMember {
 // The cost of a set of lights: intensity, times the measure of the directions in which they shine, times the
 // area of their box. The measure is pbrt-v4's closed form of Conty Estevez and Kulla's integral. `stretch`
 // prefers splits across the longest axis.
-double costOf(const LightBounds& bounds, double stretch) {
+double costOf(const LightExtent& bounds, double stretch) {
     if (bounds.isEmpty) {
         return 0.0;
     }
@@ -249,14 +266,14 @@ public:
     }
 
 private:
-    static std::size_t binOf(const LightBounds& bounds, const LightBounds& centres, std::size_t axis) {
+    static std::size_t binOf(const LightExtent& bounds, const LightExtent& centres, std::size_t axis) {
         const double size = centres.upper[axis] - centres.lower[axis];
         const double middle = 0.5 * (bounds.lower[axis] + bounds.upper[axis]);
         const double place = (middle - centres.lower[axis]) / size * static_cast<double>(kLightBins);
         return std::min(static_cast<std::size_t>(std::max(place, 0.0)), kLightBins - 1);
     }
 
-    LightSplit bestSplit(std::size_t begin, std::size_t end, const LightBounds& all) const {
+    LightSplit bestSplit(std::size_t begin, std::size_t end, const LightExtent& all) const {
         const Double3 size{all.upper[0] - all.lower[0], all.upper[1] - all.lower[1],
                            all.upper[2] - all.lower[2]};
         const double longest = *std::ranges::max_element(size);
@@ -265,21 +282,25 @@ private:
             if (!(size[axis] > 0.0)) {
                 continue;
             }
-            std::array<LightBounds, kLightBins> bins{};
+            std::array<LightExtent, kLightBins> bins{};
             for (std::size_t i = begin; i < end; ++i) {
-                LightBounds& bin = bins[binOf(members_[i].bounds, all, axis)];
-                bin = unite(bin, members_[i].bounds);
+                extend(bins[binOf(members_[i].bounds, all, axis)], members_[i].bounds);
             }
-            std::array<LightBounds, kLightBins> above{};
+            std::array<LightExtent, kLightBins> above{};
             for (std::size_t i = kLightBins - 1; i > 0; --i) {
-                above[i - 1] = unite(above[i], bins[i]);
+                above[i - 1] = above[i];
+                extend(above[i - 1], bins[i]);
             }
-            LightBounds below;
+            LightExtent below;
             for (std::size_t i = 0; i + 1 < kLightBins; ++i) {
-                below = unite(below, bins[i]);
+                // An empty bin parts the lights as the one before it does.
+                if (bins[i].isEmpty || above[i].isEmpty) {
+                    continue;
+                }
+                extend(below, bins[i]);
                 const double stretch = longest / size[axis];
                 const double cost = costOf(below, stretch) + costOf(above[i], stretch);
-                if (!below.isEmpty && !above[i].isEmpty && cost < best.cost) {
+                if (cost < best.cost) {
                     best = {axis, i, cost};
                 }
             }
@@ -289,9 +310,15 @@ private:
 
     // Returns where the second half begins. Lights at one place are halved by number.
     std::size_t split(std::size_t begin, std::size_t end) {
-        LightBounds all;
-        for (std::size_t i = begin; i < end; ++i) {
-            all = unite(all, members_[i].bounds);
+        // Only the box matters.
+        LightExtent all;
+        all.lower = members_[begin].bounds.lower;
+        all.upper = members_[begin].bounds.upper;
+        for (std::size_t i = begin + 1; i < end; ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                all.lower[axis] = std::min(all.lower[axis], members_[i].bounds.lower[axis]);
+                all.upper[axis] = std::max(all.upper[axis], members_[i].bounds.upper[axis]);
+            }
         }
         const LightSplit best = bestSplit(begin, end, all);
         if (!std::isfinite(best.cost)) {

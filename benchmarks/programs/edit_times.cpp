@@ -1,0 +1,205 @@
+// glint_edit_times: measures how long the host takes to record edits of a scene whose emissive triangles are
+// lights.
+#include "base/clock.h"
+#include "context/commands.h"
+#include "emit/compile.h"
+#include "gltf/scene.h"
+
+#include <glint/context.h>
+#include <glint/renderer.h>
+#include <glint/scene_edit.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+namespace {
+
+struct Arguments {
+    std::uint32_t lamps = 100;
+    std::uint32_t triangles = 100;
+    int rounds = 20;
+};
+
+constexpr std::size_t kObjects = 100;  // that are no lamps
+
+// A strip of triangles around a cylinder.
+gltf::Primitive cylinder(std::uint32_t triangles) {
+    gltf::Primitive primitive;
+    const std::uint32_t steps = std::max(triangles / 2, 1U);
+    for (std::uint32_t i = 0; i <= steps; ++i) {
+        const float angle = 6.2831853F * static_cast<float>(i) / static_cast<float>(steps);
+        const float c = std::cos(angle);
+        const float s = std::sin(angle);
+        primitive.positions.push_back({0.1F * c, 0.0F, 0.1F * s});
+        primitive.positions.push_back({0.1F * c, 0.5F, 0.1F * s});
+        primitive.normals.insert(primitive.normals.end(), 2, {c, 0.0F, s});
+    }
+    for (std::uint32_t i = 0; i < 2 * steps; ++i) {
+        const std::uint32_t turn = i % 2;
+        primitive.indices.insert(primitive.indices.end(), {i, i + 1 + turn, i + 2 - turn});
+    }
+    return primitive;
+}
+
+// Meshes 0 and 1 are a lamp and an object; the instances of the lamp come first.
+gltf::Scene makeScene(const Arguments& arguments) {
+    gltf::Scene scene;
+    scene.path = "edit_times.gltf";
+    scene.materials.resize(2);
+    scene.materials[0]["emissiveFactor"] = {3.0F, 2.0F, 1.0F};
+    for (int i = 0; i < 2; ++i) {
+        gltf::Mesh mesh;
+        mesh.primitives.push_back(cylinder(arguments.triangles));
+        mesh.primitives.back().material = i;
+        scene.meshes.push_back(std::move(mesh));
+    }
+    for (std::size_t i = 0; i < arguments.lamps + kObjects; ++i) {
+        gltf::Node node;
+        node.mesh = i < arguments.lamps ? 0 : 1;
+        for (const std::size_t one : {0, 5, 10, 15}) {
+            node.world[one] = 1.0;
+        }
+        node.world[12] = static_cast<double>(i % 16);
+        node.world[14] = static_cast<double>(i / 16);
+        scene.nodes.push_back(std::move(node));
+    }
+    return scene;
+}
+
+std::array<float, 12> placeOf(int round) {
+    const float x = static_cast<float>(std::fmod(0.37 * round, 9.0));
+    return {1, 0, 0, x, 0, 1, 0, 2.0F, 0, 0, 1, 0.5F * x};
+}
+
+// Prints the milliseconds of SceneEditor::record() after an edit: the median, the least and the most.
+Status measureEdit(Context& context, SceneEditor& editor, const std::string& name, int rounds,
+                   std::uint64_t& frame, const std::function<Status(int)>& edit) {
+    Result<CommandRunner> runner = CommandRunner::create(context.state());
+    if (!runner) {
+        return runner.error();
+    }
+    std::vector<double> times;
+    for (int round = -1; round < rounds; ++round) {
+        if (Status edited = edit(round); !edited) {
+            return edited;
+        }
+        const Result<VkCommandBuffer> commands = runner->begin();
+        if (!commands) {
+            return commands.error();
+        }
+        const auto begin = base::Clock::now();
+        if (Status recorded = editor.record(*commands, ++frame); !recorded) {
+            return recorded;
+        }
+        const double ms = base::millisecondsSince(begin);
+        if (round >= 0) {
+            times.push_back(ms);
+        }
+        if (Status waited = runner->submitAndWait(); !waited) {
+            return waited;
+        }
+        editor.complete(frame);
+    }
+    std::ranges::sort(times);
+    fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} |\n", name, times[times.size() / 2], times.front(),
+               times.back());
+    return okStatus();
+}
+
+Status measureEdits(const Arguments& arguments) {
+    Result<std::unique_ptr<Context>> context = Context::createHeadless({});
+    if (!context) {
+        return context.error();
+    }
+    const gltf::Scene scene = makeScene(arguments);
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = (*context)->handles().tracers;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    settings.lightSamples = 4;
+    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, settings);
+    if (!compiled) {
+        return compiled.error();
+    }
+    const Result<Package> package = scene_view::loadPackage(*compiled);
+    if (!package) {
+        return package.error();
+    }
+    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    SceneView view = data.view();
+    view.editable = true;
+    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(**context, *package, view);
+    if (!uploaded) {
+        return uploaded.error();
+    }
+    SceneEditor& editor = *(*uploaded)->editor();
+    fmt::print("{}: {} lamps of {} triangles, {} other objects; ms of record()\n\n", (*context)->deviceName(),
+               arguments.lamps, arguments.triangles, kObjects);
+    fmt::print("| edit | median | least to most |\n|---|--:|--:|\n");
+    std::uint64_t frame = 0;
+    const auto measured = [&](const std::string& name, const std::function<Status(int)>& edit) {
+        return measureEdit(**context, editor, name, arguments.rounds, frame, edit);
+    };
+    const std::uint32_t other = arguments.lamps;
+    const auto move = [&](std::uint32_t instance) {
+        return [&editor, instance](int round) {
+            return editor.moveInstance(editor.instance(instance), placeOf(round));
+        };
+    };
+    for (const auto& [name, edit] : std::initializer_list<std::pair<const char*, std::function<Status(int)>>>{
+             {"none", [](int) { return okStatus(); }},
+             {"a lamp moved", move(0)},
+             {"another object moved", move(other)},
+             {"a lamp shown or hidden",
+              [&](int round) { return editor.showInstance(editor.instance(0), round % 2 == 0); }}}) {
+        if (Status status = measured(name, edit); !status) {
+            return status;
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+}  // namespace glint
+
+int main(int count, char** words) {
+    glint::Arguments arguments;
+    CLI::App app{"Measures how long the host takes to record edits of a scene with emissive lights."};
+    app.add_option("--lamps", arguments.lamps, "instances that shine")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str();
+    app.add_option("--triangles", arguments.triangles, "triangles of each")
+        ->check(CLI::Range(2, 1'000'000))
+        ->capture_default_str();
+    app.add_option("--rounds", arguments.rounds, "edits of each kind")
+        ->check(CLI::Range(1, 10'000))
+        ->capture_default_str();
+    CLI11_PARSE(app, count, words);
+    try {
+        if (const glint::Status status = glint::measureEdits(arguments); !status) {
+            fmt::print(stderr, "{}\n", glint::toString(status.error()));
+            return 1;
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "glint_edit_times: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,72 @@
+// Triangles that emit light, as lights: which they are, where, and how bright.
+#pragma once
+
+#include "lights/emitter_shape.h"
+#include "lights/light_tree.h"
+#include "motion/motion_bounds.h"
+#include "scene/geometry.h"
+#include "scene/scene_materials.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// Triangles of one geometry record.
+struct EmitterPart {
+    std::uint32_t geometry = 0;   // GeometryRecord index
+    std::uint32_t instance = 0;   // index into the instances of Emitters::boundsAt()
+    std::uint32_t primitive = 0;  // of the mesh
+    std::uint32_t material = 0;
+    std::uint32_t first = 0;  // triangle of the shape
+    std::uint32_t count = 0;
+    bool twoSided = false;
+    double luminance = 0.0;  // of the material, without its texture; cd/m²
+    std::shared_ptr<const EmitterShape> shape;
+    TexelMeans texels;                           // of the shape's triangles
+    std::shared_ptr<const MotionBounds> motion;  // null unless the instance's mesh changes its shape
+};
+
+// Returns the luminance of what a material's record says, in linear Rec. 709, as in bsdf/constants.glsl.
+double emittedLuminance(std::span<const std::uint8_t> record, const package::EmissionEntry& emission);
+
+class Emitters {
+public:
+    Emitters() = default;
+    // The triangles come in the order of instances, of the primitives of a mesh, and of their triangles,
+    // whatever the order of the parts. So the same content makes the same hierarchy of lights, wherever its
+    // geometry records are.
+    Emitters(const package::EmissionEntry& emission, std::vector<EmitterPart> parts);
+
+    // The triangles of a geometry follow each other.
+    std::vector<gpu::EmitterRecord> records;
+
+    // Returns the first record of each geometry, or gpu::kNoEmitter.
+    std::vector<std::uint32_t> firstsOf(std::size_t geometries) const;
+    // Returns the bounds of each at a pose. Triangles of instances that change their shape have the
+    // instance's box. Hidden ones are dark.
+    std::vector<EmitterBounds> boundsAt(std::span<const InstanceView> instances) const;
+    // Takes the values of materials that have changed. They are sorted by their numbers.
+    void takeMaterials(std::span<const ChangingMaterial> changing);
+    // Stores where the tree has each triangle; without a tree, only whether it shines.
+    void setLeaves(const LightTree& tree);
+    void setLeaves(std::span<const EmitterBounds> bounds);
+
+private:
+    package::EmissionEntry emission_{};
+    std::vector<EmitterPart> parts_;  // in the order of `records`
+};
+
+// Returns the emissive triangles of a scene that is not edited, in a package with emissive lights. `ordered`
+// are the indices of uploadPrimitives(), and `materials` the records on the device.
+Emitters emittersOf(const Package& package, const PackageScene& known, const SceneView& scene,
+                    const SceneLayout& layout, const DeformedAddresses& deformed,
+                    std::span<const std::vector<std::uint32_t>> ordered,
+                    std::span<const std::uint8_t> materials);
+
+}  // namespace glint
