@@ -151,8 +151,8 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
 // samples of lights bring light to the surfaces of a walk.
 vec3 lightsOnWay(Walker walker, float end) {
     vec3 sum = vec3(0.0);
-    uint lights = lightsToFind();
-    for (uint i = 0u; i < lights; ++i) {
+    LightSearch lights = lightsOnRay(walker.origin, walker.direction, end, true);
+    GLINT_EACH_LIGHT(i, lights) {
         HostLight light = lightToFind(i);
         LightSample point = lightAlong(light, hostSampleLight(light, walker.origin), walker.direction);
         if (lobesFind(light) && point.irradiance != vec3(0.0) && point.distance < end) {
