@@ -168,6 +168,11 @@ vec3 lightsOnWay(Walker walker, float end) {
 }
 #endif
 
+#if GLINT_LAYER_WALKS
+// The sum of this light over a walk. It is in the picture, and the layers of its effect have it, too.
+vec3 foundOnWalk = vec3(0.0);
+#endif
+
 // Returns the number of rays traced.
 uint walk(uvec2 pixel, uint target) {
     uvec2 surfaceId = imageLoad(surfaceImage, ivec2(pixel)).xy;
@@ -237,6 +242,9 @@ uint walk(uvec2 pixel, uint target) {
         if (met != vec3(0.0)) {
             vec4 seen = imageLoad(radianceImage, ivec2(pixel));
             imageStore(radianceImage, ivec2(pixel), storable(vec4(seen.rgb + met, seen.a)));
+#if GLINT_LAYER_WALKS
+            foundOnWalk += met;
+#endif
         }
 #endif
         if (record.geometry == kMissGeometry) {

@@ -134,8 +134,8 @@ TEST(InteropLayout, IsThatOfCpp) {
     const compiler::StructLayout frame = find("FrameConstants");
     EXPECT_EQ(frame.bytes, sizeof(gpu::FrameConstants));
     EXPECT_EQ(frame.members.front().name, "worldToClip");
-    EXPECT_EQ(frame.members.back().name, "bounceLight");
-    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, bounceLight));
+    EXPECT_EQ(frame.members.back().name, "walkedLight");
+    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, walkedLight));
     EXPECT_EQ(find("InstanceRecord").members.back().offset, offsetof(gpu::InstanceRecord, flags));
     EXPECT_EQ(find("GeometryRecord").bytes, sizeof(gpu::GeometryRecord));
     EXPECT_EQ(find("PushConstants").bytes, sizeof(gpu::PushConstants));
