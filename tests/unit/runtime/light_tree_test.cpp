@@ -134,6 +134,7 @@ TEST(LightTree, NodesBoundWhatIsBelow) {
 // Shaders have room for so many nodes that wait.
 TEST(LightTree, IsNoDeeperThanShadersCanWalk) {
     std::vector<gpu::LightRecord> lights;
+    lights.reserve(300);
     for (int i = 0; i < 300; ++i) {
         lights.push_back(point(std::pow(1.5F, static_cast<float>(i - 150)), 0, 0, 1.0F));
     }
