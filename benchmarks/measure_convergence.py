@@ -31,12 +31,12 @@ STRATEGIES = ("uber", "visibility", "sorted-uber", "hit-shaders")
 # What `glint render` is told of the light, by kind.
 KINDS = {
     "points": ["--sky", "0"],
-    "sizes": ["--sky", "0", "--light-radius", "0.25", "--sun-angle", "11", "--sized-lights", "off"],
+    "sizes": ["--sky", "0", "--light-radius", "0.25", "--sun-angle", "11"],
     "map": ["--environment", "map.hdr"],
     "sky": ["--sky", "1"],
     "emissive": ["--sky", "0"],
     "textured": ["--sky", "0"],
-    "mixed": ["--sky", "1", "--light-radius", "0.25", "--sun-angle", "11", "--sized-lights", "off"],
+    "mixed": ["--sky", "1", "--light-radius", "0.25", "--sun-angle", "11"],
 }
 
 
@@ -112,7 +112,7 @@ class Yard:
         map_option = ["--environment-map"] if kind == "map" else []
         self.run("compile", self.scene, "-o", self.package, "--strategy", "all", "--merge", "all", "--effects",
                  "shadow,reflection,indirect-diffuse", "--max-roughness", "1", "--bounces", options.bounces,
-                 "--emissive-lights", "on", "--lights", lights, *map_option)
+                 "--emissive-lights", "on", "--sized-lights", "off", "--lights", lights, *map_option)
 
     def run(self, *words):
         words = [str(word) for word in (self.options.glint, *words)]

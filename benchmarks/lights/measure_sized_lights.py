@@ -3,15 +3,18 @@
 
     benchmarks/lights/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
                                               [--sized-lights off,on] [--truth N] [--size WxH]
+                                              [--lamps N] [--lights all|K]
 
-A metal floor is lit by a spherical lamp of radius 0.25 m alone. The truth is that of glint_oracle, which also lets the
-rays of lobes find the lamp. Prints Markdown: the RMSE of glint render with light samples alone and with rays of lobes
+A metal floor is lit by a spherical lamp of radius 0.25 m alone, or by --lamps N of them above it. Their radius is then
+0.25 m over the cube root of N, and together they are as bright. The truth is that of glint_oracle, which also lets the
+rays of lobes find the lamps. Prints Markdown: the RMSE of glint render with light samples alone and with rays of lobes
 (--sized-lights), and what the RMSE of the oracle would be with the same number of samples. DIR holds both programs
 (build/release/bin).
 """
 import argparse
 import json
 import pathlib
+import random
 import subprocess
 import sys
 import tempfile
@@ -21,15 +24,25 @@ sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "examples")]
 from measure_shadows import camera, point_lights, quad  # noqa: E402
 from scene_parts import Buffer, write_scene  # noqa: E402
 
-RADIUS = "0.25"
+RADIUS = 0.25
+CANDELA = 4
 
 
-def write_floor(path, roughness):
+def lamps_of(count):
+    """Places and intensities of lamps: one above the middle, or many above all of the floor that the camera sees."""
+    if count == 1:
+        return [([0, 0.9, -1.2], CANDELA)]
+    generator = random.Random(1)
+    return [([4 * generator.random() - 2, 0.4 + 1.2 * generator.random(), 3.5 * generator.random() - 3],
+             CANDELA / count) for _ in range(count)]
+
+
+def write_floor(path, roughness, count):
     buffer = Buffer()
     material = {"pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.9, 0.9, 1], "metallicFactor": 1,
                                          "roughnessFactor": roughness}}
     view, cameras = camera(0.5, [0, 1.2, 2.2], 0.5)
-    lamps, lights = point_lights([([0, 0.9, -1.2], 4)])
+    lamps, lights = point_lights(lamps_of(count))
     meshes = [quad(buffer, 0, [-4, 0, 4], [8, 0, 0], [0, 0, -8])]
     write_scene(path, ["KHR_lights_punctual"], [{"mesh": 0}, view] + lamps, buffer, meshes=meshes,
                 materials=[material], cameras=cameras, extensions=lights)
@@ -44,7 +57,10 @@ def main():
     parser.add_argument("--sized-lights", default="off,on")
     parser.add_argument("--truth", type=int, default=2048, help="samples of the truth")
     parser.add_argument("--size", default="32x18")
+    parser.add_argument("--lamps", type=int, default=1)
+    parser.add_argument("--lights", default="all", help="how many of the lamps a surface takes")
     arguments = parser.parse_args()
+    radius = f"{RADIUS / arguments.lamps ** (1 / 3):.4g}"
     columns = [(sized, n) for sized in arguments.sized_lights.split(",") for n in arguments.shadow_spp.split(",")]
     print("| roughness | mean |" + "".join(f" `{sized}`, {n} |" for sized, n in columns) + " oracle |")
     print("|--:|--:|" + "--:|" * (len(columns) + 1))
@@ -52,15 +68,15 @@ def main():
         folder = pathlib.Path(folder)
         for roughness in arguments.roughness.split(","):
             scene = folder / "floor.gltf"
-            write_floor(scene, float(roughness))
+            write_floor(scene, float(roughness), arguments.lamps)
             row = []
             for sized, n in columns:
                 picture = folder / "floor.exr"
-                options = ["--size", arguments.size, "--light-radius", RADIUS]
+                options = ["--size", arguments.size, "--light-radius", radius]
                 subprocess.run([arguments.bin / "glint", "render", scene, *options, "--sky", "0", "--spp",
                                 str(arguments.spp), "--shadow-spp", n, "--strategy", "uber", "--merge", "all",
                                 "--effects", "shadow,reflection", "--max-roughness", "1", "--sized-lights", sized,
-                                "--quiet", "-o", picture], check=True)
+                                "--lights", arguments.lights, "--quiet", "-o", picture], check=True)
                 subprocess.run([arguments.bin / "glint_oracle", scene, *options, "--bounces", "0", "--no-sky",
                                 "--samples", str(arguments.truth), "--against", picture, "--device-spp",
                                 str(arguments.spp), "--json", folder / "floor.json"], check=True,

@@ -152,20 +152,25 @@ float partOfSample(Hit hit, Surface surface, Features features, DrawnLight light
 
 #if GLINT_SIZED_LIGHTS && GLINT_PATHS
 
-// How many lights to look for in the direction of the path. A direction that the triangle's plane turns is none of the
-// lobe's.
-uint lightsInDirection(Hit hit, Surface surface, Features features, BsdfSample drawn) {
+// The lights to look for in the direction of the path. A direction that the triangle's plane turns is none of the lobe's.
+LightSearch lightsInDirection(Hit hit, Surface surface, Features features, BsdfSample drawn) {
     bool passes = drawn.direction.z < 0.0 && transmits(features);
     float height = dot(toWorld(surface, drawn.direction), hit.geometricNormal) * (passes ? -1.0 : 1.0);
     bool looks = drawn.pdf > 0.0 && height > 0.0 && !isSampledAlone(hit, features, passes);
-    return looks ? lightsToFind() : 0u;
+    return lightsOnRay(hit.position, toWorld(surface, drawn.direction), 2.0 * kFarDistance, looks);
 }
 
 // The point of a light that the direction meets, with the light that it brings to the viewer; black if it meets none.
-LightSample foundOnPath(Hit hit, Surface surface, BsdfSample drawn, uint number) {
+LightSample foundOnPath(Hit hit, Surface surface, Features features, BsdfSample drawn, uint number) {
     HostLight light = lightToFind(number);
     LightSample centre = hostSampleLight(light, hit.position);
     LightSample point = lightAlong(light, centre, toWorld(surface, drawn.direction));
+#if GLINT_LIGHT_SAMPLES > 0
+    if (point.irradiance == vec3(0.0)) {
+        return point;
+    }
+    light.chance = leafChance(receiverOf(hit, features), number);
+#endif
     float part = lobesFind(light) ? drawn.pdf / (drawn.pdf + lightPointDensity(light, centre)) : 0.0;
     point.irradiance *= drawn.weight * part;
     return point;
@@ -229,9 +234,9 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
         }
     }
 #if GLINT_SIZED_LIGHTS && GLINT_PATHS
-    uint toFind = lightsInDirection(hit, surface, features, drawn);
-    for (uint i = 0u; i < toFind; ++i) {
-        LightSample point = foundOnPath(hit, surface, drawn, i);
+    LightSearch toFind = lightsInDirection(hit, surface, features, drawn);
+    GLINT_EACH_LIGHT(i, toFind) {
+        LightSample point = foundOnPath(hit, surface, features, drawn, i);
         float weight = luminance(point.irradiance);
         if (!(weight > 0.0)) {
             continue;

@@ -13,8 +13,8 @@
 struct SceneLight {
     LightRecord punctual;
     uint emitter;  // or an emissive triangle (light/emitter.glsl), or kSkyEmitter
-    float chance;  // of a triangle: how often one of the surface's samples is expected to fall on it; with
-                   // --sized-lights, of a punctual light: 1 if every surface takes it, otherwise 0
+    float chance;  // of a triangle, and with --sized-lights of a punctual light, too: how often one of the surface's
+                   // samples is expected to fall on it
 };
 #define HostLight SceneLight
 #define GLINT_PUNCTUAL(light) (light).punctual
@@ -96,6 +96,16 @@ float emitterChance(LightReceiver receiver, uint emitter) {
 
 #endif
 
+#if GLINT_LIGHT_SAMPLES > 0 && GLINT_SIZED_LIGHTS
+
+// SceneLight::chance of the punctual light of a leaf.
+float leafChance(LightReceiver receiver, uint leaf) {
+    bool isApart = leaf >= GLINT_FRAME.lightTreeNodes;
+    return isApart ? 1.0 : float(GLINT_LIGHT_SAMPLES) * lightProbability(receiver, leaf);
+}
+
+#endif
+
 #if GLINT_LIGHT_SAMPLES > 0
 
 // One of the lights that every surface takes.
@@ -128,7 +138,7 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
     HostLight light = lightOfScene(chosen);
     GLINT_PUNCTUAL(light).intensity *= probability > 0.0 ? 1.0 / chance : 0.0;
 #if GLINT_SIZED_LIGHTS
-    light.chance = 0.0;
+    light.chance = chance;
 #endif
     return light;
 }

@@ -269,6 +269,7 @@ GLINT_CONSTANT(kMostHalf, 65504u);
 #ifdef __cplusplus
 #define GLINT_SKY_LIGHT_MEMBERS 1
 #define GLINT_LAYER_MEMBERS 1
+#define GLINT_LAYER_WALKS 1
 #endif
 
 // The constants of one frame of one sample.
@@ -384,6 +385,11 @@ struct FrameConstants {
     uint hasPreviousVertices;  // 1: some vertices follow joints or morph weights
     GLINT_ADDRESS(RayHit) rayHits;  // of every sample, in the order of the samples
     GLINT_ADDRESS(BounceLight) bounceLight;  // of every sample and bounce that has layers
+#if GLINT_LAYER_WALKS
+    // In packages that also find lights with a size:
+    GLINT_ADDRESS(BounceLight) walkedLight;  // of every sample, in the order of the samples: what its walk has found,
+                                             // as the viewer sees it
+#endif
 #endif
 };
 

@@ -54,6 +54,9 @@ struct LobeRay {
     uint normal;    // of the surface that sent it: LightReceiver::packed
 };
 
+// The most nodes on the way from the root of the hierarchy to a leaf, the root apart.
+GLINT_CONSTANT(kLightTreeDepth, 32u);
+
 // The largest value of a share in a node.
 GLINT_CONSTANT(kLightShares, 1023u);
 

@@ -5,25 +5,44 @@
 
 #if GLINT_SIZED_LIGHTS
 
+#if GLINT_LIGHT_SAMPLES > 0
+#include "light/search.glsl"
+
+// Returns whether rays of lobes find the light: it has a size.
+bool lobesFind(HostLight light) {
+    return light.emitter == kNoEmitter && GLINT_PUNCTUAL(light).size > 0.0;
+}
+
+// The lights of a search by their numbers. Only a surface that takes samples needs their SceneLight::chance.
+#define GLINT_EACH_LIGHT(number, search) for (uint number; findsLeaf(search, number);)
+
+HostLight lightToFind(uint number) {
+    return lightOfScene(GLINT_FRAME.lightNodes.data[number].next & ~kLightLeaf);
+}
+
+#else
+
 // Returns whether rays of lobes find the light: it has a size, and every surface takes it.
 bool lobesFind(HostLight light) {
     return light.emitter == kNoEmitter && light.chance == 1.0 && GLINT_PUNCTUAL(light).size > 0.0;
 }
 
-// The lights among which lightToFind() has all that rays of lobes find.
-uint lightsToFind() {
-#if GLINT_LIGHT_SAMPLES > 0
-    return GLINT_FRAME.lightsApart;
-#else
-    return GLINT_FRAME.lightCount;
-#endif
-}
+// All lights are looked at: a search is their number.
+#define LightSearch uint
+#define GLINT_EACH_LIGHT(number, search) for (uint number = 0u; number < search; ++number)
 
 HostLight lightToFind(uint number) {
-#if GLINT_LIGHT_SAMPLES > 0
-    return lightApart(number);
-#else
     return lightOfScene(number);
+}
+
+#endif
+
+// The lights that a ray may meet before the distance `end`; none unless it `looks` for them.
+LightSearch lightsOnRay(vec3 origin, vec3 direction, float end, bool looks) {
+#if GLINT_LIGHT_SAMPLES > 0
+    return searchLeaves(origin, direction, end, looks);
+#else
+    return looks ? GLINT_FRAME.lightCount : 0u;
 #endif
 }
 
@@ -36,10 +55,15 @@ float seenHeight(HostLight light, LightSample centre) {
     return sine < 1.0 ? height : 0.0;
 }
 
-// The density, by solid angle, of a point that hostSampleLightPoint() gives; 0 from within the light.
+// The density, by solid angle, of a point that hostSampleLightPoint() gives, for all samples of the light that a surface
+// expects to take; 0 from within the light.
 float lightPointDensity(HostLight light, LightSample centre) {
     float height = seenHeight(light, centre);
+#if GLINT_LIGHT_SAMPLES > 0
+    return height > 0.0 ? light.chance / (2.0 * kPi * height) : 0.0;
+#else
     return height > 0.0 ? 1.0 / (2.0 * kPi * height) : 0.0;
+#endif
 }
 
 // The point of a light that a direction meets, with its radiance in the place of the irradiance. It is black if the

@@ -58,6 +58,32 @@ LightSample foundPoint(HostLight light, LightSample centre, uint slot, float den
 
 #endif
 
+#if GLINT_SIZED_LIGHTS && GLINT_LIGHT_SAMPLES > 0 && GLINT_RAY_EFFECTS > 0
+
+// The light of all lights that the rays of effects meet, as far as it is known.
+vec3 foundLight(Hit hit, Features features, inout ShadowCounts counts) {
+    vec3 sum = vec3(0.0);
+    LightReceiver receiver = receiverOf(hit, features);
+    for (uint slot = 0u; slot < GLINT_RAY_EFFECTS; ++slot) {
+        LightSearch search = lightsOnRay(hit.position, findingRays[slot].direction, 2.0 * kFarDistance,
+                                         findingRays[slot].weight != vec3(0.0));
+        GLINT_EACH_LIGHT(leaf, search) {
+            HostLight light = lightToFind(leaf);
+            LightSample centre = hostSampleLight(light, hit.position);
+            if (lightAlong(light, centre, findingRays[slot].direction).irradiance != vec3(0.0)) {
+                light.chance = leafChance(receiver, leaf);
+                float density = densityOfPoints(light, centre, lightPointCount(light));
+                LightSample point = foundPoint(light, centre, slot, density);
+                sum += sendShadow(
+                    hit, surfaceShadow(point.direction, point.distance, point.irradiance, kShadowOfLight), counts);
+            }
+        }
+    }
+    return sum;
+}
+
+#endif
+
 #if GLINT_EFFECT_SHADOW
 
 // The light of all lights as far as it is known. traceWaiting() returns the rest.
@@ -92,6 +118,8 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
         }
 #if GLINT_SIZED_LIGHTS
         float density = shares ? 0.0 : densityOfPoints(light, centre, points);
+#endif
+#if GLINT_SIZED_LIGHTS && GLINT_LIGHT_SAMPLES == 0
         uint found = density > 0.0 ? GLINT_RAY_EFFECTS : 0u;
         for (uint j = 0u; j < found; ++j) {
             LightSample point = foundPoint(light, centre, j, density);
@@ -143,6 +171,9 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
             }
         }
     }
+#if GLINT_SIZED_LIGHTS && GLINT_LIGHT_SAMPLES > 0 && GLINT_RAY_EFFECTS > 0
+    sum += foundLight(hit, features, counts);
+#endif
     return sum;
 }
 

@@ -2,6 +2,7 @@
 // so that the mean is the same, and the noise is less.
 #include "emit/lights.h"
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
@@ -80,15 +81,6 @@ LinearImage render(const LoadedScene& scene, const RenderSetup& setup, const Way
     return scene.render(options, setup);
 }
 
-materials::Material matte(float albedo) {
-    materials::Material material;
-    material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 1.0F;
-    material["specularFactor"] = 0.0F;
-    return material;
-}
-
 // A black surface that emits light.
 materials::Material lamp(gltf::Float3 color, float strength) {
     materials::Material material = matte(0.0F);
@@ -97,49 +89,10 @@ materials::Material lamp(gltf::Float3 color, float strength) {
     return material;
 }
 
-double meanOf(const LinearImage& image) {
-    double sum = 0.0;
-    for (const auto& pixel : image.pixels) {
-        sum += pixel[0] + pixel[1] + pixel[2];
-    }
-    return sum / (3.0 * static_cast<double>(image.pixels.size()));
-}
-
-double squaredDifference(const LinearImage& image, const LinearImage& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-            sum += difference * difference;
-        }
-    }
-    return sum;
-}
-
-// The mean of pictures with different seeds, and its standard error.
-struct Estimate {
-    double mean = 0.0;
-    double error = 0.0;
-};
-
-Estimate estimate(const LoadedScene& scene, const gltf::Scene& source, const Ways& ways,
-                  std::uint32_t samples) {
-    constexpr int kSeeds = 6;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int seed = 0; seed < kSeeds; ++seed) {
-        const double mean = meanOf(render(scene, setupOf(source, samples, 20 + seed), ways));
-        sum += mean;
-        squares += mean * mean;
-    }
-    const double mean = sum / kSeeds;
-    return {mean, std::sqrt(std::max(squares / kSeeds - mean * mean, 0.0) / (kSeeds - 1))};
-}
-
-void expectSameMean(const Estimate& a, const Estimate& b, const std::string& what) {
-    std::printf("%s: %.5f ± %.5f, expected %.5f ± %.5f\n", what.c_str(), a.mean, a.error, b.mean, b.error);
-    EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.error, b.error) + 1e-4 * b.mean) << what;
-    EXPECT_GT(b.mean, 1e-3) << what;
+MeanEstimate estimate(const LoadedScene& scene, const gltf::Scene& source, const Ways& ways,
+                      std::uint32_t samples) {
+    return estimateMean(
+        20, [&](std::uint32_t seed) { return render(scene, setupOf(source, samples, seed), ways); });
 }
 
 Double3 minus(const Double3& a, const Double3& b) {
@@ -231,14 +184,10 @@ TEST(EmissiveLights, LightPassesAPaneOnce) {
     constexpr double kRadiance = 3.0;
     gltf::Scene scene = emptyScene();
     addCamera(scene);
-    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-                         gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
-    };
-    add(matte(kAlbedo), {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    addQuad(scene, matte(kAlbedo), {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
     const std::vector<Double3> corners{{-1, 0.5, -3.8}, {1, 0.5, -3.8}, {1, 0.5, -2.6}, {-1, 0.5, -2.6}};
-    add(lamp({1, 1, 1}, kRadiance), {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F});
-    add(tintedGlass(), {-4, 0.4F, -4}, {8, 0, 0}, {0, 0, 2.5F});
+    addQuad(scene, lamp({1, 1, 1}, kRadiance), {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F});
+    addQuad(scene, tintedGlass(), {-4, 0.4F, -4}, {8, 0, 0}, {0, 0, 2.5F});
     double expected = 0.0;
     for (int y = 36; y < 64; ++y) {
         for (int x = 0; x < 64; ++x) {
@@ -283,15 +232,11 @@ double lowerMean(const LinearImage& image) {
 TEST(EmissiveLights, HalfAPaneHasTheMeanOfChance) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
-    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-                         gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
-    };
     materials::Material glossy = mirrorMaterial();
     glossy["roughnessFactor"] = 0.5F;
-    add(glossy, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
-    add(lamp({1, 1, 1}, 3.0F), {-2, 0.7F, -3.9F}, {4, 0, 0}, {0, 0, 2.5F});
-    add(tintedGlass(), {-8, 0.4F, -4}, {8, 0, 0}, {0, 0, 4});
+    addQuad(scene, glossy, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    addQuad(scene, lamp({1, 1, 1}, 3.0F), {-2, 0.7F, -3.9F}, {4, 0, 0}, {0, 0, 2.5F});
+    addQuad(scene, tintedGlass(), {-8, 0.4F, -4}, {8, 0, 0}, {0, 0, 4});
     Ways ways{EmissiveLights::On, 1, 2};
     ways.through = package::ShadowThrough::Glass;
     const Ways chance{EmissiveLights::Off, 0, 3};
@@ -309,13 +254,9 @@ TEST(EmissiveLights, HalfAPaneHasTheMeanOfChance) {
 TEST(EmissiveLights, AMirrorShowsALampBehindAPane) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
-    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-                         gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
-    };
-    add(mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
-    add(tintedGlass(), {50, -50, 0.5F}, {-100, 0, 0}, {0, 100, 0});
-    add(lamp({1, 1, 1}, 2.0F), {2, -2, 1}, {-4, 0, 0}, {0, 4, 0});
+    addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
+    addQuad(scene, tintedGlass(), {50, -50, 0.5F}, {-100, 0, 0}, {0, 100, 0});
+    addQuad(scene, lamp({1, 1, 1}, 2.0F), {2, -2, 1}, {-4, 0, 0}, {0, 4, 0});
     Ways ways{EmissiveLights::On, 0, 2};
     ways.through = package::ShadowThrough::Glass;
     const LoadedScene loaded = load(scene, ways);
@@ -354,16 +295,12 @@ gltf::Scene litRoom() {
     materials::Material small = lamp({0.5F, 0.6F, 1.0F}, 30.0F);
     small.alphaMode = materials::AlphaMode::Blend;
     small["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 0.7F};
-    const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-                         gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
-    };
-    add(matte(0.6F), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
-    add(glossy, {-4, -1, -5}, {8, 0, 0}, {0, 5, 0});
-    add(sheet, {1, -0.8F, -2.5F}, {1, 0, -1}, {0, 1.2F, 0});
+    addQuad(scene, matte(0.6F), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
+    addQuad(scene, glossy, {-4, -1, -5}, {8, 0, 0}, {0, 5, 0});
+    addQuad(scene, sheet, {1, -0.8F, -2.5F}, {1, 0, -1}, {0, 1.2F, 0});
     // The camera sees neither lamp, so that their own pictures add no noise.
-    add(panel, {-1.5F, 2, -1.5F}, {1.2F, 0, 0.4F}, {0, 0.6F, 0.5F});
-    add(small, {0.9F, 2.2F, -1.2F}, {0.3F, 0, 0}, {0, 0, 0.3F});
+    addQuad(scene, panel, {-1.5F, 2, -1.5F}, {1.2F, 0, 0.4F}, {0, 0.6F, 0.5F});
+    addQuad(scene, small, {0.9F, 2.2F, -1.2F}, {0.3F, 0, 0}, {0, 0, 0.3F});
     return scene;
 }
 
@@ -374,7 +311,7 @@ TEST(EmissiveLights, TheMeanIsThatOfChance) {
     const LoadedScene byChance = load(scene, chance);
     ASSERT_TRUE(byChance.ok());
     EXPECT_EQ(byChance.package().emission(), nullptr);
-    const Estimate expected = estimate(byChance, scene, chance, 512);
+    const MeanEstimate expected = estimate(byChance, scene, chance, 512);
     for (const std::uint32_t lights : {0U, 1U}) {
         const Ways ways{EmissiveLights::On, lights, 1};
         const LoadedScene sampled = load(scene, ways);
@@ -493,12 +430,12 @@ TEST(EmissiveLights, ASkinnedLampIsFollowed) {
         data.moves = true;
     });
     ASSERT_TRUE(expected.ok() && moving.ok());
-    const Estimate before = estimate(moving, rest, ways, 32);
+    const MeanEstimate before = estimate(moving, rest, ways, 32);
     scene_view::SceneViewData data = scene_view::makeSceneView(rest);
     scene_view::poseSceneView(bent, data);
     const Status moved = moving.gpuScene().updateAndWait(data.motion());
     ASSERT_TRUE(moved) << toString(moved.error());
-    const Estimate after = estimate(moving, rest, ways, 32);
+    const MeanEstimate after = estimate(moving, rest, ways, 32);
     expectSameMean(after, estimate(expected, still, ways, 32), "bent");
     EXPECT_GT(std::abs(after.mean - before.mean), 0.02 * before.mean) << "bending changes nothing";
 }

@@ -124,6 +124,62 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
     });
 }
 
+// A pane before a lamp that rays find. The walk through the pane finds it before the end of its ray.
+TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    materials::Material glass;
+    glass["transmissionFactor"] = 1.0F;
+    glass["metallicFactor"] = 0.0F;
+    glass["roughnessFactor"] = 0.0F;
+    glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
+    glass.doubleSided = true;
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, glass), {-9, -9, -1}, {18, 0, 0}, {0, 18, 0})));
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
+    lamp.position = {0.2F, 0, -3};
+    lamp.intensity = 2.0F;
+    scene.lights.push_back(lamp);
+    compiler::CompileSettings settings = everyLayer();
+    settings.strategies = package::kStrategyUber;
+    settings.sizedLights = compiler::SizedLights::On;
+    settings.maxBounces = 2;
+    const LoadedScene loaded(scene, settings,
+                             [](scene_view::SceneViewData& data) { data.lights[0].size = 0.8F; });
+    ASSERT_TRUE(loaded.ok());
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = options.height = 16;
+    options.bounces = 2;
+    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
+    ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
+    FrameOptions frame = defaultSetup(scene, 16, 16).frame;
+    frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    for (const bool refracts : {true, false}) {
+        frame.effects = refracts ? package::kAllEffects : ~compiler::builtinEffects({"refraction"});
+        const Result<LinearImage> image = (*renderer)->render(frame, 3);
+        ASSERT_TRUE(image.ok()) << toString(image.error());
+        const LayerSet layers(**renderer);
+        LinearImage sum = *image;
+        for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                sum.pixels[i][c] = layers.at("emission", i, c);
+                for (const std::string source : {"direct", "reflection", "refraction", "indirect-diffuse"}) {
+                    sum.pixels[i][c] += layers.at(source + ".radiance", i, c);
+                }
+                EXPECT_NEAR(layers.at("refraction.bounce-radiance.1", i, c) +
+                                layers.at("refraction.bounce-radiance.2", i, c),
+                            layers.at("refraction.radiance", i, c), 1e-4);
+            }
+        }
+        expectSameImage(sum, *image, refracts ? "with refraction" : "without refraction");
+        EXPECT_EQ(layers.sum("refraction.radiance") > 1.0, refracts);
+        EXPECT_EQ(layers.sum("refraction.variance") > 0.0, refracts);
+    }
+    expectNoValidationMessages();
+}
+
 TEST(Layers, LeaveThePictureAsItIs) {
     const gltf::Scene scene = hallScene();
     const RenderSetup setup = defaultSetup(scene, 48, 28);

@@ -1,6 +1,7 @@
 // Paths converge at their rate with every kind of light, and to the same mean whatever strategy shades them
 // and however many lights a surface takes.
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/scene_builder.h"
 #include "support/nightly.h"
 
@@ -32,11 +33,6 @@ materials::Material coated(float albedo, float roughness, float metallic) {
     material["metallicFactor"] = metallic;
     material["roughnessFactor"] = roughness;
     return material;
-}
-
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
 }
 
 // A floor between a matte wall and a glossy one, below the sky, and a block that throws a shadow.
@@ -259,12 +255,7 @@ Estimate estimateOf(std::string name, Yard& yard, std::uint32_t firstSeed) {
     constexpr int kSeeds = 12;
     std::vector<double> means;
     for (int seed = 0; seed < kSeeds; ++seed) {
-        const LinearImage image = yard.render(16, firstSeed + static_cast<std::uint32_t>(seed));
-        double sum = 0.0;
-        for (const auto& pixel : image.pixels) {
-            sum += pixel[0] + pixel[1] + pixel[2];
-        }
-        means.push_back(sum / (3.0 * static_cast<double>(image.pixels.size())));
+        means.push_back(meanOf(yard.render(16, firstSeed + static_cast<std::uint32_t>(seed))));
     }
     Estimate estimate{std::move(name)};
     for (const double mean : means) {

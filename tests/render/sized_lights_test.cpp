@@ -2,11 +2,13 @@
 // that of light samples alone, with less noise.
 #include "base/files.h"
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
 #include "support/nightly.h"
 #include "support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +18,10 @@
 #include <initializer_list>
 #include <numbers>
 #include <optional>
+#include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -28,7 +33,8 @@ struct SizedWays {
     SizedLights sized = SizedLights::On;
     std::uint32_t bounces = 1;
     package::ShadowThrough through = package::ShadowThrough::Alpha;
-    bool refracts = false;  // with the effect refraction
+    bool refracts = false;     // with the effect refraction
+    std::uint32_t lights = 0;  // --lights
 };
 
 compiler::CompileSettings settingsOf(const SizedWays& ways) {
@@ -44,6 +50,7 @@ compiler::CompileSettings settingsOf(const SizedWays& ways) {
     settings.emissiveLights = compiler::EmissiveLights::Off;
     settings.shadowThrough = ways.through;
     settings.maxBounces = ways.bounces;
+    settings.lightSamples = ways.lights;
     settings.energyCompensation = false;
     return settings;
 }
@@ -77,14 +84,6 @@ LinearImage render(const LoadedScene& loaded, const RenderSetup& setup, std::uin
     return loaded.render(options, setup);
 }
 
-double meanOf(const LinearImage& image, std::size_t channel) {
-    double sum = 0.0;
-    for (const auto& pixel : image.pixels) {
-        sum += pixel[channel];
-    }
-    return sum / static_cast<double>(image.pixels.size());
-}
-
 void addLamp(gltf::Scene& scene, gltf::Float3 position, float candela) {
     gltf::Light lamp;
     lamp.type = gltf::LightType::Point;
@@ -93,22 +92,16 @@ void addLamp(gltf::Scene& scene, gltf::Float3 position, float candela) {
     scene.lights.push_back(lamp);
 }
 
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
-}
-
 materials::Material metalOf(float roughness) {
     materials::Material metal = mirrorMaterial();
     metal["roughnessFactor"] = roughness;
     return metal;
 }
 
-materials::Material matte(float albedo) {
-    materials::Material material;
-    material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 1.0F;
+// A diffuse lobe below a rough glossy one.
+materials::Material plastic(float albedo) {
+    materials::Material material = matte(albedo);
+    material["specularFactor"] = 1.0F;
     return material;
 }
 
@@ -132,26 +125,64 @@ gltf::Scene mirrors() {
     return scene;
 }
 
-// A lamp between mirrors, which the camera does not see by itself, is 3.5, 6.5 and 9.5 m away. Paths look for
-// it once more than they have bounces. Nothing of it is seen without the setting.
-TEST(FoundLights, MirrorsShowALamp) {
+// Two lamps between mirrors, which the camera does not see by themselves, are 3.5 and 4.5, 6.5 and 5.5, 9.5
+// and 10.5 m away. Paths look for them once more than they have bounces. Nothing of them is seen without the
+// setting.
+TEST(FoundLights, MirrorsShowLamps) {
     gltf::Scene scene = mirrors();
     addLamp(scene, {0, 0, -0.5F}, 2.0F);
-    for (const std::uint32_t bounces : {1U, 2U}) {
-        const LoadedScene loaded = load(scene, {SizedLights::On, bounces});
+    addLamp(scene, {0, 0, 0.5F}, 1.0F);
+    for (const auto& [bounces, lights] : {std::pair(1U, 0U), std::pair(2U, 0U), std::pair(2U, 1U)}) {
+        const LoadedScene loaded =
+            load(scene, {SizedLights::On, bounces, package::ShadowThrough::Alpha, false, lights});
         ASSERT_TRUE(loaded.ok());
         EXPECT_TRUE(loaded.package().sizedLights());
         const LinearImage image = render(loaded, setupOf(scene, 256, 1), bounces);
         // Packages for one bounce do not look for lights at hits.
-        const double expected =
-            meanOfSphere(2.0, 3.5) + (bounces > 1 ? meanOfSphere(2.0, 6.5) + meanOfSphere(2.0, 9.5) : 0.0);
-        std::printf("%u bounces: %.5f, expected %.5f\n", bounces, meanOf(image, 0), expected);
+        double expected = meanOfSphere(2.0, 3.5) + meanOfSphere(1.0, 4.5);
+        if (bounces > 1) {
+            expected += meanOfSphere(2.0, 6.5) + meanOfSphere(2.0, 9.5) + meanOfSphere(1.0, 5.5) +
+                        meanOfSphere(1.0, 10.5);
+        }
+        std::printf("%u bounces, %u lights: %.5f, expected %.5f\n", bounces, lights, meanOf(image, 0),
+                    expected);
         EXPECT_NEAR(meanOf(image, 0), expected, 0.015 * expected);
     }
     const LoadedScene unseen = load(scene, {SizedLights::Off});
     ASSERT_TRUE(unseen.ok());
     EXPECT_FALSE(unseen.package().sizedLights());
     EXPECT_LT(meanOf(render(unseen, setupOf(scene, 16, 1), 1), 0), 0.1 * meanOfSphere(2.0, 3.5));
+}
+
+// A mirror takes no samples, so what it shows depends on the search for lights alone. All of a few hundred
+// lights are looked at without a hierarchy.
+TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> unit(0.0F, 1.0F);
+    for (int i = 0; i < 300; ++i) {
+        addLamp(scene, {8.0F * unit(random) - 4.0F, 8.0F * unit(random) - 4.0F, 6.0F * unit(random) - 1.5F},
+                1.0F);
+        scene.lights.back().range = i % 3 == 0 ? 4.0F : 0.0F;
+    }
+    addDirectionalLight(scene, {0, 0, -1}, 3.0F);
+    const auto sizes = [](scene_view::SceneViewData& data) {
+        for (std::size_t i = 0; i < data.lights.size(); ++i) {
+            data.lights[i].size = 0.01F * static_cast<float>(1 + i % 40);
+        }
+    };
+    std::vector<LinearImage> images;
+    for (const std::uint32_t lights : {0U, 4U}) {
+        const LoadedScene loaded(
+            scene, settingsOf({SizedLights::On, 1, package::ShadowThrough::Alpha, false, lights}), sizes);
+        ASSERT_TRUE(loaded.ok());
+        images.push_back(render(loaded, setupOf(scene, 16, 1), 1));
+        ASSERT_FALSE(images.back().pixels.empty());
+    }
+    EXPECT_GT(meanOf(images[0]), 0.1);
+    expectSameImage(images[1], images[0], "with a hierarchy");
 }
 
 TEST(FoundLights, AMirrorShowsTheSunUnlessItIsHidden) {
@@ -165,9 +196,7 @@ TEST(FoundLights, AMirrorShowsTheSunUnlessItIsHidden) {
     ASSERT_TRUE(open.ok());
     EXPECT_NEAR(meanOf(render(open, setupOf(scene, 256, 1), 1), 0), whole, 0.01 * whole);
     // A black wall behind the camera hides the sun's right half.
-    materials::Material black = matte(0.0F);
-    black["specularFactor"] = 0.0F;
-    addQuad(scene, black, {50, -50, 3}, {-50, 0, 0}, {0, 100, 0});
+    addQuad(scene, matte(0.0F), {50, -50, 3}, {-50, 0, 0}, {0, 100, 0});
     const LoadedScene hidden = load(scene, {});
     ASSERT_TRUE(hidden.ok());
     EXPECT_NEAR(meanOf(render(hidden, setupOf(scene, 256, 1), 1), 0), 0.5 * whole, 0.02 * whole);
@@ -177,7 +206,7 @@ TEST(FoundLights, AMirrorShowsTheSunUnlessItIsHidden) {
 TEST(FoundLights, GlassShowsALamp) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
-    materials::Material glass = matte(1.0F);
+    materials::Material glass = plastic(1.0F);
     glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
     glass["roughnessFactor"] = 0.0F;
     glass["transmissionFactor"] = 1.0F;
@@ -194,27 +223,27 @@ TEST(FoundLights, GlassShowsALamp) {
     }
 }
 
-// A room with surfaces of several lobes, lit by a lamp and through an opening by a sun. `glazed` puts glass
+// A room with surfaces of several lobes, lit by lamps and through an opening by a sun. `glazed` puts glass
 // in the opening, and another pane before the wall.
 gltf::Scene room(bool glazed) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);
-    materials::Material glossy = matte(0.5F);
+    materials::Material glossy = plastic(0.5F);
     glossy["roughnessFactor"] = 0.4F;
-    materials::Material coated = matte(0.3F);
+    materials::Material coated = plastic(0.3F);
     coated["clearcoatFactor"] = 1.0F;
     coated["clearcoatRoughnessFactor"] = 0.4F;
-    materials::Material sheet = matte(0.3F);
+    materials::Material sheet = plastic(0.3F);
     sheet["diffuseTransmissionFactor"] = 0.5F;
     sheet.doubleSided = true;
     addQuad(scene, glossy, {-2, -1, 1}, {4, 0, 0}, {0, 0, -5});
     addQuad(scene, metalOf(0.45F), {-2, -1, -4}, {4, 0, 0}, {0, 2.5F, 0});
     addQuad(scene, coated, {-2, -1, 1}, {0, 0, -5}, {0, 2.5F, 0});
-    addQuad(scene, matte(0.5F), {2, -1, -4}, {0, 0, 5}, {0, 2.5F, 0});
-    addQuad(scene, matte(0.6F), {-2, 1.5F, -4}, {2, 0, 0}, {0, 0, 5});
+    addQuad(scene, plastic(0.5F), {2, -1, -4}, {0, 0, 5}, {0, 2.5F, 0});
+    addQuad(scene, plastic(0.6F), {-2, 1.5F, -4}, {2, 0, 0}, {0, 0, 5});
     addQuad(scene, sheet, {0.5F, -0.8F, -2.0F}, {0.8F, 0, -0.8F}, {0, 1.0F, 0});
     if (glazed) {
-        materials::Material glass = matte(0.0F);
+        materials::Material glass = plastic(0.0F);
         glass["roughnessFactor"] = 0.3F;
         glass["transmissionFactor"] = 1.0F;
         glass["baseColorFactor"] = {0.6F, 0.8F, 0.7F, 1.0F};
@@ -223,66 +252,73 @@ gltf::Scene room(bool glazed) {
         addQuad(scene, glass, {-1.5F, -0.8F, -3.0F}, {1.2F, 0, 0.3F}, {0, 1.2F, 0});
     }
     addLamp(scene, {-0.6F, 0.4F, -3.2F}, 1.0F);
+    addLamp(scene, {1.2F, 0.6F, -2.2F}, 0.3F);
+    addLamp(scene, {-1.2F, -0.2F, -1.2F}, 0.2F);
     addDirectionalLight(scene, {-0.1961161F, -0.9805807F, 0}, 3.0F);
     return scene;
 }
 
-struct MeanOfPictures {
-    double mean = 0.0;
-    double error = 0.0;  // standard error
-};
-
-MeanOfPictures estimate(const LoadedScene& loaded, const gltf::Scene& scene, std::uint32_t bounces,
-                        std::uint32_t samples) {
-    constexpr int kPictures = 6;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int seed = 0; seed < kPictures; ++seed) {
-        RenderSetup setup = setupOf(scene, samples, 40 + seed);
-        setup.frame.shadowSamples = 2;
-        const LinearImage image = render(loaded, setup, bounces);
-        const double mean = meanOf(image, 0) + meanOf(image, 1) + meanOf(image, 2);
-        sum += mean;
-        squares += mean * mean;
-    }
-    const double mean = sum / kPictures;
-    return {mean, std::sqrt(std::max(squares / kPictures - mean * mean, 0.0) / (kPictures - 1))};
+void addShiningQuad(gltf::Scene& scene) {
+    materials::Material shining = matte(0.0F);
+    shining["emissiveFactor"] = {1.0F, 0.6F, 0.3F};
+    addQuad(scene, shining, {-1.99F, -0.5F, -1.0F}, {0, 0, -1.5F}, {0, 1.0F, 0});
 }
 
-// No light counts twice, and none is lost: on primary surfaces, at hits of one bounce and of paths, and where
-// shadow rays pass glass.
+MeanEstimate estimate(const LoadedScene& loaded, const gltf::Scene& scene, std::uint32_t bounces,
+                      std::uint32_t samples) {
+    return estimateMean(40, [&](std::uint32_t seed) {
+        RenderSetup setup = setupOf(scene, samples, seed);
+        setup.frame.shadowSamples = 2;
+        return render(loaded, setup, bounces);
+    });
+}
+
+// No light counts twice, and none is lost: on primary surfaces, at hits of one bounce and of paths, where
+// shadow rays pass glass, and with a hierarchy. By day each number of lights is looked at once or twice.
 TEST(FoundLights, TheMeanIsThatOfLightSamples) {
     struct Case {
         std::uint32_t bounces;
         package::ShadowThrough through;
+        std::vector<std::uint32_t> lights;
     };
-    for (const Case& one : {Case{1, package::ShadowThrough::Alpha}, Case{3, package::ShadowThrough::Alpha},
-                            Case{3, package::ShadowThrough::Glass}}) {
-        const bool glazed = one.bounces > 1;
-        const gltf::Scene scene = room(glazed);
-        const LoadedScene found = load(scene, {SizedLights::On, one.bounces, one.through});
-        const LoadedScene sampled = load(scene, {SizedLights::Off, one.bounces, one.through});
-        ASSERT_TRUE(found.ok() && sampled.ok());
+    std::vector<Case> cases{{1, package::ShadowThrough::Alpha, {0, 1}},
+                            {3, package::ShadowThrough::Alpha, {0}},
+                            {3, package::ShadowThrough::Glass, {2}}};
+    for (Case& one : cases) {
+        one.lights = test::nightly() ? std::vector{0U, 1U, 2U} : one.lights;
+        const gltf::Scene scene = room(one.bounces > 1);
         const std::uint32_t samples = test::nightly() ? 192 : 64;
-        const MeanOfPictures a = estimate(found, scene, one.bounces, samples);
-        const MeanOfPictures b = estimate(sampled, scene, one.bounces, samples);
-        std::printf("%u bounces, shadow rays through %u: %.5f ± %.5f, sampled %.5f ± %.5f\n", one.bounces,
-                    static_cast<unsigned>(one.through), a.mean, a.error, b.mean, b.error);
-        EXPECT_GT(b.mean, 0.1);
-        EXPECT_LT(a.error, 0.01 * a.mean);
-        EXPECT_NEAR(a.mean, b.mean, 4.0 * std::hypot(a.error, b.error) + 1e-3 * b.mean);
+        const LoadedScene sampled = load(scene, {SizedLights::Off, one.bounces, one.through});
+        ASSERT_TRUE(sampled.ok());
+        const MeanEstimate expected = estimate(sampled, scene, one.bounces, samples);
+        for (const std::uint32_t lights : one.lights) {
+            const LoadedScene found = load(scene, {SizedLights::On, one.bounces, one.through, false, lights});
+            ASSERT_TRUE(found.ok());
+            const MeanEstimate mean = estimate(found, scene, one.bounces, samples);
+            EXPECT_LT(mean.error, 0.01 * mean.mean);
+            expectSameMean(mean, expected,
+                           fmt::format("{} bounces, shadow rays through {}, {} lights", one.bounces,
+                                       static_cast<unsigned>(one.through), lights));
+        }
     }
 }
 
-double squaredDifference(const LinearImage& image, const LinearImage& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-            sum += difference * difference;
-        }
+// More than a few lights are in the hierarchy of emissive triangles.
+TEST(FoundLights, ShareAHierarchyWithTriangles) {
+    gltf::Scene scene = room(false);
+    addShiningQuad(scene);
+    for (int i = 0; i < 16; ++i) {
+        addLamp(scene, {-1.5F + 0.4F * static_cast<float>(i % 8), i < 8 ? 1.1F : -0.6F, -2.5F}, 0.1F);
     }
-    return sum;
+    std::array<MeanEstimate, 2> means{};
+    for (const SizedLights sized : {SizedLights::Off, SizedLights::On}) {
+        compiler::CompileSettings settings = settingsOf({sized, 1, package::ShadowThrough::Alpha, false, 2});
+        settings.emissiveLights = compiler::EmissiveLights::On;
+        const LoadedScene loaded(scene, settings, sizeLights);
+        ASSERT_TRUE(loaded.ok());
+        means[sized == SizedLights::On ? 1 : 0] = estimate(loaded, scene, 1, 64);
+    }
+    expectSameMean(means[1], means[0], "with triangles");
 }
 
 // At a roughness of 0.05 light samples hardly fall into the lobe. At 0.4 rays hardly find the lamp: the
@@ -311,9 +347,7 @@ TEST(FoundLights, TheNoiseOfHighlightsIsLess) {
 
 TEST(FoundLights, StrategiesAgree) {
     gltf::Scene scene = room(true);
-    materials::Material shining = matte(0.0F);
-    shining["emissiveFactor"] = {1.0F, 0.6F, 0.3F};
-    addQuad(scene, shining, {-1.99F, -0.5F, -1.0F}, {0, 0, -1.5F}, {0, 1.0F, 0});
+    addShiningQuad(scene);
     for (const bool others : {false, true}) {
         compiler::CompileSettings settings =
             settingsOf({SizedLights::On, 3,
@@ -322,7 +356,7 @@ TEST(FoundLights, StrategiesAgree) {
         // Beside emissive triangles the hierarchy leaves a few lights apart.
         settings.emissiveLights = others ? compiler::EmissiveLights::On : compiler::EmissiveLights::Off;
         settings.skyLight = others ? compiler::SkyLight::On : compiler::SkyLight::Off;
-        settings.lightSamples = others ? 1U : 0U;
+        settings.lightSamples = others ? 1U : 2U;
         std::optional<LinearImage> reference;
         forEachWay(
             scene, settings,

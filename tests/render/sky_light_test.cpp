@@ -2,6 +2,7 @@
 // the same, and the noise of a small sun in a map is less.
 #include "base/files.h"
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
 #include "support/nightly.h"
@@ -91,33 +92,9 @@ LinearImage render(const LoadedScene& loaded, const RenderSetup& setup, std::uin
     return loaded.render(options, setup);
 }
 
-double meanOf(const LinearImage& image) {
-    double sum = 0.0;
-    for (const auto& pixel : image.pixels) {
-        sum += pixel[0] + pixel[1] + pixel[2];
-    }
-    return sum / (3.0 * static_cast<double>(image.pixels.size()));
-}
-
-double squaredDifference(const LinearImage& image, const LinearImage& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-            sum += difference * difference;
-        }
-    }
-    return sum;
-}
-
-// The mean of pictures with different seeds, and its standard error. By day a third of the samples is taken.
-struct SkyEstimate {
-    double mean = 0.0;
-    double error = 0.0;
-};
-
-SkyEstimate estimate(const gltf::Scene& scene, const Environment* map, const SkyWays& ways,
-                     std::uint32_t samples) {
+// By day a third of the samples is taken.
+MeanEstimate estimate(const gltf::Scene& scene, const Environment* map, const SkyWays& ways,
+                      std::uint32_t samples) {
     samples = test::nightly() ? samples : (samples + 2) / 3;
     const LoadedScene loaded = load(scene, settingsOf(ways));
     if (!loaded.ok()) {
@@ -125,41 +102,9 @@ SkyEstimate estimate(const gltf::Scene& scene, const Environment* map, const Sky
     }
     EXPECT_EQ(loaded.package().skyLight(), ways.sky == SkyLight::On);
     EXPECT_EQ(loaded.package().shadowThrough(), ways.through);
-    constexpr int kSeeds = 6;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int seed = 0; seed < kSeeds; ++seed) {
-        const double mean = meanOf(render(loaded, setupOf(scene, map, samples, 20 + seed), ways.bounces));
-        sum += mean;
-        squares += mean * mean;
-    }
-    const double mean = sum / kSeeds;
-    return {mean, std::sqrt(std::max(squares / kSeeds - mean * mean, 0.0) / (kSeeds - 1))};
-}
-
-// Whether two means agree within their errors; a share of `slack` is allowed beyond that.
-bool isSameMean(const SkyEstimate& a, const SkyEstimate& b, double slack = 1e-3) {
-    return b.mean > 1e-3 && std::abs(a.mean - b.mean) < 4.0 * std::hypot(a.error, b.error) + slack * b.mean;
-}
-
-void expectSameMean(const SkyEstimate& a, const SkyEstimate& b, const std::string& what,
-                    double slack = 1e-3) {
-    std::printf("%s: %.5f ± %.5f, expected %.5f ± %.5f\n", what.c_str(), a.mean, a.error, b.mean, b.error);
-    EXPECT_TRUE(isSameMean(a, b, slack)) << what;
-}
-
-materials::Material matte(float albedo) {
-    materials::Material material;
-    material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 1.0F;
-    material["specularFactor"] = 0.0F;
-    return material;
-}
-
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    return estimateMean(20, [&](std::uint32_t seed) {
+        return render(loaded, setupOf(scene, map, samples, seed), ways.bounces);
+    });
 }
 
 // Dim light, and a sun of four texels.
@@ -210,7 +155,7 @@ gltf::Scene openBox() {
 TEST(SkyLight, APlaneUnderAUniformSkyHasItsAlbedo) {
     for (const bool traces : {false, true}) {
         const SkyWays ways{SkyLight::On, 1, false, traces};
-        const SkyEstimate seen = estimate(plane(matte(0.6F)), nullptr, ways, 64);
+        const MeanEstimate seen = estimate(plane(matte(0.6F)), nullptr, ways, 64);
         expectSameMean(seen, {0.6, 0.0}, traces ? "with rays" : "without rays");
         EXPECT_FALSE(isSameMean({1.03 * seen.mean, seen.error}, {0.6, 0.0}))
             << "a fault of 3 % has to be found";
@@ -274,7 +219,7 @@ gltf::Scene glazedBox() {
 // With `glass` shadow rays pass the pane, and paths leave out what these bring.
 TEST(SkyLight, LightThroughGlassCountsOnce) {
     const gltf::Scene scene = glazedBox();
-    const SkyEstimate chance = estimate(scene, nullptr, {SkyLight::Off, kManyBounces}, 192);
+    const MeanEstimate chance = estimate(scene, nullptr, {SkyLight::Off, kManyBounces}, 192);
     if (test::nightly()) {
         expectSameMean(estimate(scene, nullptr, {SkyLight::On, kManyBounces}, 96), chance,
                        "opaque to shadow rays");

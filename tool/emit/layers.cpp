@@ -292,11 +292,12 @@ std::string slotsRead(const Plan& plan) {
 
 }  // namespace
 
-std::string layerDefines(const Plan& plan, bool deforms) {
+std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) {
     std::uint32_t demands = 0;
     bool ofSurfaces = false;
     bool ofEffects = false;
     std::uint32_t bounces = 0;
+    bool walks = false;
     bool groups = false;
     std::set<std::string_view> tallies;
     for (const LayerEntry& entry : plan.layers) {
@@ -307,6 +308,7 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         groups = groups || (!info.tally.empty() && package::hasSources(info));
         tallies.insert(info.tally);
         bounces = std::max(bounces, entry.bounce);
+        walks = walks || package::showsWalkedLight(entry, plan.effects.effects.walks);
     }
     tallies.erase("");
     const bool history = (demands & package::kLayerHistory) != 0;
@@ -320,6 +322,7 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         "#define GLINT_LAYER_DEFORMS {}\n"
         "#define GLINT_LAYER_RAYS {}\n"
         "#define GLINT_LAYER_BOUNCES {}\n"
+        "#define GLINT_LAYER_WALKS {}\n"
         "#define GLINT_LAYER_CLOCK {}\n"
         "#define GLINT_LAYER_BRANCHES {}\n"
         "#define GLINT_LAYER_GROUPS {}\n"
@@ -327,8 +330,9 @@ std::string layerDefines(const Plan& plan, bool deforms) {
         "#define GLINT_TALLIES {}\n",
         flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
         flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
-        flag((demands & package::kLayerClock) != 0), flag(findEntry(plan, "branches", 0) != nullptr),
-        flag(groups), flag(findEntry(plan, "texture-level", 0) != nullptr), flag(!tallies.empty()));
+        flag(walks && findsSizedLights), flag((demands & package::kLayerClock) != 0),
+        flag(findEntry(plan, "branches", 0) != nullptr), flag(groups),
+        flag(findEntry(plan, "texture-level", 0) != nullptr), flag(!tallies.empty()));
     if (findEntry(plan, "texture-level", 0) != nullptr) {
         text += slotsRead(plan);
     }
@@ -458,6 +462,7 @@ void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect
             mustache::data fields;
             fields.set("bounce", fmt::format("{}", bounce));
             fields.set("slice", fmt::format("{}", bounce - 1));
+            fields.set("isFirst", mustache::data(bounce == 1));
             fields.set("light", ofBounce);
             fields.set("distance", length);
             bounces.push_back(fields);

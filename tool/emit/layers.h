@@ -26,7 +26,7 @@ std::string layerNameOf(const package::LayerEntry& entry, const materials::Mater
 
 // Returns the layers' macros for generated/scene.glsl. `deforms`: some vertices follow joints or morph
 // weights.
-std::string layerDefines(const Plan& plan, bool deforms);
+std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights);
 
 // Adds the fields for the templates of layers: surface_layers.glsl, compose_effects.glsl.
 void addLayers(kainjow::mustache::data& context, const Plan& plan);

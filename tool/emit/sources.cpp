@@ -153,7 +153,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_FALLBACK {}\n", flag(settings.plan.fallback));
     text += fmt::format("#define GLINT_TEXTURE_LEVELS {}\n", flag(settings.textureLevels));
     text += fmt::format("#define GLINT_SKY_LIGHT_MEMBERS {}\n", flag(sky || !plan.layers.empty()));
-    text += layerDefines(plan, std::ranges::any_of(scenes.scenes(), hasDeformedMesh));
+    text += layerDefines(plan, std::ranges::any_of(scenes.scenes(), hasDeformedMesh), sized);
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());

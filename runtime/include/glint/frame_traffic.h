@@ -66,6 +66,7 @@ struct TrafficShape {
     std::vector<package::LayerEntry> layers{};
     bool layerRays = false;  // they need what rays hit
     std::uint32_t layerBounces = 0;
+    bool layerWalks = false;  // they need the lights that walks find
 };
 
 // The shape of frames of a package.

@@ -141,6 +141,9 @@ LayerPass passOf(const LayerEntry& entry);
 std::uint32_t demandsOf(std::span<const PackageLayer> layers);
 // How many bounces have layers of their own; 0 if none has.
 std::uint32_t layerBounces(std::span<const PackageLayer> layers);
+// Whether some layer holds light that the walk of an effect may find. `walks` are the effects that have one.
+bool showWalkedLight(std::span<const PackageLayer> layers, std::uint32_t walks);
+bool showsWalkedLight(const LayerEntry& entry, std::uint32_t walks);
 // The size of a pixel of all images, bytes.
 std::uint32_t bytesOf(std::span<const PackageLayer> layers);
 

@@ -87,6 +87,7 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.skyShares = frame.skyShares.address;
     constants.rayHits = frame.rayHits.address;
     constants.bounceLight = frame.bounceLight.address;
+    constants.walkedLight = frame.walkedLight.address;
     constants.hits = frame.hits.address;
     constants.packedHits = frame.hits.address;
     constants.shadows = frame.shadows.address;

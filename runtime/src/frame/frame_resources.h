@@ -34,7 +34,7 @@ struct FrameResources {
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
     // others is `pool`.
-    static constexpr std::size_t kBufferCount = 25;
+    static constexpr std::size_t kBufferCount = 26;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
@@ -54,6 +54,7 @@ struct FrameResources {
     Buffer skyShares;    // present if the sky is a light of the package
     Buffer rayHits;      // present if layers need what rays hit
     Buffer bounceLight;  // present if layers need what bounces bring
+    Buffer walkedLight;  // present if layers need the lights that walks find
     Buffer hits;         // full or packed records; present if hits are ordered and samples don't hold them
     Buffer orderedHits;  // like `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
@@ -86,6 +87,7 @@ struct FrameResources {
                  {"shares of the sky", &skyShares},
                  {"hits of layers", &rayHits},
                  {"light of bounces", &bounceLight},
+                 {"light of walks", &walkedLight},
                  {"hits", &hits},
                  {"ordered hits", &orderedHits},
                  {"visited hits", &visitedHits},
@@ -131,6 +133,7 @@ struct FrameSize {
     std::vector<package::PackageLayer> layers{};  // images beside the picture
     bool layerRays = false;                       // layers need what rays hit
     std::uint32_t layerBounces = 0;               // bounces that have layers of their own
+    bool layerWalks = false;                      // layers need the lights that walks find
 
     bool accumulates = true;     // the picture is a mean over frames
     bool halfPicture = false;    // the picture has 16-bit floats; it is no mean then

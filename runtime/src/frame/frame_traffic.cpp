@@ -76,6 +76,9 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
         rows.push_back({"effect walk", Unit::Sent, kIdentity + (packsSamples(shape) ? kVector : kWord),
                         kStart + aim + weightBytes(shape)});
     }
+    if (shape.layerWalks) {
+        rows.push_back({"effect walk", Unit::Sample, 0, kVector});
+    }
     rows.push_back({"lighting", Unit::Sent, 0, (shape.layerRays ? kWord : 0) + shape.layerBounces * kBounce});
     rows.push_back({"effect rays", Unit::Sample, kWord, 0});
     rows.push_back({"effect rays", Unit::Sent,
@@ -183,6 +186,7 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
     }
     shape.layerRays = (package::demandsOf(package.layers()) & package::kLayerRays) != 0;
     shape.layerBounces = package::layerBounces(package.layers());
+    shape.layerWalks = package.sizedLights() && package::showWalkedLight(package.layers(), effects.walks);
     return shape;
 }
 
@@ -209,6 +213,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
         rows.push_back(layersOf(shape, package::LayerPass::Compose, "compose"));
         rows.push_back(
             {"compose", Unit::Sent, (shape.layerRays ? kRayHit : 0) + shape.layerBounces * kBounce, 0});
+        rows.push_back({"compose", Unit::Sample, shape.layerWalks ? kVector : 0, 0});
     }
     const std::uint32_t mean = shape.accumulates ? 2 * kPixel : 0;
     rows.push_back({"compose", Unit::Pixel, picture + mean, shape.accumulates ? mean : picture});

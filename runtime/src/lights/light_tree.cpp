@@ -241,24 +241,26 @@ public:
     LightTreeBuilder(std::vector<LightMember> members, std::vector<gpu::LightNode>& nodes)
         : members_(std::move(members)), nodes_(nodes) {}
 
-    // Builds the nodes of members [begin, end), which are 2 (end - begin) - 1, from `node` on.
-    LightBounds build(std::size_t begin, std::size_t end, std::size_t node, int threads) {
+    // Builds the nodes of members [begin, end), which are 2 (end - begin) - 1, from `node` on. `depth` is the
+    // number of nodes above them.
+    LightBounds build(std::size_t begin, std::size_t end, std::size_t node, std::uint32_t depth,
+                      int threads) {
         if (end - begin == 1) {
             nodes_[node] = makeLightNode(members_[begin].bounds, gpu::kLightLeaf | members_[begin].light);
             return members_[begin].bounds;
         }
-        const std::size_t middle = split(begin, end);
+        const std::size_t middle = split(begin, end, std::uint64_t{1} << (gpu::kLightTreeDepth - depth - 1));
         const std::size_t second = node + 2 * (middle - begin);
         LightBounds first;
         LightBounds last;
         if (threads > 1 && end - begin > kLightsOfThread) {
-            std::future<LightBounds> other =
-                std::async(std::launch::async, [&] { return build(begin, middle, node + 1, threads / 2); });
-            last = build(middle, end, second, threads - threads / 2);
+            std::future<LightBounds> other = std::async(
+                std::launch::async, [&] { return build(begin, middle, node + 1, depth + 1, threads / 2); });
+            last = build(middle, end, second, depth + 1, threads - threads / 2);
             first = other.get();
         } else {
-            first = build(begin, middle, node + 1, 1);
-            last = build(middle, end, second, 1);
+            first = build(begin, middle, node + 1, depth + 1, 1);
+            last = build(middle, end, second, depth + 1, 1);
         }
         const LightBounds both = unite(first, last);
         nodes_[node] = makeLightNode(both, static_cast<std::uint32_t>(second));
@@ -308,8 +310,23 @@ private:
         return best;
     }
 
-    // Returns where the second half begins. Lights at one place are halved by number.
-    std::size_t split(std::size_t begin, std::size_t end) {
+    // Halves the members by their place along the longest axis. Lights at one place are halved by number.
+    std::size_t halve(std::size_t begin, std::size_t end, const LightExtent& all) {
+        std::size_t axis = 0;
+        for (std::size_t i = 1; i < 3; ++i) {
+            axis = all.upper[i] - all.lower[i] > all.upper[axis] - all.lower[axis] ? i : axis;
+        }
+        const auto first = members_.begin();
+        std::stable_sort(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+                         [&](const LightMember& a, const LightMember& b) {
+                             return a.bounds.lower[axis] + a.bounds.upper[axis] <
+                                    b.bounds.lower[axis] + b.bounds.upper[axis];
+                         });
+        return begin + (end - begin) / 2;
+    }
+
+    // Returns where the second part begins. No part has more than `most` members.
+    std::size_t split(std::size_t begin, std::size_t end, std::uint64_t most) {
         // Only the box matters.
         LightExtent all;
         all.lower = members_[begin].bounds.lower;
@@ -322,13 +339,14 @@ private:
         }
         const LightSplit best = bestSplit(begin, end, all);
         if (!std::isfinite(best.cost)) {
-            return begin + (end - begin) / 2;
+            return halve(begin, end, all);
         }
         const auto first = members_.begin();
         const auto middle = std::stable_partition(
             first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
             [&](const LightMember& member) { return binOf(member.bounds, all, best.axis) <= best.bin; });
-        return static_cast<std::size_t>(middle - first);
+        const auto place = static_cast<std::size_t>(middle - first);
+        return std::max(place - begin, end - place) <= most ? place : halve(begin, end, all);
     }
 
     std::vector<LightMember> members_;
@@ -368,7 +386,8 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<con
         tree.treeNodes = static_cast<std::uint32_t>(2 * count - 1);
         tree.nodes.resize(tree.treeNodes);
         LightTreeBuilder(std::move(members), tree.nodes)
-            .build(0, count, 0, static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)));
+            .build(0, count, 0, 0,
+                   static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)));
     }
     tree.nodes.insert(tree.nodes.end(), apart.begin(), apart.end());
     return tree;

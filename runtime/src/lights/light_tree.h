@@ -31,9 +31,10 @@ struct EmitterBounds {
 // Builds the tree over lights that have bounds, which their sizes are part of, and are not apart. Each split
 // is the best of 12 bins in each axis, by the surface area orientation heuristic: Conty Estevez and Kulla,
 // "Importance Sampling of Many Lights with Adaptive Tree Splitting" (2018), equation 1. Large trees are built
-// by several threads. The result depends on the lights alone. Takes O(n log n) time, unless the lights are
-// spaced very unevenly. The leaf of an emitter has gpu::kLightEmitter in its number. With `keepsDark`,
-// emitters that are dark have leaves, too, because they may shine after refitLightTree().
+// by several threads. The result depends on the lights alone. Where lights are spaced so unevenly that the
+// tree would be deeper than gpu::kLightTreeDepth, nodes are halved instead. Takes O(n log n) time. The leaf
+// of an emitter has gpu::kLightEmitter in its number. With `keepsDark`, emitters that are dark have leaves,
+// too, because they may shine after refitLightTree().
 LightTree buildLightTree(std::span<const gpu::LightRecord> lights,
                          std::span<const EmitterBounds> emitters = {}, bool keepsDark = false);
 

@@ -372,6 +372,19 @@ std::uint32_t layerBounces(std::span<const PackageLayer> layers) {
     return bounces;
 }
 
+bool showsWalkedLight(const LayerEntry& entry, std::uint32_t walks) {
+    const LayerInfo* const info = findLayer(entry.layer);
+    const bool isLight =
+        info != nullptr && (info->subject == LayerSubject::Light || info->subject == LayerSubject::Bounce);
+    return isLight && (entry.effect & walks) != 0;
+}
+
+bool showWalkedLight(std::span<const PackageLayer> layers, std::uint32_t walks) {
+    return std::ranges::any_of(layers, [&](const PackageLayer& layer) {
+        return showsWalkedLight({layer.info->number, layer.effect, layer.bounce}, walks);
+    });
+}
+
 std::uint32_t bytesOf(std::span<const PackageLayer> layers) {
     std::uint32_t bytes = 0;
     for (const PackageLayer& layer : layers) {

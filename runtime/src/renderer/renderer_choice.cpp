@@ -229,6 +229,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.layers.assign(package.layers().begin(), package.layers().end());
     size.layerRays = (package::demandsOf(size.layers) & package::kLayerRays) != 0;
     size.layerBounces = package::layerBounces(size.layers);
+    size.layerWalks = size.sizedLights && package::showWalkedLight(size.layers, size.effects.walks);
     size.accumulates = options.accumulate;
     size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
     size.halfPicture = choice.halfPicture;

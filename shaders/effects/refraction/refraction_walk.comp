@@ -26,6 +26,9 @@ void main() {
         if (sampleOutcome(target) == kRaySent) {
             segments = walk(pixel, target);
         }
+#if GLINT_LAYER_WALKS
+        GLINT_FRAME.walkedLight.data[samplePlace(target)].light = foundOnWalk;
+#endif
         GLINT_CLOCK_STOP
     }
     addToCounter(counterOf(kEffectRefraction, kCountSegments), segments);

@@ -151,8 +151,8 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
 // samples of lights bring light to the surfaces of a walk.
 vec3 lightsOnWay(Walker walker, float end) {
     vec3 sum = vec3(0.0);
-    uint lights = lightsToFind();
-    for (uint i = 0u; i < lights; ++i) {
+    LightSearch lights = lightsOnRay(walker.origin, walker.direction, end, true);
+    GLINT_EACH_LIGHT(i, lights) {
         HostLight light = lightToFind(i);
         LightSample point = lightAlong(light, hostSampleLight(light, walker.origin), walker.direction);
         if (lobesFind(light) && point.irradiance != vec3(0.0) && point.distance < end) {
@@ -166,6 +166,11 @@ vec3 lightsOnWay(Walker walker, float end) {
     }
     return sum;
 }
+#endif
+
+#if GLINT_LAYER_WALKS
+// The sum of this light over a walk. It is in the picture, and the layers of its effect have it, too.
+vec3 foundOnWalk = vec3(0.0);
 #endif
 
 // Returns the number of rays traced.
@@ -237,6 +242,9 @@ uint walk(uvec2 pixel, uint target) {
         if (met != vec3(0.0)) {
             vec4 seen = imageLoad(radianceImage, ivec2(pixel));
             imageStore(radianceImage, ivec2(pixel), storable(vec4(seen.rgb + met, seen.a)));
+#if GLINT_LAYER_WALKS
+            foundOnWalk += met;
+#endif
         }
 #endif
         if (record.geometry == kMissGeometry) {

@@ -134,8 +134,8 @@ TEST(InteropLayout, IsThatOfCpp) {
     const compiler::StructLayout frame = find("FrameConstants");
     EXPECT_EQ(frame.bytes, sizeof(gpu::FrameConstants));
     EXPECT_EQ(frame.members.front().name, "worldToClip");
-    EXPECT_EQ(frame.members.back().name, "bounceLight");
-    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, bounceLight));
+    EXPECT_EQ(frame.members.back().name, "walkedLight");
+    EXPECT_EQ(frame.members.back().offset, offsetof(gpu::FrameConstants, walkedLight));
     EXPECT_EQ(find("InstanceRecord").members.back().offset, offsetof(gpu::InstanceRecord, flags));
     EXPECT_EQ(find("GeometryRecord").bytes, sizeof(gpu::GeometryRecord));
     EXPECT_EQ(find("PushConstants").bytes, sizeof(gpu::PushConstants));
@@ -154,9 +154,15 @@ TEST(InteropLayout, IsTheSameInSpirv) {
     settings.debugInfo = true;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     // FrameConstants is whole in such packages alone.
+    settings.effects = {false, compiler::builtinEffects({"shadow", "reflection", "refraction"})};
     settings.skyLight = compiler::SkyLight::On;
-    settings.layers = {"motion", "virtual-motion"};
-    expectInModules(compileSample(settings), layoutsOf(Of::Frame));
+    settings.sizedLights = compiler::SizedLights::On;
+    settings.layers = {"motion", "virtual-motion", "refraction.radiance"};
+    gltf::Scene scene = makeSampleScene();
+    scene.materials[0]["transmissionFactor"] = 0.5F;
+    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings, &sharedModules());
+    ASSERT_TRUE(package) << toString(package.error());
+    expectInModules(*package, layoutsOf(Of::Frame));
 }
 
 // The record of a material is declared, so its layout is made and not compiled.

@@ -131,6 +131,23 @@ TEST(LightTree, NodesBoundWhatIsBelow) {
     expectBounds(buildLightTree(lights), lights);
 }
 
+// Shaders have room for so many nodes that wait.
+TEST(LightTree, IsNoDeeperThanShadersCanWalk) {
+    std::vector<gpu::LightRecord> lights;
+    lights.reserve(300);
+    for (int i = 0; i < 300; ++i) {
+        lights.push_back(point(std::pow(1.5F, static_cast<float>(i - 150)), 0, 0, 1.0F));
+    }
+    const std::vector<Leaf> leaves = leavesOf(buildLightTree(lights));
+    ASSERT_EQ(leaves.size(), lights.size());
+    std::size_t depth = 0;
+    for (const Leaf& leaf : leaves) {
+        depth = std::max(depth, leaf.ancestors.size());
+    }
+    std::printf("depth %zu\n", depth);
+    EXPECT_LE(depth, gpu::kLightTreeDepth);
+}
+
 TEST(LightTree, IsShallow) {
     const std::vector<gpu::LightRecord> lights = mixedLights(20000, 3);
     std::size_t deepest = 0;

@@ -1,0 +1,42 @@
+// What the tests of lights share: quads as surfaces, and the means and errors of pictures.
+#pragma once
+
+#include "gltf/scene.h"
+#include "render/harness.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace glint::testing {
+
+// Returns a diffuse surface that reflects nothing else.
+materials::Material matte(float albedo);
+// Adds a parallelogram as makeQuad() makes it.
+void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+             gltf::Float3 up);
+
+// The mean over all pixels of one channel, or of red, green and blue.
+double meanOf(const LinearImage& image, std::size_t channel);
+double meanOf(const LinearImage& image);
+// The sum over all pixels, red, green and blue.
+double squaredDifference(const LinearImage& image, const LinearImage& reference);
+
+// The mean of pictures with different seeds.
+struct MeanEstimate {
+    double mean = 0.0;
+    double error = 0.0;  // standard error
+};
+
+// The mean of six pictures, whose seeds begin with `firstSeed`.
+MeanEstimate estimateMean(std::uint32_t firstSeed,
+                          const std::function<LinearImage(std::uint32_t seed)>& render);
+
+// Whether two means agree within four of their errors; a share of `slack` is allowed beyond that. Means near
+// 0 agree with none.
+bool isSameMean(const MeanEstimate& a, const MeanEstimate& b, double slack = 1e-3);
+void expectSameMean(const MeanEstimate& a, const MeanEstimate& b, const std::string& what,
+                    double slack = 1e-3);
+
+}  // namespace glint::testing
