@@ -103,7 +103,7 @@ void Window::openFile(const std::string& file) {
     }
     for (std::size_t i = 0; i < kPictures; ++i) {
         if (sides_[i]) {
-            order(i, false);
+            order(i);
         }
     }
 }
@@ -374,7 +374,7 @@ void Window::compare(bool on) {
     sides_[1]->wanted = sides_[0]->wanted;
     shown_ = Shown::Wipe;
     edited_ = 1;
-    order(1, false);
+    order(1);
 }
 
 void Window::pickAt(double x, double y) {
@@ -548,6 +548,7 @@ Status Window::writeReport(const std::string& file) {
         {"missingLevels", one.picture.missingLevels()},
         {"strategy", isReady ? std::string(package::nameOf(*one.picture.settings().strategy)) : ""},
         {"lastChange", one.picture.lastChange()},
+        {"earlyPackages", earlyPackages_},
         {"time", poses_ ? base::Json(time_) : base::Json(nullptr)},
         {"plays", plays_},
         {"flies", flies_},
