@@ -88,9 +88,9 @@ gltf::Scene paintedRoom(const materials::MaterialModel& model) {
     return scene;
 }
 
-compiler::CompileSettings paintedSettings() {
-    // The draft of the fallback is the reference of what early packages show.
-    compiler::CompileSettings settings = roomSettings(package::kStrategyVisibility, true);
+// A fallback's draft is the reference of what early packages show.
+compiler::CompileSettings paintedSettings(bool fallback) {
+    compiler::CompileSettings settings = roomSettings(package::kStrategyVisibility, fallback);
     settings.tracers = tracerOfDevice();
     settings.emitHeader = false;
     return settings;
@@ -112,7 +112,7 @@ std::shared_ptr<const Package> load(const compiler::CompiledPackage& compiled) {
 }
 
 // Compiles a version after `before`, which may be null.
-Version makeVersion(const materials::MaterialModel* model, const Version* before) {
+Version makeVersion(const materials::MaterialModel* model, const Version* before, bool fallback = true) {
     Version version;
     version.model = model;
     version.scene = std::make_unique<gltf::Scene>(paintedRoom(*model));
@@ -126,8 +126,8 @@ Version makeVersion(const materials::MaterialModel* model, const Version* before
                                          {}};
     }
     Result<compiler::CompiledPackage> compiled =
-        compilePackage(std::span(version.scene.get(), 1), paintedSettings(), &sharedModules(), {}, nullptr,
-                       showing ? &*showing : nullptr);
+        compilePackage(std::span(version.scene.get(), 1), paintedSettings(fallback), &sharedModules(), {},
+                       nullptr, showing ? &*showing : nullptr);
     EXPECT_TRUE(compiled) << toString(compiled.error());
     if (compiled) {
         version.compiled = std::move(*compiled);
@@ -272,6 +272,22 @@ TEST_F(EarlyPackage, TheEditIsADraftUntilTheWholePackageIsInUse) {
         EXPECT_EQ(renderer->replacementProgress().inUse, 2U);
         expectNoValidationMessages();
     }
+}
+
+// Without a fallback no materials come later. So the module has the features of the edited surfaces, and
+// takes for granted what all of them have.
+TEST_F(EarlyPackage, HasLessCodeWithoutAFallback) {
+    const Version before = makeVersion(version(0).model, nullptr, false);
+    const Version after = makeVersion(version(1).model, &before, false);
+    ASSERT_NE(after.early, nullptr);
+    const package::ModuleKey edit{package::ModuleRole::LightingEdit};
+    EXPECT_LT(after.early->spirv(edit).size(), version(1).early->spirv(edit).size());
+    const std::unique_ptr<GpuScene> scene = upload(before);
+    const std::unique_ptr<Renderer> renderer = make(*after.early, *scene, options_);
+    ASSERT_NE(renderer, nullptr);
+    const LinearImage shown = draw(*renderer);
+    expectSameImage(shown, compose(*renderer, fresh(version(0)), fresh(version(1), true)), "the draft");
+    expectNoValidationMessages();
 }
 
 // A program that starts while an edit is compiled may find an early package.

@@ -164,6 +164,7 @@ public:
     // that of the first text in the order of the work, whatever the jobs.
     Result<std::vector<std::optional<CompiledText>>> run(int jobs) {
         const std::vector<std::size_t> order = orderOfWork();
+        jobs_ = jobs;
         base::runParallel(order.size(), jobs, [&](std::size_t place) {
             const std::size_t text = order[place];
             results_[text] = compile(text);
@@ -241,7 +242,7 @@ private:
             }
             parts.push_back(&(*results_[part])->module);
         }
-        return keep(text, joinMeasured(shaderOf(*text.source), options_, parts));
+        return keep(text, joinMeasured(shaderOf(*text.source), options_, parts, jobs_));
     }
 
     Result<CompiledText> keep(const DistinctTexts::Text& text, Result<CachedModule> module) {
@@ -259,6 +260,7 @@ private:
     const std::function<bool()>& isOutdated_;
     std::vector<std::optional<Result<CompiledText>>> results_;
     std::vector<std::atomic<bool>> done_;
+    int jobs_ = 1;
 };
 
 // Counts the parts of a module that were made in this run, each once.
@@ -306,7 +308,7 @@ Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCom
 }
 
 Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
-                                  std::span<const CachedModule* const> parts) {
+                                  std::span<const CachedModule* const> parts, int jobs) {
     std::vector<std::span<const std::uint32_t>> words;
     for (const CachedModule* const part : parts) {
         if (!isJoinable(part->spirv)) {
@@ -314,7 +316,7 @@ Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompil
         }
         words.emplace_back(part->spirv);
     }
-    return measured(joinParts(words, source.name, options));
+    return measured(joinParts(words, source.name, options, jobs));
 }
 
 std::string moduleCompiler() {

@@ -20,10 +20,10 @@ namespace glint::compiler {
 Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
                                      const std::optional<LinkNames>& link = {});
 
-// Joins compiled parts, the one with the entry point first. If a part can't be joined, `source` is compiled
-// as a whole.
+// Joins compiled parts, the one with the entry point first, on at most `jobs` threads. If a part can't be
+// joined, `source` is compiled as a whole.
 Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
-                                  std::span<const CachedModule* const> parts);
+                                  std::span<const CachedModule* const> parts, int jobs = 1);
 
 // Returns a text that differs between compilers that may give different words for the same source.
 std::string moduleCompiler();

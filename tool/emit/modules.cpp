@@ -220,14 +220,14 @@ Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& p
     const package::ModuleKey key{ModuleRole::LightingEdit};
     const package::RoleInfo& info = *package::findRole(key.role);
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    const Case shaderCase = editCase(plan, edited);
+    const Case shaderCase = editCase(plan, edited, settings.plan.fallback);
     addCase(context, scenes, *plan.model, shaderCase);
     context.set("editedLobes", fmt::format("{:#x}u", edited & materials::kLobeMask));
     context.set("editedInputs", fmt::format("{:#x}u", edited >> 32U));
     SourceSet own;
-    if (Status made = addMaterialCode(sources, *plan.model,
-                                      shaderCase.sometimes | emitterMask(scenes, plan, settings), own);
-        !made) {
+    const materials::FeatureMask evaluated =
+        shaderCase.always | shaderCase.sometimes | emitterMask(scenes, plan, settings);
+    if (Status made = addMaterialCode(sources, *plan.model, evaluated, own); !made) {
         return made.error();
     }
     Result<std::string> text =

@@ -11,6 +11,7 @@ namespace glint::compiler {
 namespace {
 
 constexpr std::string_view kSwitchFile = "generated/cases.glsl";
+constexpr std::string_view kEmitterFile = "light/emitter.glsl";
 constexpr std::string_view kSwitchTemplate = "cases.glsl.mustache";
 constexpr std::string_view kPartTemplate = "case_part.comp.mustache";
 
@@ -30,6 +31,11 @@ Status SwitchParts::makeSwitches() {
             }
             SourceSet& to = (apart ? head_ : whole_)[fallbackAlone ? 1 : 0];
             to.add(std::string(kSwitchFile), std::move(*text));
+            if (apart && settings_.emissiveLights != EmissiveLights::On) {
+                // What emissive lights emit is the only code of materials that the switch would have, and an
+                // edit of that code would change the switch.
+                to.add(std::string(kEmitterFile), "");
+            }
         }
     }
     return okStatus();

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -243,7 +244,7 @@ Case draftCase(const Plan& plan) {
     return shaderCase;
 }
 
-Case editCase(const Plan& plan, materials::FeatureMask edited) {
+Case editCase(const Plan& plan, materials::FeatureMask edited, bool fallback) {
     Case shaderCase = draftCase(plan);
     shaderCase.name = "Edit";
     for (const materials::Feature& feature : plan.model->features) {
@@ -254,6 +255,14 @@ Case editCase(const Plan& plan, materials::FeatureMask edited) {
     }
     shaderCase.sometimes |= edited;
     shaderCase.sometimes &= plan.primaryAlways | plan.primarySometimes;
+    if (!fallback) {
+        std::vector<materials::FeatureMask> masks;
+        std::ranges::copy_if(plan.primaryMaskOfPrimitive, std::back_inserter(masks),
+                             [&](materials::FeatureMask mask) { return (mask & edited) != 0; });
+        const FeatureSpread spread = spreadOf(masks);
+        shaderCase.always = shaderCase.sometimes & spread.always;
+        shaderCase.sometimes &= spread.sometimes;
+    }
     return shaderCase;
 }
 

@@ -1,7 +1,9 @@
 #include "spirv/compiler.h"
 
+#include "spirv/join/clear.h"
 #include "spirv/join/join.h"
 #include "spirv/join/parsed_module.h"
+#include "spirv/join/validate.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv_source_hash.h"
@@ -18,7 +20,9 @@
 #include <charconv>
 #include <iterator>
 #include <mutex>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 namespace glint::compiler {
 
@@ -207,15 +211,23 @@ bool isJoinable(std::span<const std::uint32_t> part) {
 }
 
 Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std::uint32_t>> parts,
-                                             const std::string& name, const ShaderCompileOptions& options) {
+                                             const std::string& name, const ShaderCompileOptions& options,
+                                             int jobs) {
     Result<std::vector<std::uint32_t>> joined = joinModules(parts, name, options.debugInfo);
     if (!joined) {
         return joined;
     }
-    if (Status cleared = clearJoined(*joined, name, options.debugInfo); !cleared) {
-        return cleared.error();
+    const Result<ParsedModule> parsed = parseModule(*joined, name);
+    if (!parsed) {
+        return parsed.error();
     }
-    if (Status valid = validateSpirv(*joined, name); !valid) {
+    if (std::optional<std::vector<std::uint32_t>> cleared =
+            clearGlobals(*parsed, tracesByPipeline(*joined))) {
+        *joined = std::move(*cleared);
+    } else if (Status slowly = clearJoined(*joined, name, options.debugInfo); !slowly) {
+        return slowly.error();
+    }
+    if (Status valid = validateJoined(*joined, name, jobs); !valid) {
         return valid.error();
     }
     return joined;

@@ -49,10 +49,11 @@ Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const
                                                const ShaderCompileOptions& options);
 bool isJoinable(std::span<const std::uint32_t> part);
 
-// Makes a shader of its parts, the one with the entry point first. `name` is for messages. Errors are those
-// of joinModules(), "spirv-optimize" and "spirv-validate".
+// Makes a shader of its parts, the one with the entry point first, on at most `jobs` threads (0: one for each
+// core). `name` is for messages. Errors are those of joinModules(), "spirv-optimize" and "spirv-validate".
 Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std::uint32_t>> parts,
-                                             const std::string& name, const ShaderCompileOptions& options);
+                                             const std::string& name, const ShaderCompileOptions& options,
+                                             int jobs = 1);
 
 // Returns a text that is equal for two programs whose compileShader() gives the same words for the same
 // source. It consists of the versions of glslang and SPIRV-Tools and a hash of the code around them.

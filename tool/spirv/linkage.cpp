@@ -1,6 +1,3 @@
-// For spv::HasResultAndType().
-#define SPV_ENABLE_UTILITY_CODE
-
 #include "spirv/linkage.h"
 
 #include "spirv/call_graph.h"
@@ -34,14 +31,6 @@ enum class Fate { Defined, Declared, Removed };
 
 std::size_t lengthAt(std::span<const std::uint32_t> words, std::size_t at) {
     return words[at] >> spv::WordCountShift;
-}
-
-// Returns the result of the instruction at `at`, or 0.
-std::uint32_t resultAt(std::span<const std::uint32_t> words, std::size_t at) {
-    bool hasResult = false;
-    bool hasType = false;
-    spv::HasResultAndType(static_cast<spv::Op>(words[at] & spv::OpCodeMask), &hasResult, &hasType);
-    return hasResult ? words[at + (hasType ? 2 : 1)] : 0;
 }
 
 // Calls visit(at, opcode) for each instruction of a valid module.

@@ -50,20 +50,6 @@ void registerLevel(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
 }
 
-// Returns whether the module belongs to a ray tracing pipeline. Capabilities come first in a module (SPIR-V
-// 2.4).
-bool tracesByPipeline(const std::vector<std::uint32_t>& words) {
-    constexpr std::size_t kHeaderWords = 5;
-    constexpr std::uint32_t kOpcodeMask = 0xFFFF;
-    for (std::size_t i = kHeaderWords; i + 1 < words.size() && (words[i] & kOpcodeMask) == spv::OpCapability;
-         i += words[i] >> 16U) {
-        if (words[i + 1] == spv::CapabilityRayTracingKHR) {
-            return true;
-        }
-    }
-    return false;
-}
-
 void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
@@ -217,6 +203,19 @@ Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name
 }
 
 }  // namespace
+
+// Capabilities come first in a module (SPIR-V 2.4).
+bool tracesByPipeline(std::span<const std::uint32_t> words) {
+    constexpr std::size_t kHeaderWords = 5;
+    constexpr std::uint32_t kOpcodeMask = 0xFFFF;
+    for (std::size_t i = kHeaderWords; i + 1 < words.size() && (words[i] & kOpcodeMask) == spv::OpCapability;
+         i += words[i] >> 16U) {
+        if (words[i + 1] == spv::CapabilityRayTracingKHR) {
+            return true;
+        }
+    }
+    return false;
+}
 
 Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
                                                  const std::string& name,

@@ -4,6 +4,7 @@
 #include <glint/result.h>
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,9 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
 Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>& words,
                                                 const std::string& name,
                                                 const std::vector<std::string>& apart, bool halvesAll);
+
+// Returns whether the module belongs to a ray tracing pipeline, whose structures keep their members.
+bool tracesByPipeline(std::span<const std::uint32_t> words);
 
 // Removes what parts of a shader declare and nothing reads, after they were joined: functions, members,
 // types and constants. `keepNames` keeps the members. Error "spirv-optimize".

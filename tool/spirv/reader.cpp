@@ -1,4 +1,9 @@
+// For spv::HasResultAndType().
+#define SPV_ENABLE_UTILITY_CODE
+
 #include "spirv/reader.h"
+
+#include <glslang/SPIRV/spirv.hpp>
 
 #include <cstddef>
 
@@ -32,6 +37,13 @@ Status visitSpirv(std::span<const std::uint32_t> words,
         at += length;
     }
     return okStatus();
+}
+
+std::uint32_t resultAt(std::span<const std::uint32_t> words, std::size_t at) {
+    bool hasResult = false;
+    bool hasType = false;
+    spv::HasResultAndType(static_cast<spv::Op>(words[at] & spv::OpCodeMask), &hasResult, &hasType);
+    return hasResult ? words[at + (hasType ? 2 : 1)] : 0;
 }
 
 std::string spirvString(std::span<const std::uint32_t> operands) {

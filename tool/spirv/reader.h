@@ -24,6 +24,9 @@ struct SpirvInstruction {
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit);
 
+// Returns the result of the instruction at word `at` of a valid module, or 0.
+std::uint32_t resultAt(std::span<const std::uint32_t> words, std::size_t at);
+
 // Decodes a literal string (UTF-8, four bytes a word, zero-terminated) at the start of `operands`. If the
 // terminator is missing, the string ends with `operands`.
 std::string spirvString(std::span<const std::uint32_t> operands);

@@ -1,12 +1,12 @@
 #include "view/builder.h"
 
 #include "base/clock.h"
-#include "emit/compile.h"
 #include "emit/host.h"
 #include "emit/layers.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "materials/packs.h"
+#include "view/picture.h"
 
 #include <glint/measure/profile.h>
 #include <glint/measure/render_settings.h>
@@ -64,8 +64,11 @@ void Builder::start(BuildOrder order) {
     {
         const std::lock_guard lock(mutex_);
         Slot& slot = slots_[order.picture];
-        order.reread = order.reread || (slot.order && slot.order->reread);
+        if (slot.order) {
+            order.changed.merge(slot.order->changed);
+        }
         slot.order = std::move(order);
+        slot.early.reset();
         slot.done.reset();
         slot.busy = true;
         slot.canceled = false;
@@ -76,8 +79,14 @@ void Builder::start(BuildOrder order) {
 void Builder::cancel(std::size_t picture) {
     const std::lock_guard lock(mutex_);
     slots_[picture].order.reset();
+    slots_[picture].early.reset();
     slots_[picture].done.reset();
     slots_[picture].canceled = true;
+}
+
+std::optional<Build> Builder::pollEarly(std::size_t picture) {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(slots_[picture].early, std::nullopt);
 }
 
 std::optional<Result<Build>> Builder::poll(std::size_t picture) {
@@ -125,6 +134,7 @@ void Builder::work() {
             continue;  // what it was asked for has changed
         }
         slot.busy = false;
+        slot.early.reset();
         if (!slot.canceled) {
             slot.done = std::move(made);
         }
@@ -134,14 +144,22 @@ void Builder::work() {
 Result<Build> Builder::build(const BuildOrder& order) {
     Build build;
     build.settings = order.settings;
+    changed_[order.picture].insert(order.changed.begin(), order.changed.end());
+    made_.reset();
     for (Status (*step)(Builder&, const BuildOrder&, Build&) :
          {+[](Builder&self, const BuildOrder&what, Build&made) { return self.readScene(what, made); },
-          +[](Builder&self, const BuildOrder&, Build&made) { return self.makePackage(made); },
+          +[](Builder&self, const BuildOrder&what, Build&made) { return self.makePackage(what, made); },
           +[](Builder&self, const BuildOrder&, Build&made) { return self.readTextures(made); }}) {
         if (Status done = step(*this, order, build); !done) {
             return done.error();
         }
     }
+    wholes_[order.picture].reset();
+    if (made_) {
+        wholes_[order.picture] = Whole{std::move(*made_), build, strategies_};
+        made_.reset();
+    }
+    changed_[order.picture].clear();
     return build;
 }
 
@@ -150,7 +168,7 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
     const compiler::Settings& settings = order.settings;
     const std::string key = fmt::format("{}|{}|{}|{}|{}", order.scene, settings.variant, settings.strictPaths,
                                         settings.compile.trustTextures, fmt::join(settings.materials, "|"));
-    if (order.reread || key != sceneKey_) {
+    if (!order.changed.empty() || key != sceneKey_) {
         say("reading " + order.scene);
         const Result<gltf::ImportOptions> import = request_.importOptions(settings);
         if (!import) {
@@ -183,7 +201,41 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
     return okStatus();
 }
 
-Status Builder::makePackage(Build& build) {
+// Says how an edit of packs' GLSL alone is shown early. Everything else has to be as it was in the whole
+// package before.
+std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture, const Build& build) {
+    const std::optional<Whole>& whole = wholes_[picture];
+    const std::set<std::string>& changed = changed_[picture];
+    const auto isGlsl = [](const std::string& file) {
+        return std::filesystem::path(file).extension() == ".glsl";
+    };
+    if (!whole || changed.empty() || !std::ranges::all_of(changed, isGlsl) ||
+        whole->strategies != strategies_ || !haveSameFiles(*whole->build.scene, *build.scene) ||
+        changeBetween(whole->build.settings, build.settings) == Change::Build) {
+        return std::nullopt;
+    }
+    return compiler::EarlyShowing{
+        &whole->package,
+        [this, picture](const compiler::CompiledPackage& early) { return publishEarly(picture, early); },
+        [this, picture] {
+            const std::lock_guard lock(mutex_);
+            return ends_ || slots_[picture].order || slots_[picture].canceled;
+        }};
+}
+
+bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage& early) {
+    Result<Package> loaded = scene_view::loadPackage(early);
+    if (!loaded) {
+        return false;
+    }
+    Build shown = wholes_[picture]->build;
+    shown.package = std::make_shared<const Package>(std::move(*loaded));
+    const std::lock_guard lock(mutex_);
+    slots_[picture].early = std::move(shown);
+    return true;
+}
+
+Status Builder::makePackage(const BuildOrder& order, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
     compiler::Settings& settings = build.settings;
     const gltf::SceneList scenes({build.scene.get(), 1});
@@ -236,8 +288,10 @@ Status Builder::makePackage(Build& build) {
         compile.strategies = strategies_;
         const std::vector<Diagnostic> ofEffects = request_.effectWarnings(scenes, compile);
         messages.insert(messages.end(), ofEffects.begin(), ofEffects.end());
+        const std::optional<compiler::EarlyShowing> showing = earlyShowing(order.picture, build);
         Result<compiler::CompiledPackage> compiled =
-            compilePackage(std::span(build.scene.get(), 1), compile, request_.modules, {}, &warm_);
+            compilePackage(std::span(build.scene.get(), 1), compile, request_.modules, {}, &warm_,
+                           showing ? &*showing : nullptr);
         warm_.endRun();
         if (!compiled) {
             return compiled.error();
@@ -255,8 +309,9 @@ Status Builder::makePackage(Build& build) {
                     static_cast<std::uint32_t>(module.statistics.instructions);
             }
         }
-        build.plan = std::move(compiled->plan);
+        build.plan = compiled->plan;
         build.layers = possibleLayers(build.plan, compile);
+        made_ = std::move(*compiled);
     }
     build.compileMs = base::millisecondsSince(start);
     build.facts = measure::factsOf(settings, *build.scene, build.options);

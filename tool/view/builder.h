@@ -1,6 +1,7 @@
 // Reads the scene and compiles its package on a thread of its own, while the window goes on.
 #pragma once
 
+#include "emit/compile.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene.h"
 #include "plan/plan.h"
@@ -16,6 +17,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -54,7 +56,7 @@ struct BuildOrder {
     std::size_t picture = 0;
     compiler::Settings settings;
     std::string scene;
-    bool reread = false;  // files have changed
+    std::set<std::string> changed{};  // files of the scene, its packs and host, since the order before
 };
 
 class Builder {
@@ -71,6 +73,9 @@ public:
     void start(BuildOrder order);
     // Forgets what was ordered for a picture.
     void cancel(std::size_t picture);
+    // Returns the last build of a picture with an early package (emit/package/early.h) in the place of its
+    // own, once, while another build for edited GLSL of packs is being made.
+    std::optional<Build> pollEarly(std::size_t picture);
     // Returns the finished build of a picture, once.
     std::optional<Result<Build>> poll(std::size_t picture);
     bool isBusy(std::size_t picture) const;
@@ -83,8 +88,10 @@ private:
     void work();
     Result<Build> build(const BuildOrder& order);
     Status readScene(const BuildOrder& order, Build& build);
-    Status makePackage(Build& build);
+    Status makePackage(const BuildOrder& order, Build& build);
     Status readTextures(Build& build);
+    std::optional<compiler::EarlyShowing> earlyShowing(std::size_t picture, const Build& build);
+    bool publishEarly(std::size_t picture, const compiler::CompiledPackage& early);
     void say(std::string text);
 
     const Request& request_;
@@ -97,11 +104,21 @@ private:
     std::string texturesKey_;
     std::uint32_t strategies_ = 0;  // bits
     std::string strategiesKey_;
+    // What a picture was last made from, for an early package of the next edit.
+    struct Whole {
+        compiler::CompiledPackage package;
+        Build build;
+        std::uint32_t strategies = 0;
+    };
+    std::array<std::optional<Whole>, kPictures> wholes_;
+    std::array<std::set<std::string>, kPictures> changed_;  // files, since then
+    std::optional<compiler::CompiledPackage> made_;         // by the build that runs
 
     mutable std::mutex mutex_;  // guards all below
     std::condition_variable wake_;
     struct Slot {
         std::optional<BuildOrder> order;
+        std::optional<Build> early;
         std::optional<Result<Build>> done;
         bool busy = false;
         bool canceled = false;

@@ -206,11 +206,29 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
                                   device_.loaded.milliseconds, base::millisecondsSince(start));
     }
     build_ = std::move(build);
+    beforeEarly_.reset();
     settings_ = build_.settings;
     options_ = options;
     sky_ = measure::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
+}
+
+bool Picture::showEarly(const Build& early) {
+    if (loading_.valid() || !isSameScene(early) || !device_.renderer->replacePackage(early.package)) {
+        return false;
+    }
+    beforeEarly_ = beforeEarly_ ? beforeEarly_ : build_.package;
+    build_.package = early.package;
+    restart();
+    return true;
+}
+
+void Picture::takeBackEarly() {
+    if (beforeEarly_ && device_.renderer->replacePackage(beforeEarly_)) {
+        build_.package = std::exchange(beforeEarly_, nullptr);
+        restart();
+    }
 }
 
 Status Picture::change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height) {

@@ -60,6 +60,10 @@ public:
     // and "half-precision" and "position-fetch" where the device lacks what the build needs.
     Status install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
                    std::vector<Diagnostic>& notes);
+    // Shows an early package, until install() takes the whole one or takeBackEarly() that before the edit.
+    // Returns false if it can't be shown.
+    bool showEarly(const Build& early);
+    void takeBackEarly();
     // Takes settings of stages after the package, or another size. The device must be idle unless
     // changeBetween() is Change::Frame.
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
@@ -146,7 +150,8 @@ private:
     Context& context_;
     compiler::Settings settings_;
     Build build_;
-    std::unique_ptr<gltf::Scene> posed_;  // null until the scene moves
+    std::shared_ptr<const Package> beforeEarly_;  // null: no early package is shown
+    std::unique_ptr<gltf::Scene> posed_;          // null until the scene moves
     std::optional<Moment> moment_;
     bool poseIsNew_ = false;  // the device has another pose
     std::shared_ptr<Environment> environment_;

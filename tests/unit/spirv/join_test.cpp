@@ -2,6 +2,10 @@
 #include "spirv/join/join.h"
 
 #include "spirv/compiler.h"
+#include "spirv/join/clear.h"
+#include "spirv/join/parsed_module.h"
+#include "spirv/join/validate.h"
+#include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
 
@@ -10,9 +14,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -185,6 +191,94 @@ TEST(Join, GivesTheSameWordsForTheSameParts) {
     ASSERT_TRUE(once);
     ASSERT_TRUE(again);
     EXPECT_EQ(*once, *again);
+}
+
+// Two functions of a shader whose structures have members that nothing reads, at the places that count.
+std::vector<Words> partsWithUnreadMembers() {
+    const std::string shared =
+        "#version 460\n#extension GL_EXT_scalar_block_layout : require\nlayout(local_size_x = 1) in;\n"
+        "struct Inner { float unread; vec2 read; };\n"
+        "layout(push_constant, scalar) uniform Push { uint unread; uint number; Inner inner[2]; vec4 last; "
+        "};\n"
+        "layout(set = 0, binding = 0, scalar) buffer Data { float x[]; } data;\n"
+        "layout(set = 0, binding = 1, scalar) uniform Unread { float y; } unreadBlock;\n";
+    std::vector<Words> parts;
+    for (const auto& [glsl, names] : std::vector<std::pair<std::string, compiler::LinkNames>>{
+             {"float first(float x) { return 0.0; }\nfloat second(float x) { return 0.0; }\n"
+              "void main() { data.x[1] = number == 1u ? first(data.x[0]) : second(data.x[0]) + 7.0; }\n",
+              {{}, {"first", "second"}, true}},
+             {"float first(float x) { return x * inner[number].read.y + last.z; }\n"
+              "void main() { first(1.0); }\n",
+              {{"first"}, {}, false}},
+             {"float second(float x) { return inner[1].read.x - x; }\nvoid main() { second(1.0); }\n",
+              {{"second"}, {}, false}}}) {
+        auto words =
+            compiler::compilePart({"part", compiler::ShaderStage::Compute, shared + glsl, {}}, names, {});
+        EXPECT_TRUE(words) << toString(words.error());
+        parts.push_back(words ? *words : Words());
+    }
+    return parts;
+}
+
+TEST(Join, ClearsLikeTheOptimiser) {
+    const std::vector<Words> parts = partsWithUnreadMembers();
+    const std::vector<std::span<const std::uint32_t>> spans(parts.begin(), parts.end());
+    const Result<Words> joined = compiler::joinModules(spans, "joined", false);
+    ASSERT_TRUE(joined) << toString(joined.error());
+    const auto parsed = compiler::parseModule(*joined, "joined");
+    ASSERT_TRUE(parsed) << toString(parsed.error());
+    for (const bool keepMembers : {false, true}) {
+        const std::optional<Words> cleared = compiler::clearGlobals(*parsed, keepMembers);
+        ASSERT_TRUE(cleared);
+        Words expected = *joined;
+        ASSERT_TRUE(compiler::clearJoined(expected, "joined", keepMembers));
+        EXPECT_LT(cleared->size(), joined->size());
+        EXPECT_EQ(*cleared, expected) << keepMembers;
+    }
+}
+
+// A shader of three functions that have many instructions.
+Words largeShader() {
+    constexpr int kLines = 1500;
+    std::vector<Words> parts{headOf()};
+    for (const std::string name : {"first", "second"}) {
+        std::string before = "float long_" + name + "(float x) {\n";
+        for (int i = 0; i < kLines; ++i) {
+            before += "x = sin(x) * data.x[" + std::to_string(i) + (name == "first" ? "];\n" : "] + 2.0;\n");
+        }
+        parts.push_back(partOf(name, "long_" + name + "(hit.place.x)", before + "return x;\n}\n"));
+    }
+    const auto joined = join(parts);
+    EXPECT_TRUE(joined) << toString(joined.error());
+    return joined ? *joined : Words();
+}
+
+TEST(Join, ValidatesGroupsOfFunctions) {
+    Words shader = largeShader();
+    const std::vector<Words> copies = compiler::validationCopies(shader, 2);
+    ASSERT_EQ(copies.size(), 2U);
+    for (const Words& copy : copies) {
+        EXPECT_LT(copy.size(), shader.size() * 3 / 4);
+        const Status valid = compiler::validateSpirv(copy, "copy");
+        EXPECT_TRUE(valid) << toString(valid.error());
+    }
+    // The last product gets a function as a factor.
+    std::size_t product = 0;
+    std::uint32_t function = 0;
+    for (std::size_t at = compiler::kSpirvHeaderWords; at < shader.size(); at += shader[at] >> 16U) {
+        product = (shader[at] & 0xFFFFU) == spv::OpFMul ? at : product;
+        function = (shader[at] & 0xFFFFU) == spv::OpFunction ? shader[at + 2] : function;
+    }
+    ASSERT_NE(product, 0U);
+    shader[product + 3] = function;
+    int invalid = 0;
+    for (const Words& copy : compiler::validationCopies(shader, 2)) {
+        invalid += compiler::validateSpirv(copy, "copy") ? 0 : 1;
+    }
+    EXPECT_EQ(invalid, 1);
+    const Status found = compiler::validateJoined(shader, "shader", 2);
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().message, compiler::validateSpirv(shader, "shader").error().message);
 }
 
 TEST(Join, RefusesWhatDoesNotFit) {

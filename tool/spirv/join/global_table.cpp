@@ -1,5 +1,7 @@
 #include "spirv/join/global_table.h"
 
+#include "base/files.h"
+
 #include <fmt/format.h>
 #include <glslang/SPIRV/spirv.hpp>
 
@@ -34,41 +36,35 @@ bool pointsToPhysicalStorage(const ParsedModule& module, const ParsedInstruction
            module.words[global.at + 2] == spv::StorageClassPhysicalStorageBuffer;
 }
 
-// The words of an annotation without its target, which is the first operand.
-TableWords annotation(const ParsedModule& module, const ParsedInstruction& instruction) {
-    const auto words = module.wordsOf(instruction);
-    TableWords result{words[0]};
-    result.insert(result.end(), words.begin() + 2, words.end());
-    return result;
-}
-
-// The annotations of an ID that tell it from others, in an order of their own.
-std::vector<TableWords> identityOf(const ParsedModule& module, const ParsedInstruction& global) {
-    std::vector<TableWords> identity;
-    const auto add = [&](const std::map<std::uint32_t, std::vector<ParsedInstruction>>& annotations) {
-        if (const auto found = annotations.find(global.result); found != annotations.end()) {
-            for (const ParsedInstruction& instruction : found->second) {
-                identity.push_back(annotation(module, instruction));
-            }
+// Appends the annotations of an ID that tell it from others, in an order of their own and without the ID.
+void appendIdentity(const ParsedModule& module, const ParsedInstruction& global, TableWords& key) {
+    const std::span<const ParsedInstruction> decorations = module.decorations.of(global.result);
+    const bool hasNames = global.opcode == spv::OpTypeStruct || global.opcode == spv::OpVariable;
+    const std::span<const ParsedInstruction> names =
+        hasNames ? module.names.of(global.result) : std::span<const ParsedInstruction>();
+    std::vector<std::span<const std::uint32_t>> identity;
+    identity.reserve(decorations.size() + names.size());
+    for (const std::span<const ParsedInstruction> annotations : {decorations, names}) {
+        for (const ParsedInstruction& annotation : annotations) {
+            identity.push_back(module.wordsOf(annotation));
         }
-    };
-    add(module.decorations);
-    if (global.opcode == spv::OpTypeStruct || global.opcode == spv::OpVariable) {
-        add(module.names);
     }
-    std::ranges::sort(identity);
-    return identity;
+    // The second word is the ID, the same in all of them.
+    std::ranges::sort(
+        identity, [](const auto& a, const auto& b) { return std::ranges::lexicographical_compare(a, b); });
+    for (const std::span<const std::uint32_t> words : identity) {
+        key.push_back(words.front());
+        key.insert(key.end(), words.begin() + 2, words.end());
+    }
 }
 
 // Returns the value of a decoration of the ID.
 std::optional<std::uint32_t> decorationOf(const ParsedModule& module, std::uint32_t id,
                                           spv::Decoration decoration) {
-    if (const auto found = module.decorations.find(id); found != module.decorations.end()) {
-        for (const ParsedInstruction& instruction : found->second) {
-            const auto words = module.wordsOf(instruction);
-            if (instruction.opcode == spv::OpDecorate && words[2] == decoration && words.size() > 3) {
-                return words[3];
-            }
+    for (const ParsedInstruction& instruction : module.decorations.of(id)) {
+        const auto words = module.wordsOf(instruction);
+        if (instruction.opcode == spv::OpDecorate && words[2] == decoration && words.size() > 3) {
+            return words[3];
         }
     }
     return std::nullopt;
@@ -79,8 +75,8 @@ std::optional<std::uint32_t> decorationOf(const ParsedModule& module, std::uint3
 // What is known while a module is added.
 struct GlobalTable::Added {
     std::vector<std::uint32_t> ids;
-    std::vector<const ParsedInstruction*> definitions;  // by the module's ID
-    std::map<Words, std::uint32_t> counts;              // how often a key has come
+    std::vector<const ParsedInstruction*> definitions;           // by the module's ID
+    std::unordered_map<Words, std::uint32_t, HashWords> counts;  // how often a key has come
 };
 
 void appendMapped(const ParsedModule& module, const ParsedInstruction& instruction,
@@ -90,47 +86,49 @@ void appendMapped(const ParsedModule& module, const ParsedInstruction& instructi
     }
 }
 
+std::size_t GlobalTable::HashWords::operator()(const Words& words) const {
+    return static_cast<std::size_t>(base::hashBytes(
+        {reinterpret_cast<const std::uint8_t*>(words.data()), words.size() * sizeof(std::uint32_t)}));
+}
+
 // Describes all that a pointer leads to. Types that lead back to themselves are named by when they came.
-std::string GlobalTable::describePointer(const ParsedModule& module, const Added& added,
-                                         std::uint32_t id) const {
-    std::map<std::uint32_t, std::size_t> seen;
-    std::string text;
+GlobalTable::Words GlobalTable::describePointer(const ParsedModule& module, const Added& added,
+                                                std::uint32_t id) {
+    std::map<std::uint32_t, std::uint32_t> seen;
+    Words description;
     const auto describe = [&](const auto& self, std::uint32_t next) -> void {
-        const auto [place, isNew] = seen.emplace(next, seen.size());
-        text += fmt::format("#{} ", place->second);
+        const auto [place, isNew] = seen.emplace(next, static_cast<std::uint32_t>(seen.size()));
+        description.push_back(place->second);
         if (!isNew || added.definitions[next] == nullptr) {
             return;
         }
+        // What is described has as many words as the first of them says, and then its annotations.
         const ParsedInstruction& global = *added.definitions[next];
-        text += '(';
         for (std::size_t i = global.at; i < global.at + global.length; ++i) {
             if (!module.isId[i]) {
-                text += fmt::format("{:x} ", module.words[i]);
+                description.push_back(module.words[i]);
             } else if (module.words[i] != next) {
                 self(self, module.words[i]);
             }
         }
-        for (const Words& words : identityOf(module, global)) {
-            for (const std::uint32_t word : words) {
-                text += fmt::format("{:x} ", word);
-            }
-        }
-        text += ')';
+        const std::size_t length = description.size();
+        description.push_back(0);
+        appendIdentity(module, global, description);
+        description[length] = static_cast<std::uint32_t>(description.size() - length);
     };
     describe(describe, id);
-    return text;
+    return description;
 }
 
 GlobalTable::Words GlobalTable::keyOf(const ParsedModule& module, const Added& added,
                                       const ParsedInstruction& global) const {
     Words key;
+    key.reserve(global.length + 1);
     for (std::size_t i = global.at; i < global.at + global.length; ++i) {
         const bool isResult = module.isId[i] && module.words[i] == global.result;
         key.push_back(isResult ? 0 : module.isId[i] ? added.ids[module.words[i]] : module.words[i]);
     }
-    for (const Words& words : identityOf(module, global)) {
-        key.insert(key.end(), words.begin(), words.end());
-    }
+    appendIdentity(module, global, key);
     return key;
 }
 
@@ -168,13 +166,11 @@ void GlobalTable::write(const ParsedModule& module, const Added& added, const Pa
     }
     written_[id] = true;
     appendMapped(module, global, added.ids, global.opcode == spv::OpExtInstImport ? imports_ : globals_);
-    if (const auto found = module.decorations.find(global.result); found != module.decorations.end()) {
-        for (const ParsedInstruction& decoration : found->second) {
-            appendMapped(module, decoration, added.ids, decorations_);
-        }
+    for (const ParsedInstruction& decoration : module.decorations.of(global.result)) {
+        appendMapped(module, decoration, added.ids, decorations_);
     }
-    if (const auto found = module.names.find(global.result); keepNames_ && found != module.names.end()) {
-        for (const ParsedInstruction& name : found->second) {
+    if (keepNames_) {
+        for (const ParsedInstruction& name : module.names.of(global.result)) {
             appendMapped(module, name, added.ids, names_);
         }
     }

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,9 @@ namespace glint::compiler {
 class GlobalTable {
 public:
     using Words = std::vector<std::uint32_t>;
+    struct HashWords {
+        std::size_t operator()(const Words& words) const;
+    };
 
     // `keepNames` writes the names of what is added.
     explicit GlobalTable(bool keepNames) : keepNames_(keepNames) {}
@@ -58,7 +62,7 @@ public:
 private:
     struct Added;
 
-    std::string describePointer(const ParsedModule& module, const Added& added, std::uint32_t id) const;
+    static Words describePointer(const ParsedModule& module, const Added& added, std::uint32_t id);
     Words keyOf(const ParsedModule& module, const Added& added, const ParsedInstruction& global) const;
     Status checkResource(const ParsedModule& module, const ParsedInstruction& global,
                          const std::string& shader);
@@ -67,9 +71,10 @@ private:
 
     bool keepNames_;
     std::uint32_t bound_ = 1;
-    std::map<Words, std::uint32_t> known_;
-    std::map<std::string, std::uint32_t> pointers_;  // to physical storage, by what they lead to
-    std::vector<bool> written_;                      // by ID of the table
+    std::unordered_map<Words, std::uint32_t, HashWords> known_;
+    std::unordered_map<Words, std::uint32_t, HashWords>
+        pointers_;               // to physical storage, by what they lead to
+    std::vector<bool> written_;  // by ID of the table
     std::map<std::string, std::uint32_t> resources_;
     Words imports_;
     Words names_;

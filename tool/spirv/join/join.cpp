@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace glint::compiler {
@@ -48,6 +49,7 @@ private:
     struct Member {
         ParsedModule module;
         std::vector<std::uint32_t> ids;
+        std::vector<std::uint32_t> numbers;  // all 0; for number()
     };
 
     Diagnostic refuse(const std::string& why) const {
@@ -59,7 +61,7 @@ private:
     Status addFunction(Member& member, const ParsedFunction& function, std::set<std::uint32_t>& open,
                        JoinedWords& functions);
     Status import(Member& member, const ParsedFunction& function);
-    NumberedFunction number(const Member& member, const ParsedFunction& function) const;
+    NumberedFunction number(Member& member, const ParsedFunction& function) const;
     void write(Member& member, const ParsedFunction& function, const NumberedFunction& numbered,
                JoinedWords& functions);
     void writeNames(const Member& member, std::uint32_t id, std::uint32_t joined);
@@ -74,7 +76,7 @@ private:
     std::set<JoinedWords> settings_;  // capabilities and extensions that were added
     JoinedWords decorations_;         // of what functions define
     JoinedWords names_;
-    std::map<JoinedWords, std::uint32_t> functions_;
+    std::unordered_map<JoinedWords, std::uint32_t, GlobalTable::HashWords> functions_;
     struct Export {
         std::uint32_t id = 0;
         std::uint32_t type = 0;
@@ -102,16 +104,16 @@ Status Joiner::addSettings(const ParsedModule& module, bool isFirst) {
     return okStatus();
 }
 
-NumberedFunction Joiner::number(const Member& member, const ParsedFunction& function) const {
+NumberedFunction Joiner::number(Member& member, const ParsedFunction& function) const {
     const ParsedModule& module = member.module;
     NumberedFunction numbered;
-    std::map<std::uint32_t, std::uint32_t> numbers;
     const auto numberOf = [&](std::uint32_t id) {
-        const auto [place, isNew] = numbers.emplace(id, static_cast<std::uint32_t>(numbered.ids.size()));
-        if (isNew) {
+        std::uint32_t& number = member.numbers[id];
+        if (number == 0) {
+            number = kOwnId | static_cast<std::uint32_t>(numbered.ids.size());
             numbered.ids.push_back(id);
         }
-        return kOwnId | place->second;
+        return number;
     };
     numberOf(function.id);
     const auto add = [&](const ParsedInstruction& instruction, JoinedWords& to,
@@ -131,22 +133,24 @@ NumberedFunction Joiner::number(const Member& member, const ParsedFunction& func
     }
     const std::size_t count = numbered.ids.size();
     for (std::size_t i = 0; i < count; ++i) {
-        if (const auto found = module.decorations.find(numbered.ids[i]); found != module.decorations.end()) {
-            for (const ParsedInstruction& decoration : found->second) {
-                add(decoration, numbered.annotations, numbered.ownTargets);
-            }
+        for (const ParsedInstruction& decoration : module.decorations.of(numbered.ids[i])) {
+            add(decoration, numbered.annotations, numbered.ownTargets);
         }
+    }
+    for (const std::uint32_t id : numbered.ids) {
+        member.numbers[id] = 0;
     }
     return numbered;
 }
 
 void Joiner::writeNames(const Member& member, std::uint32_t id, std::uint32_t joined) {
-    if (const auto found = member.module.names.find(id); keepNames_ && found != member.module.names.end()) {
-        for (const ParsedInstruction& name : found->second) {
-            const std::size_t target = names_.size() + 1;
-            append(names_, member.module.wordsOf(name));
-            names_[target] = joined;
-        }
+    if (!keepNames_) {
+        return;
+    }
+    for (const ParsedInstruction& name : member.module.names.of(id)) {
+        const std::size_t target = names_.size() + 1;
+        append(names_, member.module.wordsOf(name));
+        names_[target] = joined;
     }
 }
 
@@ -300,7 +304,8 @@ Result<JoinedWords> Joiner::join(std::span<const std::span<const std::uint32_t>>
         if (!ids) {
             return ids.error();
         }
-        members.push_back({std::move(*parsed), std::move(*ids)});
+        const std::uint32_t bound = parsed->bound();
+        members.push_back({std::move(*parsed), std::move(*ids), std::vector<std::uint32_t>(bound)});
     }
     JoinedWords own;
     JoinedWords imported;

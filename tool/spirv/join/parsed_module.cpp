@@ -1,6 +1,3 @@
-// For spv::HasResultAndType().
-#define SPV_ENABLE_UTILITY_CODE
-
 #include "spirv/join/parsed_module.h"
 
 #include "spirv/reader.h"
@@ -10,6 +7,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 
@@ -48,7 +46,7 @@ void addDecoration(ParsedModule& module, const ParsedInstruction& instruction) {
         const bool exported = words.back() == spv::LinkageTypeExport;
         (exported ? module.exports : module.imports)[words[1]] = spirvString(words.subspan(kLinkageName));
     } else {
-        module.decorations[words[1]].push_back(instruction);
+        module.decorations.add(words[1], instruction);
     }
 }
 
@@ -65,7 +63,7 @@ void add(Reading& reading, const ParsedInstruction& instruction) {
     } else if (inFunction) {
         module.functions.back().body.push_back(instruction);
     } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
-        module.names[module.words[instruction.at + 1]].push_back(instruction);
+        module.names.add(module.words[instruction.at + 1], instruction);
     } else if (isDecorating(opcode)) {
         addDecoration(module, instruction);
     } else if (opcode == spv::OpDecorationGroup || opcode == spv::OpGroupDecorate ||
@@ -84,19 +82,28 @@ spv_result_t readInstruction(void* data, const spv_parsed_instruction_t* parsed)
             reading.module->isId[reading.at + operand.offset] = true;
         }
     }
-    add(reading, {reading.at, parsed->num_words, parsed->opcode, parsed->result_id});
+    add(reading, {reading.at, parsed->num_words, parsed->opcode, parsed->result_id, parsed->type_id});
     reading.at += parsed->num_words;
     return SPV_SUCCESS;
 }
 
 }  // namespace
 
-std::string ParsedModule::nameOf(std::uint32_t id) const {
-    const auto found = names.find(id);
-    if (found == names.end()) {
-        return {};
+void Annotations::finish(std::uint32_t bound) {
+    begins_.assign(bound + 1, 0);
+    for (const auto& [target, instruction] : entries_) {
+        ++begins_[target + 1];
     }
-    for (const ParsedInstruction& name : found->second) {
+    std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+    std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
+    sorted_.resize(entries_.size());
+    for (const auto& [target, instruction] : entries_) {
+        sorted_[next[target]++] = instruction;
+    }
+}
+
+std::string ParsedModule::nameOf(std::uint32_t id) const {
+    for (const ParsedInstruction& name : names.of(id)) {
         if (name.opcode == spv::OpName) {
             return spirvString(wordsOf(name).subspan(2));
         }
@@ -126,6 +133,8 @@ Result<ParsedModule> parseModule(std::span<const std::uint32_t> words, const std
     if (reading.hasGroups) {
         return refuse("a part has groups of decorations, which can't be joined");
     }
+    module.decorations.finish(module.bound());
+    module.names.finish(module.bound());
     return module;
 }
 

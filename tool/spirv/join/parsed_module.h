@@ -8,6 +8,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint::compiler {
@@ -17,6 +18,30 @@ struct ParsedInstruction {
     std::size_t length = 0;
     std::uint32_t opcode = 0;
     std::uint32_t result = 0;  // ID, or 0
+    std::uint32_t type = 0;    // ID of the result's type, or 0
+};
+
+// Instructions that say something about an ID, by that ID.
+class Annotations {
+public:
+    void add(std::uint32_t target, const ParsedInstruction& instruction) {
+        entries_.emplace_back(target, instruction);
+    }
+    // To be called once, after the last add(). IDs are less than `bound`.
+    void finish(std::uint32_t bound);
+    // Those about an ID, in the order of the module.
+    std::span<const ParsedInstruction> of(std::uint32_t id) const {
+        return std::span(sorted_).subspan(begins_[id], begins_[id + 1] - begins_[id]);
+    }
+    // All of them with their targets, in the order of the module.
+    const std::vector<std::pair<std::uint32_t, ParsedInstruction>>& all() const {
+        return entries_;
+    }
+
+private:
+    std::vector<std::pair<std::uint32_t, ParsedInstruction>> entries_;
+    std::vector<ParsedInstruction> sorted_;
+    std::vector<std::uint32_t> begins_;  // by ID: of its place in sorted_
 };
 
 struct ParsedFunction {
@@ -29,9 +54,8 @@ struct ParsedModule {
     std::vector<bool> isId;                  // by word
     std::vector<ParsedInstruction> globals;  // before the functions, without annotations
     std::vector<ParsedFunction> functions;
-    // By ID: its decorations, without linkage, and its names.
-    std::map<std::uint32_t, std::vector<ParsedInstruction>> decorations;
-    std::map<std::uint32_t, std::vector<ParsedInstruction>> names;
+    Annotations decorations;  // without linkage
+    Annotations names;
     // By ID of a function: the name under which it is linked.
     std::map<std::uint32_t, std::string> exports;
     std::map<std::uint32_t, std::string> imports;

@@ -8,10 +8,10 @@
 
 namespace glint::view {
 
-void Window::order(std::size_t index, bool reread) {
+void Window::order(std::size_t index, std::span<const std::string> changed) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
-    BuildOrder order{index, one.wanted, scene_, reread};
+    BuildOrder order{index, one.wanted, scene_, {changed.begin(), changed.end()}};
     // As on the command line: textures may hold anything where a fallback or a host stands by.
     order.settings.compile.trustTextures = one.wanted.compile.trustTextures &&
                                            !one.wanted.compile.plan.fallback &&
@@ -30,7 +30,7 @@ void Window::pollFiles() {
             report(package.error());
         } else if (*package) {
             say("the package has changed");
-            order(0, false);
+            order(0);
         }
     }
     const std::vector<std::string> changed = watch_.changed();
@@ -38,7 +38,7 @@ void Window::pollFiles() {
         say(changed.front() + " has changed");
         for (std::size_t i = 0; i < kPictures; ++i) {
             if (sides_[i]) {
-                order(i, true);
+                order(i, changed);
             }
         }
     }
@@ -56,6 +56,13 @@ Status Window::takeBuilds() {
         if (sides_[i] && sides_[i]->loading != nullptr) {
             done = std::move(*std::exchange(sides_[i]->loading, nullptr));
         } else {
+            if (const std::optional<Build> early = builder_->pollEarly(i); early && sides_[i]) {
+                finishSamples();
+                if (sides_[i]->picture.showEarly(*early)) {
+                    ++earlyPackages_;
+                    say("the edit is shown as a draft");
+                }
+            }
             done = builder_->poll(i);
             if (!done || !sides_[i]) {
                 continue;
@@ -76,6 +83,7 @@ Status Window::takeBuilds() {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }
+        sides_[i]->picture.takeBackEarly();
         keepScene();
         fail(installed.error());
     }
@@ -151,7 +159,7 @@ Status Window::followSettings(std::size_t index) {
     compiler::Settings next = one.wanted;
     // Until the other build is there, the picture keeps what only that build has.
     if (changeBetween(one.ordered, one.wanted) == Change::Build) {
-        order(index, false);
+        order(index);
     }
     if (changeBetween(one.picture.build().settings, next) == Change::Build) {
         const compiler::Settings built = one.picture.settings();

@@ -83,7 +83,7 @@ void Window::openFile(const std::string& file) {
     }
     for (std::size_t i = 0; i < kPictures; ++i) {
         if (sides_[i]) {
-            order(i, false);
+            order(i);
         }
     }
 }
@@ -354,7 +354,7 @@ void Window::compare(bool on) {
     sides_[1]->wanted = sides_[0]->wanted;
     shown_ = Shown::Wipe;
     edited_ = 1;
-    order(1, false);
+    order(1);
 }
 
 void Window::pickAt(double x, double y) {

@@ -178,6 +178,7 @@ Status Window::writeReport(const std::string& file) {
         {"missingLevels", one.picture.missingLevels()},
         {"strategy", isReady ? std::string(package::nameOf(*one.picture.settings().strategy)) : ""},
         {"lastChange", one.picture.lastChange()},
+        {"earlyPackages", earlyPackages_},
         {"time", poses_ ? base::Json(time_) : base::Json(nullptr)},
         {"plays", plays_},
         {"flies", flies_},

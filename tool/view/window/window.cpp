@@ -165,7 +165,7 @@ Status Window::open() {
     }
     plays_ = request_.plays;
     poses_ = poses_ || plays_;
-    order(0, false);
+    order(0);
     if (!request_.script.empty()) {
         const ScriptHost host{window_,
                               &controls_,

@@ -23,6 +23,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -82,7 +83,8 @@ private:
     }
 
     // --- builds.cpp ---
-    void order(std::size_t side, bool reread);
+    // `changed`: files.
+    void order(std::size_t side, std::span<const std::string> changed = {});
     void pollFiles();
     Status takeBuilds();
     Status install(std::size_t side, Build build);
@@ -213,6 +215,7 @@ private:
 
     base::InputWatch watch_;
     std::optional<PackageWatch> packageWatch_;
+    std::uint64_t earlyPackages_ = 0;  // that were shown
     base::Clock::time_point polled_{};
 
     std::vector<KeyPress> keys_;
