@@ -52,11 +52,6 @@ EmitterShape::EmitterShape(const EmissionEntry& emission, const PrimitiveView& v
     }
 }
 
-std::uint64_t EmitterShape::bytes() const {
-    return positions.size() * sizeof positions[0] + indices.size() * sizeof indices[0] +
-           (texCoords[0].size() + texCoords[1].size()) * sizeof texCoords[0][0];
-}
-
 std::optional<EmitterTexture> emitterTexture(const EmissionEntry& emission, std::uint32_t featureInputs,
                                              const gpu::TextureRecord& record,
                                              std::span<const package::SamplerEntry> samplers,

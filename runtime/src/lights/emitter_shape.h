@@ -26,8 +26,6 @@ struct EmitterShape {
     EmitterShape(const package::EmissionEntry& emission, const PrimitiveView& view,
                  std::span<const std::uint32_t> indices);
 
-    std::uint64_t bytes() const;
-
     std::vector<std::array<float, 3>> positions;
     std::array<std::vector<std::array<float, 2>>, 2> texCoords;  // by UV set; may be empty
     std::vector<std::uint32_t> indices;
