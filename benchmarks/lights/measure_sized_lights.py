@@ -3,18 +3,20 @@
 
     benchmarks/lights/measure_sized_lights.py [--bin DIR] [--roughness 0.05,0.1,0.2,0.4] [--spp N] [--shadow-spp 1,16]
                                               [--sized-lights off,on] [--truth N] [--size WxH]
-                                              [--lamps N] [--lights all|K]
+                                              [--lamps N] [--lights all|K] [--rounds N]
 
 A metal floor is lit by a spherical lamp of radius 0.25 m alone, or by --lamps N of them above it. Their radius is then
 0.25 m over the cube root of N, and together they are as bright. The truth is that of glint_oracle, which also lets the
 rays of lobes find the lamps. Prints Markdown: the RMSE of glint render with light samples alone and with rays of lobes
-(--sized-lights), and what the RMSE of the oracle would be with the same number of samples. DIR holds both programs
-(build/release/bin).
+(--sized-lights), and what the RMSE of the oracle would be with the same number of samples. With --rounds it prints the
+device time of the lighting pass instead, in ms a sample: the median of so many rounds, and the least. DIR holds both
+programs (build/release/bin).
 """
 import argparse
 import json
 import pathlib
 import random
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -48,6 +50,54 @@ def write_floor(path, roughness, count):
                 materials=[material], cameras=cameras, extensions=lights)
 
 
+class Floor:
+    """The scene of one roughness, in a folder of its own."""
+
+    def __init__(self, arguments, folder, roughness):
+        self.arguments, self.folder = arguments, folder
+        self.scene, self.picture = folder / "floor.gltf", folder / "floor.exr"
+        radius = f"{RADIUS / arguments.lamps ** (1 / 3):.4g}"
+        self.options = ["--size", arguments.size, "--light-radius", radius]
+        write_floor(self.scene, float(roughness), arguments.lamps)
+
+    def render(self, sized, points):
+        """Returns the device time of the lighting pass, ms a sample."""
+        stats = self.folder / "stats.json"
+        subprocess.run([self.arguments.bin / "glint", "render", self.scene, *self.options, "--sky", "0", "--spp",
+                        str(self.arguments.spp), "--shadow-spp", points, "--strategy", "uber", "--merge", "all",
+                        "--effects", "shadow,reflection", "--max-roughness", "1", "--sized-lights", sized, "--lights",
+                        self.arguments.lights, "--stats", stats, "--quiet", "-o", self.picture], check=True)
+        passes = json.loads(stats.read_text())["passes"]
+        return sum(entry["milliseconds"] for entry in passes if entry["name"] == "lighting")
+
+    def truth(self):
+        """What glint_oracle says of the last picture."""
+        report = self.folder / "floor.json"
+        subprocess.run([self.arguments.bin / "glint_oracle", self.scene, *self.options, "--bounces", "0", "--no-sky",
+                        "--samples", str(self.arguments.truth), "--against", self.picture, "--device-spp",
+                        str(self.arguments.spp), "--json", report], check=True, stdout=subprocess.DEVNULL)
+        return json.loads(report.read_text())
+
+
+def print_errors(floor, roughness, columns):
+    row = []
+    for column in columns:
+        floor.render(*column)
+        truth = floor.truth()
+        row.append(f"{truth['difference']['rmse']:.2g}")
+    row.append(f"{truth['difference']['expectedRmse']:.2g}")
+    print(f"| {roughness} | {truth['mean']:.2f} | " + " | ".join(row) + " |", flush=True)
+
+
+def print_times(floor, roughness, columns, rounds):
+    times = {column: [] for column in columns}
+    for _ in range(rounds):
+        for column in columns:
+            times[column].append(floor.render(*column))
+    row = [f"{statistics.median(values):.3g} ({min(values):.3g})" for values in times.values()]
+    print(f"| {roughness} | " + " | ".join(row) + " |", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", type=pathlib.Path, default=ROOT / "build/release/bin")
@@ -59,32 +109,19 @@ def main():
     parser.add_argument("--size", default="32x18")
     parser.add_argument("--lamps", type=int, default=1)
     parser.add_argument("--lights", default="all", help="how many of the lamps a surface takes")
+    parser.add_argument("--rounds", type=int, default=0, help="print times instead of errors")
     arguments = parser.parse_args()
-    radius = f"{RADIUS / arguments.lamps ** (1 / 3):.4g}"
     columns = [(sized, n) for sized in arguments.sized_lights.split(",") for n in arguments.shadow_spp.split(",")]
-    print("| roughness | mean |" + "".join(f" `{sized}`, {n} |" for sized, n in columns) + " oracle |")
-    print("|--:|--:|" + "--:|" * (len(columns) + 1))
+    titles = "".join(f" `{sized}`, {n} |" for sized, n in columns)
+    print(f"| roughness |{titles}" if arguments.rounds else f"| roughness | mean |{titles} oracle |")
+    print("|--:|" + "--:|" * (len(columns) + (0 if arguments.rounds else 2)))
     with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
         for roughness in arguments.roughness.split(","):
-            scene = folder / "floor.gltf"
-            write_floor(scene, float(roughness), arguments.lamps)
-            row = []
-            for sized, n in columns:
-                picture = folder / "floor.exr"
-                options = ["--size", arguments.size, "--light-radius", radius]
-                subprocess.run([arguments.bin / "glint", "render", scene, *options, "--sky", "0", "--spp",
-                                str(arguments.spp), "--shadow-spp", n, "--strategy", "uber", "--merge", "all",
-                                "--effects", "shadow,reflection", "--max-roughness", "1", "--sized-lights", sized,
-                                "--lights", arguments.lights, "--quiet", "-o", picture], check=True)
-                subprocess.run([arguments.bin / "glint_oracle", scene, *options, "--bounces", "0", "--no-sky",
-                                "--samples", str(arguments.truth), "--against", picture, "--device-spp",
-                                str(arguments.spp), "--json", folder / "floor.json"], check=True,
-                               stdout=subprocess.DEVNULL)
-                truth = json.loads((folder / "floor.json").read_text())
-                row.append(f"{truth['difference']['rmse']:.2g}")
-            row.append(f"{truth['difference']['expectedRmse']:.2g}")
-            print(f"| {roughness} | {truth['mean']:.2f} | " + " | ".join(row) + " |", flush=True)
+            floor = Floor(arguments, pathlib.Path(folder), roughness)
+            if arguments.rounds:
+                print_times(floor, roughness, columns, arguments.rounds)
+            else:
+                print_errors(floor, roughness, columns)
 
 
 if __name__ == "__main__":
