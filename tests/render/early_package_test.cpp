@@ -15,12 +15,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <sys/resource.h>
 #include <utility>
 #include <vector>
 
@@ -377,21 +379,29 @@ TEST_F(EarlyPackage, OtherEditsTakeTheOrdinaryWay) {
     EXPECT_FALSE(shown);
 }
 
-// A compilation that nobody needs any more ends.
+// A compilation that nobody needs any more ends. Its threads ask for that, and leave the cores to who draws.
 TEST_F(EarlyPackage, AnOutdatedCompilationEnds) {
     const materials::MaterialModel* const model = paintModel(folder_->path(), "0.31415");
     ASSERT_NE(model, nullptr);
     const gltf::Scene scene = paintedRoom(*model);
+    constexpr int kMostNice = 19;
+    const int own = getpriority(PRIO_PROCESS, 0);
+    std::atomic<int> asked{own};
     for (const bool published : {true, false}) {
         const compiler::EarlyShowing showing{&version(2).compiled,
                                              [&](const compiler::CompiledPackage&) { return published; },
-                                             [] { return true; }};
+                                             [&] {
+                                                 asked = getpriority(PRIO_PROCESS, 0);
+                                                 return true;
+                                             }};
         const Result<compiler::CompiledPackage> compiled =
             compilePackage(std::span(&scene, 1), paintedSettings(), published ? nullptr : &sharedModules(),
                            {}, nullptr, &showing);
         EXPECT_EQ(compiled.ok(), !published);
         if (!compiled) {
             EXPECT_EQ(compiled.error().id, "outdated");
+            EXPECT_EQ(asked, std::min(own + 5, kMostNice));
+            EXPECT_EQ(getpriority(PRIO_PROCESS, 0), own);
         }
     }
 }

@@ -1,6 +1,7 @@
 #include "emit/compile.h"
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "emit/compile_modules.h"
 #include "emit/context.h"
 #include "emit/effects.h"
@@ -174,7 +175,8 @@ Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& setting
     const bool shown = showing != nullptr && showEarly(scenes, plan, *sources, settings, *showing,
                                                        base::millisecondsBetween(start, planned), warm);
     const double earlyMs = base::millisecondsSince(planned);
-    Result<std::vector<ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings, warm);
+    const auto makeSources = [&] { return makeModuleSources(scenes, plan, *sources, settings, warm); };
+    Result<std::vector<ModuleSource>> modules = shown ? base::runBehind(makeSources) : makeSources();
     if (!modules) {
         return modules.error();
     }
@@ -189,11 +191,16 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings s
         return prepared.error();
     }
     const base::Clock::time_point planned = base::Clock::now();
+    const auto compileAll = [&] {
+        return compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm,
+                              prepared->shownEarly ? showing->isOutdated : std::function<bool()>());
+    };
+    // The driver makes the pipeline of the early package at the same time, and that is awaited first.
     Result<std::vector<CompiledModule>> compiled =
-        settings.modules.empty()
-            ? compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm,
-                             prepared->shownEarly ? showing->isOutdated : std::function<bool()>())
-            : takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules);
+        !settings.modules.empty()
+            ? takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules)
+        : prepared->shownEarly ? base::runBehind(compileAll)
+                               : compileAll();
     if (!compiled) {
         return explainGlslError(compiled.error(), *prepared->plan.model, settings.host);
     }
