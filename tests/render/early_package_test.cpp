@@ -91,7 +91,7 @@ gltf::Scene paintedRoom(const materials::MaterialModel& model) {
 }
 
 // A fallback's draft is the reference of what early packages show.
-compiler::CompileSettings paintedSettings(bool fallback) {
+compiler::CompileSettings paintedSettings(bool fallback = true) {
     compiler::CompileSettings settings = roomSettings(package::kStrategyVisibility, fallback);
     settings.tracers = tracerOfDevice();
     settings.emitHeader = false;
