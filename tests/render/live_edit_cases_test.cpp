@@ -116,6 +116,9 @@ TEST_F(LiveEditErrors, Values) {
     scene_view::MaterialSourceData source = edited_->source(3);
     source.textures[0].slot = 99;
     expectError(editor().addMaterial(source.view()), "scene-edit-value", "slot");
+    source = edited_->source(3);
+    source.textures.push_back(source.textures[0]);
+    expectError(editor().addMaterial(source.view()), "scene-edit-value", "two textures");
     expectError(editor().addMesh({}), "scene-edit-value");
     EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
     primitive.geometry.indices = {};

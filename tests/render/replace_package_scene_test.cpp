@@ -65,6 +65,28 @@ TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     expectNoValidationMessages();
 }
 
+// A package with a fallback knows other features of what emits light, because lamps may be added. The scene's
+// emissive triangles are the same.
+TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
+    gltf::Scene lamps = roomScene();
+    lamps.materials[kGlossy]["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
+    compiler::CompileSettings settings = roomSettings(package::kStrategyVisibility);
+    settings.effects = {false, compiler::builtinEffects({"shadow", "reflection"})};
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    const std::shared_ptr<const Package> original = packageOf(lamps, settings);
+    settings.plan.fallback = true;
+    const std::shared_ptr<const Package> extended = packageOf(lamps, settings);
+    ASSERT_NE(original->emission(), nullptr);
+    EXPECT_NE(original->emission()->sometimes, extended->emission()->sometimes);
+    const std::unique_ptr<GpuScene> scene = upload(lamps, *original);
+    const std::unique_ptr<Renderer> renderer =
+        make(*original, *scene, optionsOf(package::kStrategyVisibility));
+    ASSERT_NE(renderer, nullptr);
+    const Result<PackageReplacement> replaced = renderer->replacePackage(extended);
+    EXPECT_TRUE(replaced) << toString(replaced.error());
+    expectNoValidationMessages();
+}
+
 // A masked leaf whose left half is opaque, above a mirror: without rays nothing is tested. UVs keep clear of
 // the border, so that the states of all triangles are known.
 gltf::Scene maskedRoom() {

@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <thread>
 #include <utility>
 
 namespace glint::compiler {
@@ -164,7 +165,7 @@ public:
     // that of the first text in the order of the work, whatever the jobs.
     Result<std::vector<std::optional<CompiledText>>> run(int jobs) {
         const std::vector<std::size_t> order = orderOfWork();
-        jobs_ = jobs;
+        jobs_ = jobs > 0 ? jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
         base::runParallel(order.size(), jobs, [&](std::size_t place) {
             const std::size_t text = order[place];
             results_[text] = compile(text);
@@ -242,7 +243,12 @@ private:
             }
             parts.push_back(&(*results_[part])->module);
         }
-        return keep(text, joinMeasured(shaderOf(*text.source), options_, parts, jobs_));
+        // The joins that wait or run share the threads.
+        const int idle = jobs_ / std::max(1, ++joins_);
+        Result<CompiledText> joined =
+            keep(text, joinMeasured(shaderOf(*text.source), options_, parts, std::max(1, idle)));
+        --joins_;
+        return joined;
     }
 
     Result<CompiledText> keep(const DistinctTexts::Text& text, Result<CachedModule> module) {
@@ -261,6 +267,7 @@ private:
     std::vector<std::optional<Result<CompiledText>>> results_;
     std::vector<std::atomic<bool>> done_;
     int jobs_ = 1;
+    std::atomic<int> joins_{0};
 };
 
 // Counts the parts of a module that were made in this run, each once.

@@ -25,7 +25,7 @@ Result<std::vector<package::LayerEntry>> resolveLayers(const Plan& plan, const C
 std::string layerNameOf(const package::LayerEntry& entry, const materials::MaterialModel& model);
 
 // Returns the layers' macros for generated/scene.glsl. `deforms`: some vertices follow joints or morph
-// weights.
+// weights. `findsSizedLights`: rays find lights with a size, which walks may meet.
 std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights);
 
 // Adds the fields for the templates of layers: surface_layers.glsl, compose_effects.glsl.

@@ -231,7 +231,11 @@ bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage&
     Build shown = wholes_[picture]->build;
     shown.package = std::make_shared<const Package>(std::move(*loaded));
     const std::lock_guard lock(mutex_);
-    slots_[picture].early = std::move(shown);
+    Slot& slot = slots_[picture];
+    if (ends_ || slot.order || slot.canceled) {
+        return false;  // what it was asked for has changed
+    }
+    slot.early = std::move(shown);
     return true;
 }
 

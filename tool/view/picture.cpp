@@ -224,11 +224,16 @@ bool Picture::showEarly(const Build& early) {
     return true;
 }
 
-void Picture::takeBackEarly() {
-    if (beforeEarly_ && device_.renderer->replacePackage(beforeEarly_)) {
-        build_.package = std::exchange(beforeEarly_, nullptr);
-        restart();
+Status Picture::takeBackEarly() {
+    if (!beforeEarly_) {
+        return okStatus();
     }
+    if (auto replaced = device_.renderer->replacePackage(beforeEarly_); !replaced) {
+        return replaced.error();
+    }
+    build_.package = std::exchange(beforeEarly_, nullptr);
+    restart();
+    return okStatus();
 }
 
 Status Picture::change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height) {

@@ -63,7 +63,7 @@ public:
     // Shows an early package, until install() takes the whole one or takeBackEarly() that before the edit.
     // Returns false if it can't be shown.
     bool showEarly(const Build& early);
-    void takeBackEarly();
+    Status takeBackEarly();
     // Takes settings of stages after the package, or another size. The device must be idle unless
     // changeBetween() is Change::Frame.
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <span>
 
 namespace glint {
 namespace {
@@ -45,9 +46,15 @@ Status checkSource(const SceneEditor::State& state, const MaterialSource& source
                             " bytes, those of the package have " + std::to_string(state.layout.recordBytes),
                         "make the record in the package's layout");
     }
-    for (const TextureUse& use : source.textures) {
+    for (std::size_t i = 0; i < source.textures.size(); ++i) {
+        const TextureUse& use = source.textures[i];
         if (Status status = checkUse(state, use, where); !status) {
             return status;
+        }
+        const auto earlier = std::span(source.textures).first(i);
+        if (std::ranges::find(earlier, use.slot, &TextureUse::slot) != earlier.end()) {
+            return badValue(where, "two textures have the slot " + std::to_string(use.slot),
+                            "give each slot at most one texture");
         }
     }
     for (const MaterialKey& key : source.keys) {

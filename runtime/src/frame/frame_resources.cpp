@@ -202,7 +202,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {&Frame::rayHits, size.layerRays ? samples * sizeof(gpu::RayHit) : 0, kStorage, MemoryUse::Device},
         {&Frame::bounceLight, samples * size.layerBounces * sizeof(gpu::BounceLight), kStorage,
          MemoryUse::Device},
-        {&Frame::walkedLight, size.layerWalks ? samples * sizeof(gpu::BounceLight) : 0, kStorage,
+        {&Frame::walkedLight, size.layerWalks ? samples * sizeof(gpu::BounceLight) : 0, kCleared,
          MemoryUse::Device},
         {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},

@@ -129,8 +129,14 @@ private:
         updateConstant(offsetof(gpu::FrameConstants, firstRow), band_.firstRow);
         updateConstant(offsetof(gpu::FrameConstants, endRow), band_.endRow);
         updateConstant(offsetof(gpu::FrameConstants, bandFirst), band_.bandFirst);
+        clearWalks();
         startRound(constants);
         passes_.barrier(dependencies().passToPass);
+    }
+
+    // Drafts have no walk, and walks of packs need not store what they find.
+    void clearWalks() {
+        fill(state_.frame.walkedLight, VK_WHOLE_SIZE, 0);
     }
 
     void clear(const gpu::FrameConstants& constants) {
@@ -143,6 +149,7 @@ private:
             fill(state_.frame.counters, VK_WHOLE_SIZE, 0, kKept + sizeof(std::uint32_t));
         }
         clearLists();
+        clearWalks();
     }
 
     // Clears the lists at the start of a round of rays.

@@ -113,13 +113,18 @@ Status checkPrimitives(const GpuScene::State& scene, const Package& package, con
     return okStatus();
 }
 
+// Whether both find the emission at the same places of records. The features that follow are for edits alone.
+bool isReadAlike(const package::EmissionEntry& a, const package::EmissionEntry& b) {
+    return std::memcmp(&a, &b, offsetof(package::EmissionEntry, read)) == 0;
+}
+
 Status checkEmission(const ScenePackage& now, const Package& package, const PackageScene& known) {
     const package::EmissionEntry* const emission = package.emission();
     if (now.emission.has_value() != (emission != nullptr)) {
         return otherScene(now.scene, "one of the packages takes emissive triangles as lights");
     }
-    if (emission != nullptr && (std::memcmp(&*now.emission, emission, sizeof *emission) != 0 ||
-                                now.emissions != emissionsOf(package, known.materials))) {
+    if (emission != nullptr &&
+        (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known.materials))) {
         return otherScene(now.scene, "a material's emission changed, and emissive triangles are lights");
     }
     if (package.lightSamples() > 0 && !now.lightTree) {

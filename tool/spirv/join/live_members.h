@@ -33,9 +33,6 @@ public:
     bool loses(std::uint32_t structure) const {
         return loses_[structure];
     }
-    std::uint32_t typeOf(std::uint32_t id) const {
-        return definitions_[id] == nullptr ? 0 : definitions_[id]->type;
-    }
 
     // Visits the operands of an access chain, extraction or insertion that name members of structures: the
     // structure, the place of the operand in the module's words, and the member. Returns false if it can't
@@ -44,6 +41,9 @@ public:
     bool visitMembers(const ParsedInstruction& instruction, const Visit& visit) const;
 
 private:
+    std::uint32_t typeOf(std::uint32_t id) const {
+        return definitions_[id] == nullptr ? 0 : definitions_[id]->type;
+    }
     std::uint32_t wordOf(std::uint32_t id, std::size_t word) const {
         return module_.words[definitions_[id]->at + word];
     }

@@ -163,7 +163,9 @@ Status validateJoined(const std::vector<std::uint32_t>& words, const std::string
     const std::vector<std::vector<std::uint32_t>> copies = validationCopies(words, threads);
     std::atomic<bool> valid{!copies.empty()};
     base::runParallel(copies.size(), jobs, [&](std::size_t group) {
-        valid = valid && validateSpirv(copies[group], name).ok();
+        if (!validateSpirv(copies[group], name)) {
+            valid = false;
+        }
         return valid.load();
     });
     // The message is that about the whole.

@@ -83,7 +83,9 @@ Status Window::takeBuilds() {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }
-        sides_[i]->picture.takeBackEarly();
+        if (const Status taken = sides_[i]->picture.takeBackEarly(); !taken) {
+            report(taken.error());
+        }
         keepScene();
         fail(installed.error());
     }
