@@ -262,7 +262,7 @@ Status Picture::pose(const std::optional<Moment>& moment, std::uint64_t frame) {
         auto copy = std::make_unique<gltf::Scene>(*build_.scene);
         std::swap(posed_, copy);
         Result<LoadedScene> loaded = loadScene(context_, sourceOf(build_), posed_.get());
-        const Status adopted = loaded ? adopt(std::move(*loaded), options_, frame) : Status(loaded.error());
+        Status adopted = loaded ? adopt(std::move(*loaded), options_, frame) : Status(loaded.error());
         if (!adopted) {
             posed_.reset();
             return adopted;

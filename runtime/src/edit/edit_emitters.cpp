@@ -3,7 +3,7 @@
 #include "scene/material_table.h"
 
 #include <algorithm>
-#include <cstring>
+#include <span>
 #include <utility>
 
 namespace glint {
@@ -136,7 +136,8 @@ void writeMaterial(SceneEditor::State& state, std::uint32_t material, std::span<
         if (hasTexture(state)) {
             const gpu::TextureRecord before = emissionRecord(state, old);
             const gpu::TextureRecord after = emissionRecord(state, record);
-            changes = changes || std::memcmp(&before, &after, sizeof before) != 0;
+            changes = changes || !std::ranges::equal(std::as_bytes(std::span(&before, 1)),
+                                                     std::as_bytes(std::span(&after, 1)));
         }
         state.emittersDirty = state.emittersDirty || changes;
     }

@@ -2,22 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <span>
 
 namespace glint {
 namespace {
 
 using package::EmissionEntry;
 
-template <typename T>
-bool sameBytes(const T& a, const T& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
+// Numbers that are none are the same, too.
+bool same(const gpu::vec3& a, const gpu::vec3& b) {
+    return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
 }
 
 bool showsSame(const EmitterTexture& a, const EmitterTexture& b) {
-    return a.texels == b.texels && sameBytes(a.record.rowU, b.record.rowU) &&
-           sameBytes(a.record.rowV, b.record.rowV) && a.sampler.wrapU == b.sampler.wrapU &&
-           a.sampler.wrapV == b.sampler.wrapV && a.second == b.second && a.animated == b.animated;
+    return a.texels == b.texels && same(a.record.rowU, b.record.rowU) && same(a.record.rowV, b.record.rowV) &&
+           a.sampler.wrapU == b.sampler.wrapU && a.sampler.wrapV == b.sampler.wrapV && a.second == b.second &&
+           a.animated == b.animated;
 }
 
 double meanOf(const EmitterShape& shape, const EmitterTexture& texture, std::size_t triangle) {

@@ -103,7 +103,7 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
         return a.isEmpty ? b : a;
     }
     LightBounds both;
-    static_cast<LightExtent&>(both) = a;
+    static_cast<LightExtent&>(both) = static_cast<const LightExtent&>(a);
     extend(both, b);
     const double whole = a.intensity + b.intensity;
     const double share = whole > 0.0 ? b.intensity / whole : 0.5;
