@@ -197,7 +197,7 @@ TEST(LiveEditLampKeys, AKeyMakesAMaterialALight) {
     ASSERT_TRUE(lamps.edited.ok());
     const std::uint32_t before = lamps.emitters();
     const double dark = sumOf(lamps.edited.picture());
-    // Of a coated material, which no light of the package is.
+    // A coated material shines, which no light of the package has.
     lamps.edited.scene.materials[2]["emissiveFactor"] = {4.0F, 4.0F, 4.0F};
     const MaterialHandle coated = lamps.edited.materials[2].handle;
     const Result<EditReport> set = lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view());

@@ -65,7 +65,7 @@ TEST(EmissionTexels, IsNeverBlackWhereATexelIsNot) {
     EXPECT_GT(texels.mean(), 0.0);
 }
 
-// Of a large image only coarser levels are kept, which lose no texel either.
+// A large image keeps its coarser levels alone, which lose no texel either.
 TEST(EmissionTexels, LargeImagesAreKeptCoarsely) {
     constexpr std::uint32_t kWidth = 1030;
     constexpr std::uint32_t kHeight = 515;
