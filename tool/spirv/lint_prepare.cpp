@@ -20,23 +20,6 @@ using Words = std::vector<std::uint32_t>;
 // This accepts everything that any Vulkan version accepts, because lint is about speed, not about
 // environments.
 constexpr spv_target_env kEnvironment = SPV_ENV_UNIVERSAL_1_6;
-constexpr std::size_t kBoundWord = 3;
-
-// Returns whether an instruction belongs before the debug instructions (SPIR-V specification, section 2.4).
-bool isPreamble(std::uint32_t opcode) {
-    switch (opcode) {
-        case spv::OpCapability:
-        case spv::OpExtension:
-        case spv::OpExtInstImport:
-        case spv::OpMemoryModel:
-        case spv::OpEntryPoint:
-        case spv::OpExecutionMode:
-        case spv::OpExecutionModeId:
-            return true;
-        default:
-            return false;
-    }
-}
 
 void append(Words& words, std::uint32_t opcode, std::initializer_list<std::uint32_t> operands) {
     words.push_back(static_cast<std::uint32_t>(operands.size() + 1) << spv::WordCountShift | opcode);
@@ -46,14 +29,14 @@ void append(Words& words, std::uint32_t opcode, std::initializer_list<std::uint3
 // Replaces the line numbers of the module by the offsets of its ray query instructions.
 Words markOffsets(std::span<const std::uint32_t> words) {
     Words marked(words.begin(), words.begin() + kSpirvHeaderWords);
-    const std::uint32_t file = marked[kBoundWord]++;
+    const std::uint32_t file = marked[kSpirvBoundWord]++;
     bool named = false;
     forEachInstruction(words, [&](const SpirvInstruction& instruction) {
         const std::uint32_t opcode = instruction.opcode;
         if (opcode == spv::OpLine || opcode == spv::OpNoLine) {
             return;
         }
-        if (!named && !isPreamble(opcode)) {
+        if (!named && !isSpirvPreamble(opcode)) {
             append(marked, spv::OpString, {file, 0});
             named = true;
         }

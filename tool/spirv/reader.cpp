@@ -39,6 +39,21 @@ Status visitSpirv(std::span<const std::uint32_t> words,
     return okStatus();
 }
 
+bool isSpirvPreamble(std::uint32_t opcode) {
+    switch (opcode) {
+        case spv::OpCapability:
+        case spv::OpExtension:
+        case spv::OpExtInstImport:
+        case spv::OpMemoryModel:
+        case spv::OpEntryPoint:
+        case spv::OpExecutionMode:
+        case spv::OpExecutionModeId:
+            return true;
+        default:
+            return false;
+    }
+}
+
 std::uint32_t resultAt(std::span<const std::uint32_t> words, std::size_t at) {
     bool hasResult = false;
     bool hasType = false;

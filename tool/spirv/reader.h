@@ -13,6 +13,8 @@ namespace glint::compiler {
 
 // Words before the first instruction.
 inline constexpr std::size_t kSpirvHeaderWords = 5;
+// The word of the header that is above all IDs.
+inline constexpr std::size_t kSpirvBoundWord = 3;
 
 struct SpirvInstruction {
     std::uint32_t opcode = 0;
@@ -23,6 +25,10 @@ struct SpirvInstruction {
 // instruction runs past its end; the instructions before it have then been visited.
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit);
+
+// Returns whether an instruction belongs before the debug instructions, and so before the decorations
+// (section 2.4).
+bool isSpirvPreamble(std::uint32_t opcode);
 
 // Returns the result of the instruction at word `at` of a valid module, or 0.
 std::uint32_t resultAt(std::span<const std::uint32_t> words, std::size_t at);

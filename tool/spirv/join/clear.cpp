@@ -17,29 +17,12 @@ namespace {
 
 using ClearedWords = std::vector<std::uint32_t>;
 
-constexpr std::size_t kClearedBound = 3;      // word of a module's header
 constexpr std::size_t kEntryInterface = 3;    // word of OpEntryPoint from which variables can follow
 constexpr std::size_t kCompositeMembers = 3;  // first word of a composite's members
 
 bool isComposite(std::uint32_t opcode) {
     return opcode == spv::OpCompositeConstruct || opcode == spv::OpConstantComposite ||
            opcode == spv::OpSpecConstantComposite;
-}
-
-// Settings come before the decorations, all other globals after them.
-bool isBeforeDecorations(std::uint32_t opcode) {
-    switch (opcode) {
-        case spv::OpCapability:
-        case spv::OpExtension:
-        case spv::OpExtInstImport:
-        case spv::OpMemoryModel:
-        case spv::OpEntryPoint:
-        case spv::OpExecutionMode:
-        case spv::OpExecutionModeId:
-            return true;
-        default:
-            return false;
-    }
 }
 
 class Clearing {
@@ -262,7 +245,7 @@ void Clearing::findLive() {
 }
 
 bool Clearing::isLive(const ParsedInstruction& global) const {
-    if (isBeforeDecorations(global.opcode)) {
+    if (isSpirvPreamble(global.opcode)) {
         return true;
     }
     return live_[global.opcode == spv::OpTypeForwardPointer ? module_.words[global.at + 1] : global.result];
@@ -323,7 +306,7 @@ ClearedWords Clearing::write() {
     to.reserve(words_.size());
     const auto writeGlobals = [&](bool beforeDecorations) {
         for (const ParsedInstruction& global : module_.globals) {
-            if (isBeforeDecorations(global.opcode) == beforeDecorations && isLive(global)) {
+            if (isSpirvPreamble(global.opcode) == beforeDecorations && isLive(global)) {
                 write(global, to);
             }
         }
@@ -344,7 +327,7 @@ ClearedWords Clearing::write() {
             write(instruction, to);
         }
     }
-    to[kClearedBound] = next_;
+    to[kSpirvBoundWord] = next_;
     return to;
 }
 
