@@ -121,23 +121,33 @@ function(glint_add_materials)
     list(APPEND products "${source}" "${base}_package.h")
   endif()
 
-  # The stamp is as new as the last run. Files that did not change keep their time, so nothing that reads them
-  # is built again.
+  # The stamp has the time at which the last run began, so that a file that is edited while the tool runs is newer.
+  # Files that did not change keep their time, so nothing that reads them is built again. A rule of their own has them
+  # as products: Ninja before 1.12 takes a rule for as new as the newest of its outputs.
   set(stamp "${base}.stamp")
+  set(written "${base}.written")
   add_custom_command(
     OUTPUT "${stamp}"
-    BYPRODUCTS ${products}
+    COMMAND "${CMAKE_COMMAND}" -E make_directory "${arg_OUTPUT_DIRECTORY}"
+    COMMAND "${CMAKE_COMMAND}" -E touch "${base}.begun"
     COMMAND "${tool}" compile ${scenes} -o "${base}" ${options} ${arg_OPTIONS} --depfile "${base}.d" --depfile-target
             "${stamp}"
-    COMMAND "${CMAKE_COMMAND}" -E touch "${stamp}"
+    COMMAND "${CMAKE_COMMAND}" -E rename "${base}.begun" "${stamp}"
     DEPENDS ${scenes} ${pack_files} "${tool}"
     DEPFILE "${base}.d"
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"
     COMMENT "Compiling the materials of ${arg_NAME}"
     VERBATIM)
+  add_custom_command(
+    OUTPUT "${written}"
+    BYPRODUCTS ${products}
+    COMMAND "${CMAKE_COMMAND}" -E touch "${written}"
+    DEPENDS "${stamp}"
+    COMMENT ""
+    VERBATIM)
   # The target may be defined in another folder, where this rule is not visible. So it depends on a target of
   # this folder.
-  add_custom_target(${arg_TARGET}_${arg_NAME}_materials DEPENDS "${stamp}")
+  add_custom_target(${arg_TARGET}_${arg_NAME}_materials DEPENDS "${written}")
   add_dependencies(${arg_TARGET} ${arg_TARGET}_${arg_NAME}_materials)
 
   target_include_directories(${arg_TARGET} PRIVATE "${arg_OUTPUT_DIRECTORY}")

@@ -49,17 +49,6 @@ std::vector<Integer> normalize(const std::vector<float>& values, float maximum) 
     return result;
 }
 
-glint::Status writeBytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-    std::ofstream file(path, std::ios::binary | std::ios::trunc);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) {
-        return glint::makeError("gallery-write", path.string(), "cannot write the file",
-                                "check that the folder can be written to and has space left");
-    }
-    return glint::okStatus();
-}
-
 // Collects every key under an "extensions" object.
 void collectExtensions(const Json& json, std::set<std::string>& names) {
     for (const auto& [key, value] : json.items()) {
@@ -256,6 +245,17 @@ Json GltfWriter::document(const std::string& name) const {
     collectExtensions(json, extensions);
     json["extensionsUsed"] = extensions;
     return json;
+}
+
+glint::Status writeBytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+    std::ofstream file(path, std::ios::binary | std::ios::trunc);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) {
+        return glint::makeError("gallery-write", path.string(), "cannot write the file",
+                                "check that the folder can be written to and has space left");
+    }
+    return glint::okStatus();
 }
 
 glint::Status GltfWriter::write(const std::filesystem::path& folder, const std::string& name) const {

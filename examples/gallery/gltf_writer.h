@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,6 +88,9 @@ struct LightSpec {
     double intensity = 1.0;                                          // lux or candela
     std::optional<std::array<double, 2>> coneAngles = std::nullopt;  // inner, outer; radians
 };
+
+// Errors: "gallery-write".
+glint::Status writeBytes(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 // Every add function returns the index that later calls refer to.
 class GltfWriter {

@@ -2,6 +2,7 @@
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/gtc/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -84,18 +85,52 @@ Image normalMap(const HeightField& field) {
     });
 }
 
+Environment paintEnvironment(int width, int height,
+                             const std::function<glm::vec3(const glm::vec3&)>& radianceOf) {
+    Environment environment{width, height, {}};
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const float azimuth =
+                ((static_cast<float>(x) + 0.5F) / static_cast<float>(width) - 0.5F) * glm::two_pi<float>();
+            const float polar =
+                (static_cast<float>(y) + 0.5F) / static_cast<float>(height) * glm::pi<float>();
+            const float across = std::sin(polar);
+            const glm::vec3 radiance =
+                radianceOf({across * std::cos(azimuth), std::cos(polar), across * std::sin(azimuth)});
+            environment.pixels.insert(environment.pixels.end(), {radiance.x, radiance.y, radiance.z});
+        }
+    }
+    return environment;
+}
+
+namespace {
+
+// A function for stb_image_write that appends to the vector `context`.
+void append(void* context, void* data, int size) {
+    auto* out = static_cast<std::vector<std::uint8_t>*>(context);
+    const auto* begin = static_cast<const std::uint8_t*>(data);
+    out->insert(out->end(), begin, begin + size);
+}
+
+}  // namespace
+
+glint::Result<std::vector<std::uint8_t>> encodeHdr(const Environment& environment) {
+    std::vector<std::uint8_t> bytes;
+    if (stbi_write_hdr_to_func(append, &bytes, environment.width, environment.height, 3,
+                               environment.pixels.data()) == 0) {
+        return glint::makeError("hdr-encode", "", "cannot encode an environment without pixels",
+                                "give it a width and a height");
+    }
+    return bytes;
+}
+
 glint::Result<std::vector<std::uint8_t>> encodePng(const Image& image) {
     if (image.width <= 0 || image.height <= 0 || image.channels <= 0) {
         return glint::makeError("png-encode", "", "cannot encode an image without pixels",
                                 "give it a width, a height and channels");
     }
     std::vector<std::uint8_t> bytes;
-    const auto sink = [](void* context, void* data, int size) {
-        auto* out = static_cast<std::vector<std::uint8_t>*>(context);
-        const auto* begin = static_cast<const std::uint8_t*>(data);
-        out->insert(out->end(), begin, begin + size);
-    };
-    const int done = stbi_write_png_to_func(sink, &bytes, image.width, image.height, image.channels,
+    const int done = stbi_write_png_to_func(append, &bytes, image.width, image.height, image.channels,
                                             image.pixels.data(), image.width * image.channels);
     if (done == 0) {
         return glint::makeError("png-encode", "", "cannot encode a PNG of this size", "free some memory");

@@ -41,6 +41,21 @@ HeightField sculpt(int size, const std::function<float(const glm::vec2&)>& heigh
 // Returns the tangent-space normals of a height field in glTF's convention: +X right, +Y up in the image.
 Image normalMap(const HeightField& field);
 
+// Radiance by direction as an equirectangular map, three numbers a pixel, first row on top: the left border
+// is towards -X, and +Z is three quarters of the width to the right of it.
+struct Environment {
+    int width = 0;
+    int height = 0;
+    std::vector<float> pixels;
+};
+
+// Calls `radianceOf` with the direction of every pixel centre, a unit vector.
+Environment paintEnvironment(int width, int height,
+                             const std::function<glm::vec3(const glm::vec3&)>& radianceOf);
+
+// Returns the bytes of a file in Radiance's format. Errors: "hdr-encode".
+glint::Result<std::vector<std::uint8_t>> encodeHdr(const Environment& environment);
+
 // Errors: "png-encode".
 glint::Result<std::vector<std::uint8_t>> encodePng(const Image& image);
 

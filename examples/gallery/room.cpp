@@ -2,8 +2,11 @@
 #include "builder.h"
 #include "shapes.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
+
+#include <cmath>
 
 namespace gallery {
 
@@ -72,6 +75,9 @@ void addBeams(GltfWriter& writer, const MaterialSet& materials) {
     }
 }
 
+// The direction to the evening's sun, over the left wall and behind the gate.
+const glm::vec3 kEveningSun(-7.0F, 4.6F, -3.0F);
+
 }  // namespace
 
 void addRoom(GltfWriter& writer, const MaterialSet& materials) {
@@ -80,17 +86,46 @@ void addRoom(GltfWriter& writer, const MaterialSet& materials) {
     addBeams(writer, materials);
 }
 
-void addLightsAndCameras(GltfWriter& writer) {
+void addLightsAndCameras(GltfWriter& writer, TimeOfDay time) {
+    const bool evening = time == TimeOfDay::Evening;
     const std::array<double, 3> warm{1.0, 0.72, 0.45};
-    writer.addLightNode({"Sun", "directional", {1.0, 0.94, 0.84}, 2.6},
-                        lookAt({3.0F, 6.0F, 4.5F}, {0.0F, 0.0F, 0.0F}));
-    writer.addLightNode({"Lantern light", "point", warm, 7.0}, {{-1.75F, 2.75F, -1.3F}});
-    writer.addLightNode({"Lamp light", "point", warm, 9.0}, {kPaperShade});
-    writer.addLightNode({"Fill light", "point", {1.0, 0.80, 0.62}, 6.0}, {{-1.5F, 3.6F, 3.0F}});
+    if (evening) {
+        writer.addLightNode({"Sun", "directional", {1.0, 0.62, 0.33}, 5.0}, lookAt(kEveningSun, {}));
+    } else {
+        writer.addLightNode({"Sun", "directional", {1.0, 0.94, 0.84}, 2.6},
+                            lookAt({3.0F, 6.0F, 4.5F}, {0.0F, 0.0F, 0.0F}));
+    }
+    writer.addLightNode({"Lantern light", "point", warm, evening ? 10.0 : 7.0}, {{-1.75F, 2.75F, -1.3F}});
+    writer.addLightNode({"Lamp light", "point", warm, evening ? 14.0 : 9.0}, {kPaperShade});
+    writer.addLightNode({"Fill light", "point", {1.0, 0.80, 0.62}, evening ? 2.0 : 6.0},
+                        {{-1.5F, 3.6F, 3.0F}});
     writer.addLightNode({"Knot spot", "spot", {1.0, 0.92, 0.80}, 40.0, std::array{0.16, 0.30}},
                         lookAt({1.2F, 4.1F, 1.2F}, {0.0F, 1.95F, -2.2F}));
+    if (evening) {
+        writer.addCameraNode("evening", 0.65, lookAt({1.85F, 1.2F, 6.1F}, {-0.1F, 1.12F, -1.5F}));
+    }
     writer.addCameraNode("main", 0.70, lookAt({0.9F, 1.85F, 7.3F}, {0.05F, 1.40F, -2.0F}));
     writer.addCameraNode("detail", 0.62, lookAt({2.6F, 1.35F, 3.6F}, {0.4F, 0.75F, 0.4F}));
+}
+
+Environment eveningSky() {
+    const glm::vec3 zenith(0.09F, 0.16F, 0.36F);
+    const glm::vec3 middle(0.40F, 0.34F, 0.50F);
+    const glm::vec3 horizon(1.05F, 0.54F, 0.34F);
+    const glm::vec3 glow(1.6F, 0.75F, 0.30F);
+    const glm::vec3 ground(0.12F, 0.11F, 0.12F);
+    const glm::vec3 sun = glm::normalize(kEveningSun);
+    return paintEnvironment(512, 256, [&](const glm::vec3& direction) {
+        if (direction.y < 0.0F) {
+            return ground;
+        }
+        const float height = glm::min(direction.y / 0.35F, 1.0F);
+        const float towardsSun = glm::dot(direction, sun);
+        const float side = 0.35F + 0.65F * std::pow(glm::clamp(0.5F * (towardsSun + 1.0F), 0.0F, 1.0F), 1.5F);
+        return side * (horizon * std::pow(1.0F - height, 1.6F) + 2.0F * middle * height * (1.0F - height) +
+                       zenith * height) +
+               glow * std::exp(18.0F * (towardsSun - 1.0F));
+    });
 }
 
 }  // namespace gallery

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf_writer.h"
+#include "image.h"
 
 #include <glint/result.h>
 
@@ -72,7 +73,9 @@ void addLayeredMaterials(GltfWriter& writer, MaterialSet& set);
 void addExhibits(GltfWriter& writer, const MaterialSet& materials);
 // Adds the exhibits that have the materials of addLayeredMaterials().
 void addShowcase(GltfWriter& writer, const MaterialSet& materials);
-void addLightsAndCameras(GltfWriter& writer);
+enum class TimeOfDay { Noon, Evening };
+void addLightsAndCameras(GltfWriter& writer, TimeOfDay time);
+Environment eveningSky();
 
 // The place of the gate in the back wall.
 inline constexpr float kBackWallZ = -4.0F;
@@ -82,7 +85,8 @@ inline constexpr float kGateRadius = 1.65F;
 // The position of the lamp in the paper shade.
 inline const glm::vec3 kPaperShade(1.95F, 2.55F, -2.6F);
 
-// Writes gallery.gltf, gallery.bin and the textures into `folder`. Errors: "gallery-write", "png-encode".
-glint::Status writeGallery(const std::filesystem::path& folder);
+// Writes gallery.gltf, gallery.bin and the textures into `folder`; in the evening, evening.gltf, evening.bin
+// and the environment map evening.hdr. Errors: "gallery-write", "png-encode", "hdr-encode".
+glint::Status writeGallery(const std::filesystem::path& folder, TimeOfDay time = TimeOfDay::Noon);
 
 }  // namespace gallery

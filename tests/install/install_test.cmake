@@ -48,8 +48,7 @@ macro(expect_own_alone change)
   if(NOT output MATCHES "materials of own" OR output MATCHES "materials of (both|cubes)" OR before STREQUAL after)
     message(FATAL_ERROR "${change}: not the package that it is for, or the same shader\n${output}")
   endif()
-  # A file that changes within the same tick of the file system's clock would not look newer than this build.
-  run(${CMAKE_COMMAND} -E sleep 0.1)
+  wait_for_tick("${WORK}")
 endmacro()
 
 set(prefix "${WORK}/prefix")

@@ -29,6 +29,7 @@ macro(build)
   string(REGEX MATCHALL "Building CXX object [^\n]*" compiled "${output}")
   string(REGEX REPLACE "Building CXX object [^;]*/([a-z_]+\\.cpp)\\.o" "\\1" compiled "${compiled}")
   list(SORT compiled)
+  wait_for_tick("${WORK}")
 endmacro()
 
 # Sets `result` to the package's files, and `result_FILE` to the time of each.
@@ -85,7 +86,7 @@ endfunction()
 
 macro(configure)
   run(${CMAKE_COMMAND} -S "${source}" -B "${build}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
-      "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
+      "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" ${ARGN})
 endmacro()
 
 run(${CMAKE_COMMAND} --install "${GLINT_BUILD}" --prefix "${prefix}")
@@ -155,6 +156,7 @@ edit_scene("\"buffers\"" "\"buffer\"")
 take_times(before)
 execute_process(COMMAND ${CMAKE_COMMAND} --build "${build}" ${config} RESULT_VARIABLE result OUTPUT_VARIABLE output
                 ERROR_VARIABLE output)
+wait_for_tick("${WORK}")
 take_times(after)
 compare_times()
 if(result EQUAL 0 OR NOT output MATCHES "cubes.gltf[^\n]*error:")
@@ -172,6 +174,29 @@ expect(changed)
 expect(compiled)
 
 set(step "at the end")
+build()
+expect_no_work()
+
+# This tool edits the scene when glint has read it, but before the rule ends.
+set(step "edited while it is compiled")
+file(READ "${scene}" text)
+string(REPLACE "\"roughnessFactor\": 0.2" "\"roughnessFactor\": 0.25" text "${text}")
+file(WRITE "${WORK}/next.gltf" "${text}")
+file(WRITE "${WORK}/editing_tool" "#!/bin/sh
+'${prefix}/bin/glint' \"$@\" || exit
+if [ -e '${WORK}/next.gltf' ]; then
+    sleep 0.1
+    cat '${WORK}/next.gltf' >'${scene}'
+    rm '${WORK}/next.gltf'
+fi
+")
+file(CHMOD "${WORK}/editing_tool" PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+configure("-DGLINT_EXECUTABLE=${WORK}/editing_tool")
+build()
+expect_materials()
+build()
+expect_materials()
+expect(changed manifest.json tables.bin)
 build()
 expect_no_work()
 

@@ -3,6 +3,8 @@
 #include "base/clock.h"
 #include "base/files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <sys/stat.h>
@@ -10,44 +12,91 @@
 
 namespace glint::base {
 
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;  // in nanoseconds
+
+// Returns how long a file system may give changes the same time. The kernel's clock for files ticks every 1
+// to 10 ms. Some file systems store whole seconds, FAT even ones.
+std::int64_t longestTick(std::int64_t time) {
+    constexpr std::int64_t kKernelTick = 20'000'000;
+    return time % kSecond == 0 ? 2 * kSecond : kKernelTick;
+}
+
+std::int64_t systemTime() {
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
+}  // namespace
+
 std::optional<InputWatch::Look> InputWatch::lookAt(const std::string& path) {
     struct stat status {};
     if (stat(path.c_str(), &status) != 0) {
         return std::nullopt;
     }
-    constexpr std::int64_t kNanoseconds = 1'000'000'000;
 #if defined(__APPLE__)
     const timespec& time = status.st_mtimespec;
 #else
     const timespec& time = status.st_mtim;
 #endif
-    return Look{static_cast<std::int64_t>(time.tv_sec) * kNanoseconds + time.tv_nsec,
-                static_cast<std::uint64_t>(status.st_size), static_cast<std::uint64_t>(status.st_ino)};
+    return Look{static_cast<std::int64_t>(time.tv_sec) * kSecond + time.tv_nsec,
+                static_cast<std::uint64_t>(status.st_size), static_cast<std::uint64_t>(status.st_ino),
+                S_ISDIR(status.st_mode)};
+}
+
+// Returns the names in a folder in their order, each with what one call to the system says of it.
+std::string InputWatch::listingOf(const std::string& folder) {
+    std::map<std::string, Look> entries;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+        entries.emplace(entry.path().filename().string(), lookAt(entry.path().string()).value_or(Look{}));
+    }
+    std::string text;
+    for (const auto& [name, look] : entries) {
+        text += fmt::format("{} {} {} {}\n", name, look.time, look.bytes, look.number);
+    }
+    return text;
 }
 
 InputWatch::File InputWatch::stateOf(const std::string& path) {
-    File file{lookAt(path), {}};
+    const std::int64_t now = systemTime();
+    File file{lookAt(path), {}, {}};
     if (file.look) {
-        if (const Result<FileDigest> digest = digestFile(path)) {
+        const std::int64_t settles = file.look->time + longestTick(file.look->time);
+        if (settles > now) {
+            file.settles = settles;
+        }
+        if (file.look->isFolder) {
+            file.hash = hashBytes(listingOf(path));
+        } else if (const Result<FileDigest> digest = digestFile(path)) {
             file.hash = digest->hash;
         }
     }
     return file;
 }
 
-void InputWatch::watch(std::span<const std::string> paths) {
+void InputWatch::watch(std::span<const InputFile> inputs) {
     std::map<std::string, File> files;
-    for (const std::string& path : paths) {
-        const auto known = files_.find(path);
-        files.try_emplace(path, known != files_.end() ? known->second : stateOf(path));
+    for (const InputFile& input : inputs) {
+        const auto known = files_.find(input.path);
+        const auto [file, isNew] =
+            files.try_emplace(input.path, known != files_.end() ? known->second : stateOf(input.path));
+        if (isNew && known == files_.end() && input.hash && input.hash != file->second.hash) {
+            file->second = File{std::nullopt, input.hash, {}};
+        }
     }
     files_ = std::move(files);
+}
+
+bool InputWatch::isSuspect(const std::string& path, const File& known) {
+    return lookAt(path) != known.look || (known.settles && systemTime() >= *known.settles);
 }
 
 std::vector<std::string> InputWatch::suspects() const {
     std::vector<std::string> paths;
     for (const auto& [path, file] : files_) {
-        if (lookAt(path) != file.look) {
+        if (isSuspect(path, file)) {
             paths.push_back(path);
         }
     }
@@ -56,7 +105,7 @@ std::vector<std::string> InputWatch::suspects() const {
 
 bool InputWatch::looksChanged() const {
     return std::ranges::any_of(files_, [](const auto& entry) {
-        const bool isFolder = entry.second.look && !entry.second.hash;
+        const bool isFolder = entry.second.look && entry.second.look->isFolder;
         return !isFolder && lookAt(entry.first) != entry.second.look;
     });
 }
@@ -75,7 +124,7 @@ std::vector<std::string> InputWatch::changed() {
         return all;
     };
     auto before = looks();
-    for (bool rests = false; !rests && millisecondsSince(start) < kPatienceMs;) {
+    for (bool rests = false; !rests && millisecondsSince(start) < std::max(kPatienceMs, missingMs_);) {
         std::this_thread::sleep_for(std::chrono::milliseconds(kRestMs));
         paths = suspects();
         auto now = looks();
@@ -83,15 +132,14 @@ std::vector<std::string> InputWatch::changed() {
         for (const auto& [path, look] : now) {
             missing = missing || (!look && files_[path].look);
         }
-        rests = now == before && (!missing || millisecondsSince(start) >= kMissingMs);
+        rests = now == before && (!missing || millisecondsSince(start) >= missingMs_);
         before = std::move(now);
     }
     std::vector<std::string> changed;
     for (const std::string& path : paths) {
         File now = stateOf(path);
         File& known = files_[path];
-        const bool isFolder = now.look && !now.hash && !known.hash;
-        if (isFolder || now.hash != known.hash) {
+        if (now.hash != known.hash) {
             changed.push_back(path);
         }
         known = now;

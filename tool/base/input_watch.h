@@ -11,14 +11,23 @@
 
 namespace glint::base {
 
+// A file that somebody has read, or is about to.
+struct InputFile {
+    std::string path;
+    std::optional<std::uint64_t> hash;  // of the contents that were read (digestFile()), where they are known
+};
+
 // Polling needs no service of the system and works on every file system; it costs one or two microseconds of
 // processor time for each file and poll.
 class InputWatch {
 public:
+    // A file that is missing for less than `missingMs` has not changed.
+    explicit InputWatch(int missingMs = kMissingMs) : missingMs_(missingMs) {}
+
     // Replaces the watched files. Files that were watched before keep the state in which the last changed()
-    // or accept() saw them, so that no change is lost while somebody works on them. A folder is watched for
-    // files that come and go.
-    void watch(std::span<const std::string> paths);
+    // or accept() saw them, so that no change is lost while somebody works on them. A new file whose contents
+    // are no longer those that were read has changed. A folder is watched for files that come and go.
+    void watch(std::span<const InputFile> inputs);
 
     // Returns the files whose contents changed since the last call. A file that was only touched has not
     // changed, and one that is missing has only if it stays away for a while: editors replace files by
@@ -38,24 +47,32 @@ public:
     static constexpr int kMissingMs = 250;
 
 private:
-    // What one call to the system says of a file.
+    // The state of a file by one call to the system.
     struct Look {
-        std::int64_t time = 0;  // of the last change, in the file system's clock
+        std::int64_t time = 0;  // of the last change, in nanoseconds of the file system's clock
         std::uint64_t bytes = 0;
         std::uint64_t number = 0;  // of the file, which a rename changes
+        bool isFolder = false;
 
         friend bool operator==(const Look&, const Look&) = default;
     };
     struct File {
-        std::optional<Look> look;           // no value: missing
-        std::optional<std::uint64_t> hash;  // of the contents; none for folders and missing files
+        std::optional<Look> look;  // no value: missing
+        // Of the contents of a file, or of the names and looks of a folder's files. None if it is missing.
+        std::optional<std::uint64_t> hash;
+        // When the file system's clock has certainly moved on since the last change. A file that was looked
+        // at before then may have changed since without looking other than before.
+        std::optional<std::int64_t> settles;
     };
 
     static std::optional<Look> lookAt(const std::string& path);
+    static std::string listingOf(const std::string& folder);
     static File stateOf(const std::string& path);
-    // Returns the files that look other than known.
+    // Returns whether a file looks other than known, or may have changed although it does not.
+    static bool isSuspect(const std::string& path, const File& known);
     std::vector<std::string> suspects() const;
 
+    int missingMs_;
     std::map<std::string, File> files_;
 };
 

@@ -376,7 +376,9 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
                         start);
     }
     if (watched != nullptr) {
-        watched->inputs = dependencies;
+        for (const compiler::FileState& file : run.inputs) {
+            watched->inputs.push_back({file.path, file.hash});
+        }
         watched->readMs = base::millisecondsSince(start);
     }
     console.progress("compiling " + base::join(arguments.scenes));

@@ -1,6 +1,7 @@
 #include "view/builder.h"
 
 #include "base/clock.h"
+#include "base/files.h"
 #include "emit/host.h"
 #include "emit/layers.h"
 #include "gltf/import.h"
@@ -189,12 +190,13 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
     }
     build.scene = scene_;
     for (const gltf::SourceFile& file : scene_->files) {
-        build.inputs.push_back(file.path);
+        build.inputs.push_back({file.path, file.hash});
     }
     for (const auto& files :
          {materials::packFiles(settings.materials), compiler::hostFiles(settings.compile.host)}) {
         for (const std::filesystem::path& file : files ? *files : std::vector<std::filesystem::path>()) {
-            build.inputs.push_back(file.string());
+            const Result<base::FileDigest> digest = base::digestFile(file);
+            build.inputs.push_back({file.string(), digest ? std::optional(digest->hash) : std::nullopt});
         }
     }
     build.readMs = base::millisecondsSince(start);

@@ -1,6 +1,7 @@
 // Reads the scene and compiles its package on a thread of its own, while the window goes on.
 #pragma once
 
+#include "base/input_watch.h"
 #include "emit/compile.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene.h"
@@ -34,9 +35,9 @@ struct Build {
     std::shared_ptr<const scene_view::TextureSet> textures;
     // By shader ID: SPIR-V instructions of the shader of that case alone; 0: it has none, or it is unknown.
     std::vector<std::uint32_t> instructions;
-    std::vector<std::string> layers;  // names of those that its packages may have (PackageLayer::name)
-    compiler::BenchFacts facts;       // of the scene, about settings that change nothing
-    std::vector<std::string> inputs;  // files to watch
+    std::vector<std::string> layers;      // names of those that its packages may have (PackageLayer::name)
+    compiler::BenchFacts facts;           // of the scene, about settings that change nothing
+    std::vector<base::InputFile> inputs;  // files to watch
     // Wall clock.
     double readMs = 0.0;
     double compileMs = 0.0;

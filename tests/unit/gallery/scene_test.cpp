@@ -101,6 +101,19 @@ TEST(GalleryScene, HasTheLightsAndCameras) {
     EXPECT_EQ(document().json["cameras"][1]["name"], "detail");
 }
 
+TEST(GalleryScene, TheEveningHasTheSameGeometryAnotherSunAndASky) {
+    const TemporaryFolder folder;
+    ASSERT_TRUE(writeGallery(folder.path(), TimeOfDay::Evening).ok());
+    auto evening = filesOf(folder.path());
+    EXPECT_EQ(evening.at("evening.bin"), document().binary);
+    const Json json = Json::parse(evening.at("evening.gltf"));
+    EXPECT_EQ(json["materials"], document().json["materials"]);
+    EXPECT_EQ(json["cameras"][0]["name"], "evening");
+    EXPECT_NE(json["extensions"]["KHR_lights_punctual"],
+              document().json["extensions"]["KHR_lights_punctual"]);
+    EXPECT_EQ(evening.at("evening.hdr").substr(0, 10), "#?RADIANCE");
+}
+
 TEST(GalleryScene, ReportsAFolderThatCannotBeMade) {
     const TemporaryFolder folder;
     std::ofstream(folder.path() / "file") << "not a folder";

@@ -144,7 +144,6 @@ public:
         : console_(console), arguments_(arguments), compileOnce_(compileOnce) {}
 
     void run() {
-        inputs_ = knownInputs(arguments_);
         watchFiles(true);
         compile("first run");
         while (interrupted == 0) {
@@ -164,14 +163,18 @@ public:
 
 private:
     void watchFiles(bool failed) {
-        std::vector<std::string> paths = inputs_;
+        std::vector<base::InputFile> inputs = inputs_;
+        const auto add = [&](const std::vector<std::string>& paths) {
+            for (const std::string& path : paths) {
+                inputs.push_back({path, std::nullopt});
+            }
+        };
         listed_ = knownInputs(arguments_);
-        paths.insert(paths.end(), listed_.begin(), listed_.end());
+        add(listed_);
         if (failed) {
-            const std::vector<std::string> folders = sceneFolders(arguments_);
-            paths.insert(paths.end(), folders.begin(), folders.end());
+            add(sceneFolders(arguments_));
         }
-        watch_.watch(paths);
+        watch_.watch(inputs);
     }
 
     // Returns the files of packs and hosts that have come or gone, once that has lasted.
@@ -337,7 +340,7 @@ private:
     const CompileOnce& compileOnce_;
     compiler::WarmModules warm_;
     base::InputWatch watch_;
-    std::vector<std::string> inputs_;
+    std::vector<base::InputFile> inputs_;             // of the last run that knew them
     std::vector<std::string> listed_;                 // knownInputs() at the last run
     std::optional<base::Clock::time_point> differs_;  // since when others are there
     std::optional<Diagnostic> settingsError_;

@@ -1,6 +1,7 @@
 // glint compile --watch: compiles again when an input changes.
 #pragma once
 
+#include "base/input_watch.h"
 #include "cli/compile/arguments.h"
 #include "cli/console.h"
 #include "emit/compile.h"
@@ -25,7 +26,7 @@ struct WatchedRun {
     std::optional<compiler::CompiledPackage> made;
     bool outdated = false;  // the run ended early, because an input changed
     // The files that were read; empty if the run failed before it knew them.
-    std::vector<std::string> inputs;
+    std::vector<base::InputFile> inputs;
     // Wall clock: reading and checking, planning and making GLSL, making SPIR-V, and making and writing
     // files.
     double readMs = 0.0;

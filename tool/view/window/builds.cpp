@@ -105,7 +105,7 @@ Status Window::install(std::size_t index, Build build) {
     const bool isUploaded = !one.picture.isReady() || one.picture.build().scene != build.scene;
     const double buildMs = build.readMs + build.compileMs + build.texturesMs;
     const int compiled = build.modulesCompiled;
-    std::vector<std::string> inputs = build.inputs;
+    const std::vector<base::InputFile> inputs = build.inputs;
     std::vector<Diagnostic> notes;
     const auto [width, height] = pictureExtent();
     const Status installed =
