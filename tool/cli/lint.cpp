@@ -267,9 +267,13 @@ void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const
 
 void addLint(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<LintArguments>();
-    CLI::App& command =
-        addCommand(app, "lint", "Find code in SPIR-V that is slow on mobile GPUs, and check budgets",
-                   "glint lint scene.glint --max-texture-fetches 12 --werror");
+    CLI::App& command = addCommand(
+        app,
+        {.name = "lint",
+         .what = "Find code in SPIR-V that is slow on mobile GPUs, and check budgets",
+         .examples = {"glint lint scene.glint", "glint lint scene.glint --max-texture-fetches 12 --werror"},
+         .usual = {"--max-instructions", "--max-texture-fetches", "--max-ray-queries", "--malioc", "--core",
+                   "--werror", "-W", "--json"}});
     command.add_option("PATH", arguments->paths, "SPIR-V files, packages, or folders of .spv files")
         ->type_name("FILE|DIR")
         ->required()

@@ -131,8 +131,10 @@ private:
                 groups[group] = compileGroup(settings_, tracers, plans[group], cache_);
             }
         };
-        const std::size_t wanted =
-            std::min<std::size_t>(plans.size(), std::thread::hardware_concurrency() / kCoresPerPackage);
+        const int jobs = settings_.render.compile.jobs;
+        const std::size_t cores =
+            jobs > 0 ? static_cast<std::size_t>(jobs) : std::thread::hardware_concurrency();
+        const std::size_t wanted = std::min(plans.size(), cores / kCoresPerPackage);
         std::vector<std::jthread> threads;
         for (std::size_t i = 1; i < wanted; ++i) {
             threads.emplace_back(work);

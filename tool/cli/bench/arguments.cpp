@@ -40,7 +40,7 @@ measure::Candidate parseCandidate(const std::string& text) {
     const std::size_t sign = text.find('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size()) {
         throw CLI::ValidationError("--candidate",
-                                   "\"" + text + "\" is not NAME=DIR, such as mine=out/package");
+                                   "\"" + text + "\" is not NAME=DIR; give one, such as mine=out/package");
     }
     return {text.substr(0, sign), text.substr(sign + 1)};
 }
@@ -56,8 +56,9 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.render.renderer.height = 270;
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder for index.html, bench.json, settings.json and\nimages/; with --calibrate for "
-            "calibration.json")
+            "folder for index.html, bench.json, settings.json and\n"
+            "images/, with --calibrate for calibration.json; those of\n"
+            "an earlier run are replaced, and any other content refused")
         .required();
     addSceneOptions(command, arguments.render);
     // Without --calibrate, checkCalibrateOptions() requires it.
@@ -126,7 +127,6 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
             "write the fastest settings with at most this error, in\nthe metric (0 to 1e9)")
         .group(advice);
     addCalibrateOptions(command, arguments.calibrate);
-    addCacheOptions(command, arguments.cache);
 }
 
 void settleBench(const CLI::App& command, BenchArguments& arguments) {
@@ -142,9 +142,9 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
     if (std::ranges::find(arguments.only, kDenoise) != arguments.only.end()) {
         arguments.filter = exampleFilter();
         if (arguments.filter == nullptr) {
-            throw CLI::ValidationError(
-                "--only",
-                "denoise needs a glint that was built with its examples: -DGLINT_BUILD_EXAMPLES=ON");
+            throw CLI::ValidationError("--only",
+                                       "denoise needs a glint that was built with its examples; build it "
+                                       "with -DGLINT_BUILD_EXAMPLES=ON");
         }
     }
     for (const std::string& text : arguments.candidateWords) {
