@@ -241,7 +241,7 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
              "folders of material features (docs/material_features.md)")
         .required();
     addText(command, "--pictures", arguments->pictures, "DIR",
-            "write PNG files: each feature's lobe over all directions for\n"
+            "write pictures of features; PNG files: each feature's lobe over all directions for\n"
             "three views, and a sphere in a white furnace, which is\n"
             "brighter than the background, or red, where it creates\n"
             "energy; existing files are replaced");
@@ -251,11 +251,11 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
                "maximum number of parameter combinations for each feature;\n"
                "the first are the usual values and each range's ends");
     addFlag(command, "--prove", arguments->prove,
-            "prove on intervals, without a device, that no operation fails\nand all results are finite and "
-            "in their ranges");
-    addInteger(
-        command, "--boxes", arguments->boxes, 1, 100000000,
-        "the most boxes of inputs that --prove looks at for each\nfeature; more decide a larger share");
+            "prove on intervals instead, without a device; no operation\n"
+            "fails, and all results are finite and in their ranges");
+    addInteger(command, "--boxes", arguments->boxes, 1, 100000000,
+               "the most boxes of inputs for each feature; of --prove; more\n"
+               "decide a larger share");
     addDeviceChoice(command, arguments->options.device, arguments->options.validate);
     addJobs(command, arguments->options.jobs);
     command.callback([arguments, &command, &chosen] {

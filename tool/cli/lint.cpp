@@ -214,7 +214,8 @@ Status lintPath(const Console& console, const LintArguments& arguments, const st
     }
     const std::size_t begin = report.modules.size();
     for (const inspect::LintFile& file : files->files) {
-        console.progress(fmt::format("lint {}", file.path.string()));
+        console.progress(fmt::format("lint {} of {}: {}", report.modules.size() - begin + 1,
+                                     files->files.size(), file.path.string()));
         report.modules.push_back(
             inspect::lintModule(file, arguments.budgets(), report.malioc, arguments.core));
     }
@@ -284,9 +285,8 @@ void addLint(CLI::App& app, Action& chosen) {
     addBudget(command, "--max-texture-fetches", arguments->textureFetches, "texture fetches");
     addBudget(command, "--max-ray-queries", arguments->rayQueries, "ray queries");
     addText(command, "--malioc", arguments->malioc, "PROGRAM",
-            "Arm's Mali Offline Compiler, for cycles and registers\nof compute shaders (default: malioc, if "
-            "PATH has "
-            "it)");
+            "Arm's Mali Offline Compiler; for cycles and registers\n"
+            "of compute shaders (default: malioc, if PATH has it)");
     addText(command, "--core", arguments->core, "NAME",
             "the GPU that malioc compiles for (default: malioc's)");
     command.callback([arguments, &chosen] {

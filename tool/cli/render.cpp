@@ -348,7 +348,8 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
                            *movement,
                            camera->view,
                            aspect,
-                           reference ? &*reference : nullptr};
+                           reference ? &*reference : nullptr,
+                           console.countTo("rendering sample")};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = measure::checkValidation(console, **context); !valid) {

@@ -116,7 +116,7 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, S
     const auto arguments = std::make_shared<ViewArguments>();
     arguments->samples = kSamplesInWindow;
     addSceneOptions(command, *arguments);
-    addPackageOption(command, *arguments, ", and the next one when it is written (glint compile --watch)");
+    addPackageOption(command, *arguments, "; and the next one when it is written (glint compile --watch)");
     const std::string group = "Window";
     addMoment(command, arguments->motion, "begin", group);
     addFlag(command, "--play", arguments->plays, "begin to play the animation").group(group);

@@ -163,7 +163,8 @@ private:
         const std::string name =
             fmt::format("{} {} cases, {}, {} rays", scene.options.cases, nameOf(scene.options.cost),
                         nameOf(scene.options.coherence), rays);
-        observer_.progress(fmt::format("{:.0f} s: {}", secondsSinceStart(), name));
+        const std::size_t all = costs_.size() * cases_.size() * coherences_.size() * rays_.size();
+        observer_.progress(fmt::format("point {} of {}: {}", report_.entries.size() + 1, all, name));
         PointOptions options{rays, report_.rounds, report_.seed};
         if (!settings_.pictures.empty() && rays == rays_.front()) {
             const std::string file =

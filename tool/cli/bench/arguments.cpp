@@ -56,9 +56,10 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.render.renderer.height = 270;
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder for index.html, bench.json, settings.json and\n"
-            "images/, with --calibrate for calibration.json; those of\n"
-            "an earlier run are replaced, and any other content refused")
+            "folder of the results; index.html, bench.json,\n"
+            "settings.json and images/, with --calibrate\n"
+            "calibration.json; those of an earlier run are replaced, and\n"
+            "any other content refused")
         .required();
     addSceneOptions(command, arguments.render);
     // Without --calibrate, checkCalibrateOptions() requires it.
@@ -66,7 +67,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
         "the scene, .gltf or .glb; none with --calibrate");
     const std::string sweep = "Sweep";
     addFlag(command, "--quick", arguments.quick,
-            fmt::format("fewer values, pairs and rounds, a less certain reference,\n"
+            fmt::format("fewer values, pairs and rounds; a less certain reference,\n"
                         "and {} unless --size is given",
                         kQuickSize))
         .group(sweep);
@@ -120,11 +121,12 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
         .group(errors);
     const std::string advice = "Advice";
     addReal(command, "--budget-ms", arguments.budgetMs, 0.0, 1e9,
-            "write the most exact settings whose pictures take at\nmost this long to DIR/settings.json (0 to "
+            "write the most exact settings within this time; to\nDIR/settings.json, by the time of a picture "
+            "(0 to "
             "1e9)")
         .group(advice);
     addReal(command, "--max-error", arguments.maxError, 0.0, 1e9,
-            "write the fastest settings with at most this error, in\nthe metric (0 to 1e9)")
+            "write the fastest settings with at most this error; in the\nmetric (0 to 1e9)")
         .group(advice);
     addCalibrateOptions(command, arguments.calibrate);
 }

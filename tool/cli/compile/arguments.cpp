@@ -91,10 +91,10 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
             "or --dry-run)")
         .check(CLI::Validator(complaintAboutFolder, ""))
         ->group("Output");
-    addOutputFile(
-        command, "--embed", arguments.embed, "FILE.cpp", {".cpp", ".cc", ".cxx"},
-        "write the package as a C++ source, with a header beside it, for programs that ship no files; -o is "
-        "then optional")
+    addOutputFile(command, "--embed", arguments.embed, "FILE.cpp", {".cpp", ".cc", ".cxx"},
+                  "write the package as a C++ source; a header comes beside it, for programs that ship no "
+                  "files, and -o "
+                  "is then optional")
         .group("Output");
     addChoices(command, "--emit", arguments.emit, {"glsl", "header", "library", "linkable"},
                "what else the package contains, separated by commas:\n"
@@ -107,8 +107,8 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
                 "read, check and plan everything as usual; compile nothing\nand write nothing");
     dry.group("Output");
     CLI::Option& watch = addFlag(command, kWatch, arguments.watch,
-                                 "compile again whenever an input changes, until Ctrl-C, and\n"
-                                 "increment the counter in DIR.stamp after each new package");
+                                 "compile again whenever an input changes, until Ctrl-C;\n"
+                                 "increments the counter in DIR.stamp after each new package");
     watch.group("Output")->excludes(&dry);
     addFlag(command, "--early", arguments.early,
             "with --watch: also write an early package that shows an\n"

@@ -108,7 +108,7 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
             [](const std::string& id) { return id == kAll ? std::string() : checkId(id, kWarning); }, ""));
     command
         .add_option("-W", arguments.warnings,
-                    "-Wno-ID: hide warnings and notes of this id; -Werror,\n"
+                    "hide warnings and notes; -Wno-ID: those of this id; -Werror,\n"
                     "-Werror=ID: the same as --werror; may be repeated")
         ->type_name("no-ID|error=ID")
         ->allow_extra_args(false)

@@ -285,7 +285,8 @@ std::string HelpFormatter::make_option_name(const CLI::Option* option, bool isPo
 std::string HelpFormatter::make_option_opts(const CLI::Option* option) const {
     std::string text;
     if (option->get_type_size() != 0) {
-        text += option->get_type_name().empty() ? "" : " " + option->get_type_name();
+        const std::string type = option->get_type_name();
+        text += type.empty() || (option->get_positional() && type == option->get_name()) ? "" : " " + type;
         const bool many = option->get_expected_max() >= CLI::detail::expected_max_vector_size;
         text += many && option->get_positional() ? "..." : "";
         text += option->get_required() ? " " + get_label("REQUIRED") : "";

@@ -30,7 +30,8 @@ constexpr const char* kMapIntensity = "--environment-intensity";
 
 void addEnvironmentOptions(CLI::App& command, compiler::Settings& settings) {
     addText(command, kMap, settings.environment, "FILE",
-            "light the scene by this equirectangular map, .hdr or\n.exr, instead of a gradient")
+            "light the scene by this equirectangular map; a .hdr or .exr\n"
+            "file, instead of a gradient")
         .check(CLI::Validator(
             [](const std::string& text) {
                 const Result<image::RadianceFormat> format = image::radianceFormat(text);
@@ -284,8 +285,8 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
     addMotionOptions(command, arguments->motion);
     addPackageOption(command, *arguments);
     addFlag(command, "--denoise", arguments->denoise,
-            "remove the noise of each picture with Open Image Denoise,\n"
-            "if glint was built with it (docs/layers.md)")
+            "remove the noise of each picture; by Open Image Denoise, if\n"
+            "glint was built with it (docs/layers.md)")
         .group("Picture");
     addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);
