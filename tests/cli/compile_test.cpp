@@ -47,7 +47,7 @@ TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
     std::filesystem::create_directories(path("precious"));
     writeText(path("precious/file"), "mine");
     const std::vector<std::vector<std::string>> lines{
-        {"-o", "package", "--effects", "none", "--emissive-lights"},
+        {"-o", "package", "--max-shaders", "1"},
         {"-o", "package", "--passes", "steps", "--bounces", "2"},
         {"-o", "package", "--answer", "surface"},
         {"-o", "package", "--layers", "no-such-layer"},
@@ -72,7 +72,8 @@ TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
         std::vector<std::string> line{"compile", scene(), "--dry-run", "--json"};
         line.insert(line.end(), more.begin(), more.end());
         std::vector<std::string> found;
-        for (const nlohmann::json& diagnostic : run(line).json().at("diagnostics")) {
+        const nlohmann::json report = run(line).json();
+        for (const nlohmann::json& diagnostic : report.at("diagnostics")) {
             if (diagnostic.at("id") == "setting-idle") {
                 found.push_back(diagnostic.at("message"));
             }

@@ -455,7 +455,7 @@ void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line
               .what = "Compile a scene's materials into a package of shaders",
               .examples =
                   {"glint compile scene.gltf -o scene.glint",
-                   "glint compile scene.gltf -o scene.glint --strategy auto --emit header,library --watch"},
+                   "glint compile scene.gltf -o scene.glint --strategy auto --emit header,library"},
               .usual = {"--output", "--embed", "--strategy", "--effects", "--merge", "--bounces", "--emit",
                         "--watch", "--dry-run", "--jobs"}});
     addCompileOptions(command, *arguments);

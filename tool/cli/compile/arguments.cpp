@@ -180,6 +180,10 @@ Status checkOutputs(const CompileArguments& arguments) {
     if (possible && arguments.planOnly.empty() && !arguments.embed.empty()) {
         // Its folder is made.
         possible = base::checkOutputFolder(std::filesystem::path(arguments.embed).parent_path());
+        if (!possible) {
+            possible = makeError(possible.error().id, arguments.embed, possible.error().message,
+                                 possible.error().hint);
+        }
     }
     std::error_code error;
     if (possible && std::filesystem::is_directory(arguments.embed, error)) {
