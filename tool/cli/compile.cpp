@@ -453,9 +453,8 @@ void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line
     CLI::App& command = addCommand(
         app, {.name = "compile",
               .what = "Compile a scene's materials into a package of shaders",
-              .examples =
-                  {"glint compile scene.gltf -o scene.glint",
-                   "glint compile scene.gltf -o scene.glint --strategy auto --emit header,library"},
+              .examples = {"glint compile scene.gltf -o scene.glint",
+                           "glint compile scene.gltf -o scene.glint --strategy auto --emit header,library"},
               .usual = {"--output", "--embed", "--strategy", "--effects", "--merge", "--bounces", "--emit",
                         "--watch", "--dry-run", "--jobs"}});
     addCompileOptions(command, *arguments);
