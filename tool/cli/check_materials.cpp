@@ -241,10 +241,10 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
              "folders of material features (docs/material_features.md)")
         .required();
     addText(command, "--pictures", arguments->pictures, "DIR",
-            "write pictures of features; PNG files: each feature's lobe over all directions for\n"
-            "three views, and a sphere in a white furnace, which is\n"
-            "brighter than the background, or red, where it creates\n"
-            "energy; existing files are replaced");
+            "write pictures of features; PNG files: each feature's lobe\n"
+            "over all directions for three views, and a sphere in a\n"
+            "white furnace, which is brighter than the background, or\n"
+            "red, where it creates energy; existing files are replaced");
     addInteger(command, "--samples", arguments->samples, 256, 1 << 20,
                "sampled directions for each combination and view; more\nfind smaller errors of densities");
     addInteger(command, "--combinations", arguments->combinations, 1, 4096,

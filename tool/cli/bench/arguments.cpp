@@ -115,8 +115,8 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                         kReferenceError, kQuickReferenceError))
         .group(errors);
     addInteger(command, "--reference-spp", arguments.referenceSamples, 0, 1 << 24,
-               fmt::format("the most samples per pixel of the reference; 0: {}, or {}\n"
-                           "with --quick",
+               fmt::format("the most samples per pixel of the reference; 0: {}, or\n"
+                           "{} with --quick",
                            kReferenceSamples, kQuickReferenceSamples))
         .group(errors);
     const std::string advice = "Advice";
