@@ -54,7 +54,7 @@ TEST_F(Choice, ListsHaveItemsAndNoBlanks) {
     refused({"--strategy", "uber,", "visibility"}, "\"uber,\" lacks an item");
     refused({"--strategy", "uber,,visibility"}, "lacks an item");
     refused({"--strategy", ",uber"}, "lacks an item");
-    refused({"--strategy", "uber, visibility"}, "has a blank: lists are separated by commas");
+    refused({"--strategy", "uber, visibility"}, "has a blank; separate lists by commas alone");
     refused({"--tracer=all, ray-query"}, "has a blank");
     refused({"--hit-lobes", " base"}, "has a blank");
 }
