@@ -105,7 +105,7 @@ TEST_F(Diagnostics, WhatIsLeftOutIsNoError) {
 }
 
 TEST_F(Diagnostics, ErrorsCannotBeLeftOut) {
-    const std::string message = "\"file-open\" is an error whatever is said of warnings";
+    const std::string message = "\"file-open\" is always an error; name a warning";
     expectUsageError("-Wno-file-open", message);
     expectUsageError("-Werror=file-open", message);
     expectUsageError("--werror=file-open", message);

@@ -224,7 +224,8 @@ std::string explain(const CLI::ParseError& error, const CLI::App& command) {
         return message;  // Glint's own
     }
     // Numbers of values, and values of options without values.
-    const std::string name = before(":");
+    const std::string unread = after("Could not convert: ");
+    const std::string name = unread.empty() ? before(":") : unread.substr(0, unread.find(" = "));
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option == nullptr) {
         return "the command line can't be understood; see --help";
