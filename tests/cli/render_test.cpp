@@ -273,8 +273,9 @@ TEST_F(LampScene, TheLightThatIsAddedIsReported) {
 }
 
 TEST_F(RenderCommand, OptionsThatChangeNothingAreWarnedOf) {
-    const Outcome idle = render("a.exr", {"--ordering", "local-histogram", "--ssr-thickness", "0.1",
-                                          "--light-radius", "0.1", "--exposure", "1"});
+    const Outcome idle =
+        render("a.exr", {"--strategy", "uber", "--ordering", "local-histogram", "--ssr-thickness", "0.1",
+                         "--light-radius", "0.1", "--exposure", "1"});
     ASSERT_EQ(idle.exit, 0) << idle.err;
     for (const char* const message :
          {"--ordering local-histogram changes nothing: --strategy uber sorts no hits and keeps no records",
