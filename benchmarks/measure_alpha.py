@@ -56,7 +56,7 @@ def trace_time(glint, scene, folder, arguments):
     """Renders once; returns the milliseconds and the rays of the pass that traces."""
     stats = folder / "stats.json"
     subprocess.run([glint, "render", scene, "-o", folder / "picture.png", "--size", arguments.size, "--strategy",
-                    "visibility", "--tracer", arguments.tracer, "--effects", "reflection", "--sun", "off",
+                    "visibility", "--tracer", arguments.tracer, "--effects", "reflection", "--no-sun",
                     "--opacity", "tested", "--stats", stats], check=True, capture_output=True)
     report = json.loads(stats.read_text())
     passes = [entry["milliseconds"] for entry in report["passes"] if entry["name"] == "trace"]

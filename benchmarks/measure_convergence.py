@@ -105,14 +105,14 @@ class Yard:
 
     def __init__(self, options, folder, kind, lights):
         self.options, self.folder, self.kind = options, folder, kind
-        self.light = [str(folder / word) if word.endswith(".hdr") else word for word in KINDS[kind]] + ["--sun", "off"]
+        self.light = [str(folder / word) if word.endswith(".hdr") else word for word in KINDS[kind]] + ["--no-sun"]
         self.scene = folder / f"{kind}.gltf"
         self.package = folder / f"{kind}-{lights}"
         write_yard(self.scene, kind)
         map_option = ["--environment-map"] if kind == "map" else []
         self.run("compile", self.scene, "-o", self.package, "--strategy", "all", "--merge", "all", "--effects",
                  "shadow,reflection,indirect-diffuse", "--max-roughness", "1", "--bounces", options.bounces,
-                 "--emissive-lights", "on", "--sized-lights", "off", "--lights", lights, *map_option)
+                 "--emissive-lights", "--no-sized-lights", "--lights", lights, *map_option)
 
     def run(self, *words):
         words = [str(word) for word in (self.options.glint, *words)]
@@ -182,7 +182,7 @@ def main():
         print("|---" * (len(columns) + 1) + "|", flush=True)
         write_yard(folder / "dark.gltf", "sky")
         next(iter(yards.values())).run("render", folder / "dark.gltf", "-o", folder / "black.exr", "--size",
-                                       options.size, "--sky", "0", "--sun", "off", "--quiet")
+                                       options.size, "--sky", "0", "--no-sun", "--quiet")
         seed = 1000
         for kind, yard in yards.items():
             cells = []

@@ -7,7 +7,7 @@
 
 The scene is that of measure_lights.py with lamps of two triangles in place of points: each shines down, and the flux of
 all does not depend on their number. `chance` has --emissive-lights off, and one bounce more, so that the mean is the
-same. The others have --emissive-lights on and --lights K. The error is the relMse against --reference-spp samples of
+same. The others have --emissive-lights and --lights K. The error is the relMse against --reference-spp samples of
 --lights 8, which falls as 1 / samples; it is given for one sample. The time is the median over the rounds of the device
 time of all passes of a sample. `time at equal error` is that of error / TARGET samples. --build renders one sample with so
 many triangles and prints the memory of the lights and the time of the whole command. Prints each row when it is known.
@@ -86,8 +86,8 @@ def write_scene(path, triangles):
 def settings_of(choice, bounces):
     """What the package of a choice is compiled with."""
     if choice == "chance":
-        return ["--emissive-lights", "off", "--bounces", bounces + 1]
-    return ["--emissive-lights", "on", "--lights", choice, "--bounces", bounces]
+        return ["--no-emissive-lights", "--bounces", bounces + 1]
+    return ["--emissive-lights", "--lights", choice, "--bounces", bounces]
 
 
 def main():
@@ -115,7 +115,7 @@ def main():
     def render(folder, count, choice, output, spp):
         run(options.glint, "render", folder / f"{count}.gltf", "-o", folder / output, "--package",
             folder / f"{count}-{choice}", "--strategy", "uber", "--tracer", options.tracer, "--size", options.size,
-            "--sky", 0, "--sun", "off", "--spp", spp, "--bounces",
+            "--sky", 0, "--no-sun", "--spp", spp, "--bounces",
             options.bounces + (1 if choice == "chance" else 0), "--stats", folder / "stats.json", *device)
         return json.loads((folder / "stats.json").read_text())
 

@@ -44,7 +44,7 @@ def compile_scene(glint, folder, kind, wishes, merge):
     scene, package = folder / "scene.gltf", folder / "scene.glint"
     scene.write_text(make_scene(list(dict.fromkeys(wishes))))
     command = [glint, "compile", scene, "-o", package, "--merge", merge, "--strategy", "visibility", "--cache", "none"]
-    command += ["--trust-textures", "off"]  # what the wishes ask for stays, whatever the textures hold
+    command += ["--no-trust-textures"]  # what the wishes ask for stays, whatever the textures hold
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"measure_merge_model.py: {' '.join(map(str, command))}\n{done.stderr}")

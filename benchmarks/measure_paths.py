@@ -6,8 +6,8 @@
 
 Renders everything once, all at the same time, to fill the driver's cache, and says on stderr how long each took. Then
 all strategies and numbers of bounces are rendered in turn, in an order that changes from round to round, each with the
-package that has those bounces. The sky is no light (--sky-light off), and neither are emissive triangles without
---emissive-lights on. Prints Markdown: the device time of all passes of a sample, as the median with its least and
+package that has those bounces. The sky is no light (--no-sky-light), and neither are emissive triangles without
+--emissive-lights. Prints Markdown: the device time of all passes of a sample, as the median with its least and
 greatest value, and the ratio of each strategy to uber in the same round. If it is stopped by SIGTERM, as timeout(1)
 does, it prints what it has measured until then.
 
@@ -64,8 +64,8 @@ def compile_packages(arguments, folder):
     for bounces in arguments.bounces:
         subprocess.run([arguments.glint, "compile", arguments.scene, "-o", folder / str(bounces), "--bounces",
                         str(bounces), "--strategy", ",".join(arguments.strategies), "--tracer", tracer, "--effects",
-                        "shadow,reflection", "--max-roughness", "1", "--sky-light", "off", "--emissive-lights",
-                        arguments.emissive_lights, "--merge", arguments.merge],
+                        "shadow,reflection", "--max-roughness", "1", "--no-sky-light",
+                        f"--emissive-lights={arguments.emissive_lights}", "--merge", arguments.merge],
                        check=True, capture_output=True)
 
 

@@ -110,7 +110,7 @@ def main():
         light = ["--sky", 1] if sky == "gradient" else environment_of(folder, sky)
         package = folder / f"{'gradient' if sky == 'gradient' else 'map'}-{choice}"
         run(options.glint, "render", folder / "scene.gltf", "-o", folder / output, "--package", package, "--strategy",
-            "uber", "--tracer", options.tracer, "--size", options.size, *light, "--sun", "off", "--spp", spp, "--seed",
+            "uber", "--tracer", options.tracer, "--size", options.size, *light, "--no-sun", "--spp", spp, "--seed",
             seed, "--bounces", options.bounces, "--stats", folder / "stats.json", *device)
         return json.loads((folder / "stats.json").read_text())
 
@@ -123,7 +123,7 @@ def main():
         for kind in ("gradient", "map"):
             for choice in choices:
                 run(options.glint, "compile", folder / "scene.gltf", "-o", folder / f"{kind}-{choice}", "--strategy",
-                    "uber", "--effects", "shadow,indirect-diffuse", "--bounces", options.bounces, "--sky-light", choice,
+                    "uber", "--effects", "shadow,indirect-diffuse", "--bounces", options.bounces, f"--sky-light={choice}",
                     *(["--environment-map"] if kind == "map" else []), *tracers)
         for sky in options.skies:
             if sky != "gradient":

@@ -3,7 +3,7 @@
 
     benchmarks/measure_texture_content.py GLINT SCENE... [--no-pictures]
 
-Each scene, and one that is generated, is compiled with --trust-textures off and on, each with an empty cache of its own.
+Each scene, and one that is generated, is compiled with --no-trust-textures and without, each with an empty cache of its own.
 One table has what is in the packages: effects, distinct features of hits, cases, modules, bytes of SPIR-V, bytes of a
 material, and the greatest difference of two pictures of 64 x 36 pixels. The other has processor seconds: cold; planning
 again with everything in the cache, as after an edit of the scene; and when nothing has changed.
@@ -118,7 +118,7 @@ def run(*command):
 def measure(glint, scene, trust, work, pictures):
     cache = work / "cache"
     shutil.rmtree(work, ignore_errors=True)
-    line = [glint, "compile", scene, *COMPILE, "--trust-textures", trust, "--cache", cache, "--json", "-o"]
+    line = [glint, "compile", scene, *COMPILE, f"--trust-textures={trust}", "--cache", cache, "--json", "-o"]
     _, cold = run(*line, work / "package")
     _, again = run(*line, work / "other")
     report, nothing = run(*line, work / "other")
@@ -138,7 +138,7 @@ def measure(glint, scene, trust, work, pictures):
     if pictures:
         picture = work / "picture.exr"
         run(glint, "render", scene, "-o", picture, "--size", "64x36", "--spp", "1", "--effects", "auto",
-            "--trust-textures", trust, "--json")
+            f"--trust-textures={trust}", "--json")
         result["picture"] = picture
     return result
 

@@ -113,7 +113,7 @@ check_scene() {
 
 # explain_scene SCENE: reads the scene and plans. Images are decoded where scenes are rendered.
 explain_scene() {
-    check 0 "$build/bin/glint" explain "$1" --plan --merge auto --trust-textures off
+    check 0 "$build/bin/glint" explain "$1" --plan --merge auto --no-trust-textures
 }
 
 # render_scene STRATEGY:SCENE: compiles and renders for one strategy.

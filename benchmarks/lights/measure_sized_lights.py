@@ -65,7 +65,7 @@ class Floor:
         stats = self.folder / "stats.json"
         subprocess.run([self.arguments.bin / "glint", "render", self.scene, *self.options, "--sky", "0", "--spp",
                         str(self.arguments.spp), "--shadow-spp", points, "--strategy", "uber", "--merge", "all",
-                        "--effects", "shadow,reflection", "--max-roughness", "1", "--sized-lights", sized, "--lights",
+                        "--effects", "shadow,reflection", "--max-roughness", "1", f"--sized-lights={sized}", "--lights",
                         self.arguments.lights, "--stats", stats, "--quiet", "-o", self.picture], check=True)
         passes = json.loads(stats.read_text())["passes"]
         return sum(entry["milliseconds"] for entry in passes if entry["name"] == "lighting")

@@ -96,7 +96,7 @@ def render_glint(options, scene, mode):
     """Renders a scene and returns the linear picture."""
     output = scene.file.parent / f"{mode}.exr"
     subprocess.run([options.glint, "render", scene.file, "-o", output, "--size", f"{scene.size[0]}x{scene.size[1]}",
-                    "--camera", str(scene.camera), "--environment", options.out / "map.hdr", "--sun", "off", "--quiet",
+                    "--camera", str(scene.camera), "--environment", options.out / "map.hdr", "--no-sun", "--quiet",
                     *MODES[mode]], check=True)
     return images.read_exr(output)
 

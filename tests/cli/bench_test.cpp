@@ -210,7 +210,7 @@ TEST_F(Bench, RepeatsItsErrorsAndKeepsItsReference) {
     }
     // Another view has another reference.
     std::vector<std::string> other = options;
-    other.insert(other.end(), {"--sun", "off"});
+    other.insert(other.end(), {"--no-sun"});
     EXPECT_FALSE(bench(other).json().at("reference").at("cached").get<bool>());
     // A reference that must be more accurate continues from what is stored.
     other = options;

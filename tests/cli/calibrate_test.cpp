@@ -107,7 +107,7 @@ TEST_F(Calibrate, SaysWhatItFoundAsATable) {
 }
 
 TEST_F(Calibrate, RefusesWhatHasNoPlace) {
-    expectRefused({"bench", "-o", "out"}, "SCENE is required");
+    expectRefused({"bench", "-o", "out"}, "SCENE is missing");
     expectRefused({"bench", "scene.gltf", "--calibrate", "-o", "out"}, "makes its own scenes");
     expectRefused({"bench", "--calibrate", "-o", "out", "--strategy", "uber"}, "--strategy");
     expectRefused({"bench", "scene.gltf", "-o", "out", "--calibrate-cases", "4"}, "needs --calibrate");

@@ -43,6 +43,62 @@ TEST_F(CompileCommand, DryRunHonoursTheLimitOfShaders) {
     EXPECT_EQ(run({"compile", scene(), "--dry-run", "--max-shaders", "1", "--merge", "all"}).exit, 0);
 }
 
+TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
+    std::filesystem::create_directories(path("precious"));
+    writeText(path("precious/file"), "mine");
+    const std::vector<std::vector<std::string>> lines{
+        {"-o", "package", "--max-shaders", "1"},
+        {"-o", "package", "--passes", "steps", "--bounces", "2"},
+        {"-o", "package", "--answer", "surface"},
+        {"-o", "package", "--layers", "no-such-layer"},
+        {"-o", "package", "--depfile", "a.d", "--depfile-target", "a*b"},
+        {"-o", "precious"},
+        {"--embed", "precious/file/a.cpp"}};
+    for (const std::vector<std::string>& more : lines) {
+        std::vector<std::string> line{"compile", scene()};
+        line.insert(line.end(), more.begin(), more.end());
+        const Outcome whole = run(line);
+        line.emplace_back("--dry-run");
+        const Outcome dry = run(line);
+        EXPECT_NE(whole.exit, 0) << more.back();
+        EXPECT_EQ(dry.exit, whole.exit) << more.back();
+        EXPECT_EQ(dry.err, whole.err) << more.back();
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("package")));
+}
+
+TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
+    const auto warnings = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> line{"compile", scene(), "--dry-run", "--json"};
+        line.insert(line.end(), more.begin(), more.end());
+        std::vector<std::string> found;
+        const nlohmann::json report = run(line).json();
+        for (const nlohmann::json& diagnostic : report.at("diagnostics")) {
+            if (diagnostic.at("id") == "setting-idle") {
+                found.push_back(diagnostic.at("message"));
+            }
+        }
+        return found;
+    };
+    using Found = std::vector<std::string>;
+    EXPECT_EQ(
+        warnings({"--hit-record", "packed", "--strategy", "uber"}),
+        Found{"--hit-record packed changes nothing: --strategy uber sorts no hits and keeps no records"});
+    EXPECT_EQ(warnings({"--hit-record", "packed"}), Found());
+    EXPECT_EQ(warnings({"--hit-record", "full", "--texture-lod", "cones"}), Found());  // as usual
+    EXPECT_EQ(warnings({"--texture-lod", "mip0", "--no-trust-textures"}),
+              (Found{"--texture-lod mip0 changes nothing: there are no textures",
+                     "--no-trust-textures changes nothing: there are no textures"}));
+    EXPECT_EQ(warnings({"--bounces", "4"}), Found());
+    EXPECT_EQ(warnings({"--bounces", "4", "--effects", "shadow"}),
+              Found{"--bounces 4 changes nothing: no effect sends rays whose hits are shaded"});
+    EXPECT_EQ(warnings({"--lights", "4"}).size(), 1U);
+    EXPECT_EQ(warnings({"--effects", "none"}), Found());
+    writeText(path("device.json"), "{}");
+    EXPECT_EQ(warnings({"--calibration", "device.json"}),
+              Found{"--calibration changes nothing: only --strategy auto reads it"});
+}
+
 TEST_F(CompileCommand, JsonHasWhatIsPromised) {
     const Outcome outcome = run({"compile", scene(), "-o", "package", "--json"});
     ASSERT_EQ(outcome.exit, 0) << outcome.err;
@@ -100,7 +156,7 @@ TEST_F(CompileCommand, ManifestHoldsSettingsAndVariant) {
     writeTinyScene(path(""), {.variants = true});
     ASSERT_EQ(
         run({"compile", scene(), "-o", "package", "--strategy", "uber", "--variant", "Day", "--hit-lobes",
-             "base", "--energy-compensation", "off", "--texture-lod", "mip0", "--precision", "16"})
+             "base", "--no-energy-compensation", "--texture-lod", "mip0", "--precision", "16"})
             .exit,
         0);
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));

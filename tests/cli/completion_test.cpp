@@ -56,7 +56,9 @@ std::vector<std::string> optionsOf(const std::string& help) {
     for (std::string line; std::getline(lines, line);) {
         const std::size_t begin = line.starts_with("  -") ? line.find("--") : std::string::npos;
         if (begin < 6) {
-            options.push_back(line.substr(begin, line.find_first_of(" [=", begin) - begin));
+            std::string name = line.substr(begin, line.find(' ', begin) - begin);
+            const std::size_t no = name.find("[no-]");
+            options.push_back(no == std::string::npos ? name : name.erase(no, 5));
         }
     }
     return options;
@@ -72,7 +74,7 @@ TEST_F(Completion, BashOffersCommands) {
 
 TEST_F(Completion, BashOffersEveryOptionOfEveryCommand) {
     for (const std::string& command : kCompletionCommands) {
-        const std::vector<std::string> options = optionsOf(run({command, "--help"}).out);
+        const std::vector<std::string> options = optionsOf(run({command, "--help-all"}).out);
         EXPECT_FALSE(options.empty()) << command;
         const std::vector<std::string> offered = words(bash({command, "--"}));
         for (const std::string& option : options) {

@@ -105,7 +105,7 @@ TEST_F(Diagnostics, WhatIsLeftOutIsNoError) {
 }
 
 TEST_F(Diagnostics, ErrorsCannotBeLeftOut) {
-    const std::string message = "\"file-open\" is an error whatever is said of warnings";
+    const std::string message = "\"file-open\" is always an error; name a warning";
     expectUsageError("-Wno-file-open", message);
     expectUsageError("-Werror=file-open", message);
     expectUsageError("--werror=file-open", message);
@@ -172,6 +172,7 @@ TEST_F(Diagnostics, ProgressIsForTerminals) {
     EXPECT_EQ(run(compile).err.find("reading"), std::string::npos);
     const std::string terminal = runOnTerminal(compile).err;
     EXPECT_NE(terminal.find("\r\x1b[Kreading scene.gltf"), std::string::npos) << terminal;
+    EXPECT_NE(terminal.find("\r\x1b[Kcompiling 2 of "), std::string::npos) << terminal;
     EXPECT_TRUE(terminal.ends_with("\r\x1b[K")) << "the last line of progress stays: " << terminal;
     std::vector<std::string> quiet = compile;
     quiet.emplace_back("--quiet");

@@ -62,7 +62,7 @@ TEST_F(HostCommand, IsAnInputOfThePackage) {
     // Without it, another package is made. A host brings textures of its own, so nothing is concluded from
     // those of the scene.
     std::filesystem::copy(path("package"), path("hosted"), std::filesystem::copy_options::recursive);
-    ASSERT_EQ(compile({"--trust-textures", "off"}).exit, 0);
+    ASSERT_EQ(compile({"--no-trust-textures"}).exit, 0);
     const nlohmann::json changes = run({"diff", "hosted", "package", "--json"}).json().at("settings");
     ASSERT_EQ(changes.size(), 1U) << changes;
     EXPECT_EQ(changes[0].at("name"), "host");

@@ -104,9 +104,9 @@ TEST_F(Incremental, ATexturesPixelsAreInNoPackage) {
     EXPECT_EQ(writtenFiles(), std::set<std::string>{"manifest.json"});
     EXPECT_TRUE(isUpToDate(compile()));
     // It does not, if it may not conclude anything from them.
-    compile({"--trust-textures", "off"});
+    compile({"--no-trust-textures"});
     writeBaseTexture(path("scene"), 11);
-    EXPECT_TRUE(isUpToDate(compile({"--trust-textures", "off"})));
+    EXPECT_TRUE(isUpToDate(compile({"--no-trust-textures"})));
 }
 
 TEST_F(Incremental, AnotherTextureIsInTheTablesAlone) {

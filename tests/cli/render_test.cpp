@@ -260,6 +260,46 @@ TEST_F(LampScene, WithoutLightTheSkyIsTheDefaultOne) {
     EXPECT_TRUE(black.json().at("sky").at("lightIlluminance").is_null());
 }
 
+TEST_F(LampScene, TheLightThatIsAddedIsReported) {
+    const Outcome added = render("a.png", {"--json"});
+    ASSERT_EQ(added.exit, 0) << added.err;
+    EXPECT_EQ(added.json().at("sun").at("illuminance").at(0), 3.0);
+    EXPECT_TRUE(added.json().at("sun").at("automatic").get<bool>());
+    EXPECT_TRUE(has(render("a.png").out, "3 lux, added because the scene has no light"));
+    EXPECT_TRUE(render("a.png", {"--no-sun", "--json"}).json().at("sun").is_null());
+    hangLamp(100.0);
+    EXPECT_TRUE(render("a.png", {"--json"}).json().at("sun").is_null());
+    EXPECT_TRUE(has(render("a.png", {"--sun"}).out, "3 lux (--sun)"));
+}
+
+TEST_F(RenderCommand, OptionsThatChangeNothingAreWarnedOf) {
+    const Outcome idle =
+        render("a.exr", {"--strategy", "uber", "--ordering", "local-histogram", "--ssr-thickness", "0.1",
+                         "--light-radius", "0.1", "--exposure", "1"});
+    ASSERT_EQ(idle.exit, 0) << idle.err;
+    for (const char* const message :
+         {"--ordering local-histogram changes nothing: --strategy uber sorts no hits and keeps no records",
+          "--ssr-thickness 0.1 changes nothing: --ssr is off",
+          "--light-radius 0.1 changes nothing: the picture has no point or spot light",
+          "--exposure 1 changes nothing: an EXR file keeps the light as it is"}) {
+        EXPECT_TRUE(has(idle.err, message)) << idle.err;
+    }
+    const Outcome used =
+        render("a.png", {"--ordering", "local-histogram", "--strategy", "visibility", "--ssr", "8",
+                         "--ssr-thickness", "0.1", "--sun-angle", "1", "--exposure", "1"});
+    EXPECT_EQ(used.exit, 0) << used.err;
+    EXPECT_FALSE(has(used.err, "setting-idle")) << used.err;
+}
+
+TEST_F(RenderCommand, CompiledShadersAreKept) {
+    ASSERT_EQ(render("a.png", {"--cache", "cache", "--pipeline-cache", "none", "-j", "1"}).exit, 0);
+    EXPECT_FALSE(filesBelow(path("cache")).empty());
+    const Outcome again =
+        render("b.png", {"--cache", "cache", "--pipeline-cache", "none", "--verbose", "--no-json"});
+    EXPECT_EQ(again.exit, 0) << again.err;
+    EXPECT_EQ(readText(path("a.png")), readText(path("b.png")));
+}
+
 // The lamp nears the wall with the animation; sky and exposure are those of the first picture.
 TEST_F(LampScene, ASequenceDoesNotFlicker) {
     scene_ = writeTinyScene(path(""), {.animated = true}).string();

@@ -76,7 +76,7 @@ TEST_F(RenderSchemas, HoldProfiles) {
 
 TEST_F(RenderSchemas, HoldComparisons) {
     ASSERT_EQ(render("a.exr").exit, 0);
-    ASSERT_EQ(render("b.exr", {"--seed", "1", "--sun", "off"}).exit, 0);
+    ASSERT_EQ(render("b.exr", {"--seed", "1", "--no-sun"}).exit, 0);
     const Outcome equal = run({"compare", "a.exr", "a.exr", "--json"});
     expectFits("compare", equal.json());
     EXPECT_TRUE(equal.json().at("psnr").is_null());

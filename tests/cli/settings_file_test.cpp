@@ -84,7 +84,7 @@ TEST_F(SettingsFile, IsRefusedWithItsPlace) {
     expectRefused(of(R"({"texture-lod": ""})"), "bad.json#/settings/texture-lod",
                   "neither a text nor a number");
     expectRefused(of(R"({"position-fetch": "maybe"})"), "bad.json#/settings/position-fetch",
-                  "neither on nor off");
+                  "none of on, off");
     expectRefused(std::string(5000, '['), "bad.json", "is no file of settings");
     EXPECT_EQ(run({"compile", scene_, "-o", "package", "--settings", "none.json"}).exit, 1);
     EXPECT_EQ(run({"compile", scene_, "-o", "package", "--settings"}).exit, 2);

@@ -69,7 +69,7 @@ protected:
 
     Outcome compile(const std::string& package, const std::string& trust) const {
         return run({"compile", "scene.gltf", "-o", package, "--effects", "auto", "--cache", "cache",
-                    "--trust-textures", trust, "--depfile", package + ".d", "--json"});
+                    "--trust-textures=" + trust, "--depfile", package + ".d", "--json"});
     }
 
     std::set<std::string> featuresOf(const std::string& package) const {
@@ -125,7 +125,7 @@ TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
     const Outcome drawn =
         run({"render", "scene.gltf", "-o", "a.png", "--size", "32x18", "--package", "live"});
     EXPECT_EQ(drawn.exit, 0) << "the scene is read as the package was made: " << drawn.err;
-    const Outcome both = run({"compile", "scene.gltf", "-o", "none", "--fallback", "--trust-textures", "on"});
+    const Outcome both = run({"compile", "scene.gltf", "-o", "none", "--fallback", "--trust-textures"});
     EXPECT_EQ(both.exit, 2);
     EXPECT_TRUE(has(both.err, "--fallback")) << both.err;
 }
@@ -151,8 +151,9 @@ TEST_F(TrustTextures, FollowsTheImage) {
 
 TEST_F(TrustTextures, ChangesNoPicture) {
     for (const char* const trust : {"off", "on"}) {
-        const Outcome outcome = run({"render", "scene.gltf", "-o", std::string(trust) + ".exr", "--size",
-                                     "48x16", "--spp", "2", "--effects", "auto", "--trust-textures", trust});
+        const Outcome outcome =
+            run({"render", "scene.gltf", "-o", std::string(trust) + ".exr", "--size", "48x16", "--spp", "2",
+                 "--effects", "auto", std::string("--trust-textures=") + trust});
         ASSERT_EQ(outcome.exit, 0) << outcome.err;
     }
     const Json compared = run({"compare", "off.exr", "on.exr", "--json"}).json();

@@ -19,7 +19,7 @@ struct EffectOptions {
     OcclusionSettings occlusion;
     std::uint32_t occlusionRays = 1;  // a sample
     LightSizes lights;
-    bool findsLights = false;      // --sized-lights on
+    bool findsLights = false;      // --sized-lights
     std::uint32_t shadowRays = 1;  // a light and sample
     float maxRoughness = 0.0F;     // of surfaces that reflect
     bool energyCompensation = true;

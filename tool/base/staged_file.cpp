@@ -51,6 +51,19 @@ int writeNew(const fs::path& path, std::span<const std::uint8_t> bytes) {
     return std::fclose(file.release()) != 0 ? errno : 0;
 }
 
+fs::path temporaryOf(const fs::path& path) {
+    return path.string() + std::string(kTag) + std::to_string(getpid());
+}
+
+// Makes the temporary file of `path` and removes it. Returns 0, or errno.
+int tryToWrite(const fs::path& path) {
+    const fs::path probe = temporaryOf(path);
+    const int failure = writeNew(probe, {});
+    std::error_code ignored;
+    fs::remove(probe, ignored);
+    return failure;
+}
+
 bool isOfDeadProcess(std::string_view number) {
     long process = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), process);
@@ -68,7 +81,7 @@ Result<StagedFile> StagedFile::create(const fs::path& path, std::span<const std:
     if (holds(path, bytes)) {
         return StagedFile(path, {});
     }
-    StagedFile staged(path, path.string() + std::string(kTag) + std::to_string(getpid()));
+    StagedFile staged(path, temporaryOf(path));
     if (const int failure = writeNew(staged.temporary_, bytes); failure != 0) {
         return writeError(path, std::strerror(failure));
     }
@@ -104,6 +117,34 @@ Status StagedFile::commit() {
 Status writeStaged(const fs::path& path, std::span<const std::uint8_t> bytes) {
     Result<StagedFile> staged = StagedFile::create(path, bytes);
     return staged ? staged->commit() : Status(staged.error());
+}
+
+Status checkOutputFile(const fs::path& path) {
+    std::error_code error;
+    const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+    if (!fs::is_directory(parent, error)) {
+        return makeError("output-folder", path.string(),
+                         "can't be written, because its folder does not exist",
+                         "make the folder " + parent.string() + " first");
+    }
+    if (fs::is_directory(path, error)) {
+        return makeError("output-folder", path.string(), "is a folder", "name a file within it");
+    }
+    const int failure = tryToWrite(path);
+    return failure == 0 ? okStatus() : Status(writeError(path, std::strerror(failure)));
+}
+
+Status checkOutputFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::path present = fs::absolute(folder, error);
+    while (!fs::exists(present, error) && present.has_relative_path()) {
+        present = present.parent_path();
+    }
+    if (!fs::is_directory(present, error)) {
+        return writeError(folder, present.string() + " is no folder");
+    }
+    const int failure = tryToWrite(present / "output");
+    return failure == 0 ? okStatus() : Status(writeError(folder, std::strerror(failure)));
 }
 
 void removeAbandoned(const fs::path& path) {

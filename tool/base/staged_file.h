@@ -35,6 +35,14 @@ std::span<const std::uint8_t> asBytes(std::string_view text);
 // Calls create() and commit(), for a folder in which no other process writes to `path`. Error "file-write".
 Status writeStaged(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
+// Returns an error unless a file can be written at `path` later, whether or not there is one: "output-folder"
+// if its folder does not exist or if it is a folder itself, "file-write" if the folder takes no file. A
+// temporary file is made and removed, because permissions alone do not tell.
+Status checkOutputFile(const std::filesystem::path& path);
+// Does the same for files in a folder that is made, with its parents, if it does not exist. Error
+// "file-write".
+Status checkOutputFolder(const std::filesystem::path& folder);
+
 // Removes temporary files beside `path` that killed runs left; writeFile() does so by itself.
 void removeAbandoned(const std::filesystem::path& path);
 

@@ -27,14 +27,14 @@ namespace {
 Status bench(const Console& console, const BenchArguments& arguments, const gltf::Scene& scene,
              const compiler::PlanOptions& plan, measure::BenchReport& report) {
     const base::Clock::time_point start = base::Clock::now();
-    CompileCache cache(arguments.cache, "");
+    CompileCache cache(arguments.render.cache, "");
     const Result<std::unique_ptr<measure::BenchBed>> bed =
         measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store());
     if (!bed) {
         return bed.error();
     }
     PipelineCacheFile pipelineCache(console, (*bed)->context(),
-                                    pipelineCacheFolder(arguments.render.pipelines, arguments.cache));
+                                    pipelineCacheFolder(arguments.render.pipelines, arguments.render.cache));
     Status done = measure::runBench(console, arguments, plan, **bed, cache.store(), report);
     pipelineCache.save();
     cache.close(console);
@@ -51,7 +51,7 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(writable.error());
     }
     console.progress("reading " + arguments.render.scene);
-    CompileCache known(arguments.cache, "");
+    CompileCache known(arguments.render.cache, "");
     const Result<gltf::ImportOptions> import =
         importOptions(arguments.render, ImageReading::Files, known.store());
     if (!import) {
@@ -110,8 +110,13 @@ int run(const Console& console, const BenchArguments& arguments) {
 }  // namespace
 
 void addBench(CLI::App& app, Action& chosen) {
-    CLI::App& command = addCommand(app, "bench", "Measure the error and the time of each accuracy setting",
-                                   "glint bench scene.gltf -o out/bench --quick --budget-ms 20");
+    CLI::App& command =
+        addCommand(app, {.name = "bench",
+                         .what = "Measure the error and the time of each accuracy setting",
+                         .examples = {"glint bench scene.gltf -o out/bench --quick --budget-ms 20",
+                                      "glint bench --calibrate -o out/calibration"},
+                         .usual = {"--output", "--quick", "--budget-ms", "--max-error", "--only",
+                                   "--reference", "--size", "--spp", "--calibrate", "--device"}});
     const auto arguments = std::make_shared<BenchArguments>();
     addBenchOptions(command, *arguments);
     command.callback([arguments, &command, &chosen] {

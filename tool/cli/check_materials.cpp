@@ -1,5 +1,6 @@
 // glint check-materials: checks what the code of packs computes.
 #include "base/json.h"
+#include "base/staged_file.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"
@@ -148,6 +149,11 @@ int checkMaterialFeatures(const Console& console, const CheckArguments& argument
     options.samples = static_cast<std::uint32_t>(arguments.samples);
     options.combinations = static_cast<std::uint32_t>(arguments.combinations);
     options.pictures = !arguments.pictures.empty();
+    if (options.pictures) {
+        if (Status possible = base::checkOutputFolder(arguments.pictures); !possible) {
+            return fail(console, possible.error());
+        }
+    }
     const Result<measure::MaterialChecksReport> report = measure::checkMaterials(options, console);
     if (!report) {
         return fail(console, report.error());
@@ -224,32 +230,46 @@ int proveMaterialFeatures(const Console& console, const CheckArguments& argument
 
 void addCheckMaterials(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<CheckArguments>();
-    CLI::App& command =
-        addCommand(app, "check-materials", "Check on the device what the GLSL of material features computes",
-                   "glint check-materials materials --pictures checked");
+    CLI::App& command = addCommand(
+        app,
+        {.name = "check-materials",
+         .what = "Check on the device what the GLSL of material features computes",
+         .examples = {"glint check-materials materials --pictures checked",
+                      "glint check-materials materials --prove"},
+         .usual = {"--pictures", "--prove", "--samples", "--combinations", "--boxes", "--device", "--json"}});
     addTexts(command, "DIR", arguments->options.packs, "DIR",
              "folders of material features (docs/material_features.md)")
         .required();
     addText(command, "--pictures", arguments->pictures, "DIR",
-            "write PNG files: each feature's lobe over all directions for\n"
-            "three views, and a sphere in a white furnace, which is\n"
-            "brighter than the background, or red, where it creates energy");
+            "write pictures of features; PNG files: each feature's lobe\n"
+            "over all directions for three views, and a sphere in a\n"
+            "white furnace, which is brighter than the background, or\n"
+            "red, where it creates energy; existing files are replaced");
     addInteger(command, "--samples", arguments->samples, 256, 1 << 20,
                "sampled directions for each combination and view; more\nfind smaller errors of densities");
     addInteger(command, "--combinations", arguments->combinations, 1, 4096,
                "maximum number of parameter combinations for each feature;\n"
                "the first are the usual values and each range's ends");
     addFlag(command, "--prove", arguments->prove,
-            "prove on intervals, without a device, that no operation fails\nand all results are finite and "
-            "in their ranges");
-    addInteger(
-        command, "--boxes", arguments->boxes, 1, 100000000,
-        "the most boxes of inputs that --prove looks at for each\nfeature; more decide a larger share");
-    addText(command, "--device", arguments->options.device, "NAME",
-            "part of the GPU's name (default: the first suitable one)");
-    addFlag(command, "--validate", arguments->options.validate,
-            "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error");
-    command.callback([arguments, &chosen] {
+            "prove on intervals instead, without a device; no operation\n"
+            "fails, and all results are finite and in their ranges");
+    addInteger(command, "--boxes", arguments->boxes, 1, 100000000,
+               "the most boxes of inputs for each feature; of --prove; more\n"
+               "decide a larger share");
+    addDeviceChoice(command, arguments->options.device, arguments->options.validate);
+    addJobs(command, arguments->options.jobs);
+    command.callback([arguments, &command, &chosen] {
+        // What the proofs do not read, and what they alone read.
+        const std::vector<const char*> ofDevice{"--pictures", "--samples", "--combinations", "--device",
+                                                "--validate"};
+        const std::vector<const char*> ofProof{"--boxes"};
+        for (const char* const name : arguments->prove ? ofDevice : ofProof) {
+            if (command.count(name) > 0) {
+                throw CLI::ValidationError(name, arguments->prove
+                                                     ? "has no effect with --prove; leave out one of them"
+                                                     : "is for --prove; give both, or neither");
+            }
+        }
         chosen = [arguments](const Console& console) {
             return arguments->prove ? proveMaterialFeatures(console, *arguments)
                                     : checkMaterialFeatures(console, *arguments);

@@ -5,8 +5,13 @@
 #include "cli/options/settings_option.h"
 #include "cli/options/usage.h"
 #include "gltf/codecs/basisu.h"
+#include "measure/commit.h"
+#include "spirv/compiler.h"
+
+#include <glint/package_format.h>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <cstdio>
 #include <iostream>
@@ -22,27 +27,31 @@ namespace {
 
 using Arguments = std::span<const char* const>;
 
+std::string versionText() {
+    return fmt::format(
+        "glint {}, commit {}\n"
+        "package format {}\n"
+        "glslang {}, SPIRV-Tools {}\n"
+        "KTX2 textures (KHR_texture_basisu): {}",
+        GLINT_VERSION, measure::sourceCommit(), package::kVersion, compiler::glslangVersion(),
+        compiler::spirvToolsVersion(),
+        gltf::hasBasisu() ? "read by the transcoder of Basis Universal" : "not built in");
+}
+
 void describe(CLI::App& app) {
     app.formatter(std::make_shared<HelpFormatter>());
     app.name("glint");
     app.description("Compiles the materials of glTF scenes into shaders for ray hits, and runs them.");
-    app.set_version_flag(
-        "--version",
-        std::string("glint ") + GLINT_VERSION +
-            (gltf::hasBasisu()
-                 ? "\nKTX2 textures (KHR_texture_basisu): read by the transcoder of Basis Universal"
-                 : "\nKTX2 textures (KHR_texture_basisu): not built in"),
-        "Print the version and what is built in, and exit");
-    app.set_help_flag("-h,--help", "Print this help and exit");
+    app.set_version_flag("--version", versionText(), "print the version and what is built in, and exit");
+    app.set_help_flag("-h,--help", "print this help and exit");
+    app.set_help_all_flag("--help-all", "print all options and exit");
     app.footer(
         "Exit: 0 done; 1 the input or the work failed; 2 the command line is wrong.\n"
         "Results go to stdout, diagnostics and progress to stderr.\n"
-        "Environment: NO_COLOR turns colour off; GLINT_CACHE names the folder that keeps\ncompiled shaders "
-        "(see "
-        "glint compile --help).\n"
-        "Run glint COMMAND --help for the options of a command.");
-    app.get_formatter()->label("SUBCOMMAND", "COMMAND");
-    app.get_formatter()->label("REQUIRED", "(required)");
+        "Boolean options: --x sets and --no-x clears; the last one counts.\n"
+        "Environment: NO_COLOR turns colour off; GLINT_CACHE names the folder that keeps\n"
+        "compiled shaders (see glint compile --help-all).\n"
+        "glint help COMMAND says what a command is for.");
     app.require_subcommand(1);
 }
 
@@ -51,6 +60,28 @@ int refuse(const Slip& slip) {
     std::fprintf(stderr, "%s: error: %s\nRun %s --help for its options.\n", command.c_str(),
                  slip.message.c_str(), command.c_str());
     return kExitUsage;
+}
+
+// glint help COMMAND is glint COMMAND --help.
+void addHelp(CLI::App& app, Action& chosen) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+    }
+    CLI::App& help = addCommand(app, {.name = "help",
+                                      .what = "Show what a command is for, and its usual options",
+                                      .examples = {"glint help render", "glint help"},
+                                      .usual = {"--help"}});
+    auto topic = std::make_shared<std::string>();
+    addChoice(help, "COMMAND", *topic, names, "the command").type_name("");
+    help.callback([topic, &app, &chosen] {
+        chosen = [topic, &app](const Console& console) {
+            console.print(topic->empty()
+                              ? app.get_formatter()->make_help(&app, "glint", CLI::AppFormatMode::Normal)
+                              : app.get_subcommand(*topic)->help("glint"));
+            return kExitDone;
+        };
+    });
 }
 
 // Runs the work. It fails if a warning counts as an error, or if its results could not be written.
@@ -92,6 +123,7 @@ int runCommandLine(int argc, const char* const* argv, ShowWindow showWindow) {
         addReportOptions(*command, report);
     }
     addCompletion(app, chosen);
+    addHelp(app, chosen);
 
     const std::optional<Slip> slip = findSlip(app, arguments);
     if (slip) {
@@ -111,11 +143,12 @@ int runCommandLine(int argc, const char* const* argv, ShowWindow showWindow) {
     } catch (const CLI::Success& request) {
         return app.exit(request, std::cout, std::cerr);
     } catch (const CLI::ParseError& error) {
-        if (const std::optional<Diagnostic> ofFile = blameFile(*line, error.what())) {
+        const std::string message = explain(error, command.empty() ? app : *app.get_subcommand(command));
+        if (const std::optional<Diagnostic> ofFile = blameFile(*line, message)) {
             Console().report(*ofFile);
             return kExitFailed;
         }
-        return refuse({command, error.what()});
+        return refuse({command, message});
     }
     return act(chosen, report);
 }

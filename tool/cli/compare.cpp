@@ -1,6 +1,7 @@
 // glint compare: measures how far two images differ.
 #include "image/compare.h"
 
+#include "base/staged_file.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"
@@ -106,6 +107,11 @@ std::optional<Diagnostic> judge(const CompareArguments& arguments, const image::
 }
 
 int compare(const Console& console, const CompareArguments& arguments) {
+    if (!arguments.diff.empty()) {
+        if (Status possible = base::checkOutputFile(arguments.diff); !possible) {
+            return fail(console, possible.error());
+        }
+    }
     const Result<LinearImage> image = image::readImage(arguments.image);
     if (!image) {
         return fail(console, image.error());
@@ -140,16 +146,22 @@ int compare(const Console& console, const CompareArguments& arguments) {
 void addCompare(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<CompareArguments>();
     auto maxError = std::make_shared<double>(0.0);
-    CLI::App& command = addCommand(app, "compare", "Measure how far two images are apart, in linear light",
-                                   "glint compare uber.exr visibility.exr --max-error 1e-3 --diff diff.png");
+    CLI::App& command =
+        addCommand(app, {.name = "compare",
+                         .what = "Measure how far two images are apart, in linear light",
+                         .examples = {"glint compare new.exr old.exr",
+                                      "glint compare new.exr old.exr --max-error 0.01 --diff map.png"},
+                         .usual = {"--diff", "--max-error", "--json"}});
     addText(command, "A", arguments->image, "IMAGE", "the image, .png or .exr").required();
     addText(command, "B", arguments->reference, "IMAGE", "the reference, of the same size").required();
-    addImageOutput(command, "--diff", arguments->diff, {".png"},
-                   "write a map of the relative errors: black up to 1e-4,\n"
-                   "then violet, red, orange to pale yellow at 1 and above;\ngreen: NaN or infinity");
+    addOutputFile(
+        command, "--diff", arguments->diff, "FILE.png", {".png"},
+        "write a map of the relative errors: black up to 1e-4, then violet, red, orange to pale yellow at "
+        "1 and above; green: NaN or infinity");
     CLI::Option& limit = addReal(command, "--max-error", *maxError, 0.0, 1e30,
-                                 "exit 1 if any |A - B| / max(1, |B|) is above X (0 to 1e30),\n"
-                                 "or any pixel is NaN or infinite (default: no limit)");
+                                 "exit 1 if a relative error is above X; that is |A - B| /\n"
+                                 "max(1, |B|); also if a pixel is NaN or infinite (0 to 1e30,\n"
+                                 "default: no limit)");
     command.callback([arguments, maxError, &limit, &chosen] {
         if (limit.count() > 0) {
             arguments->maxError = *maxError;

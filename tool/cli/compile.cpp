@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/staged_file.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/arguments.h"
@@ -260,12 +261,18 @@ int planOnly(const Console& console, const CompileArguments& arguments, std::spa
     return kExitDone;
 }
 
-int dryRun(const Console& console, Outcome outcome, const compiler::PlanOptions& options,
+// Does everything but to compile and to write.
+int dryRun(const Console& console, const CompileArguments& arguments, std::span<const gltf::Scene> scenes,
+           const compiler::PlanOptions& options, std::optional<compiler::Plan> made,
            base::Clock::time_point start) {
-    if (const std::optional<std::string> excess = describeExcess(outcome.plan, options)) {
-        return fail(console, makeError("max-shaders", outcome.scenes.path(), *excess));
+    const Result<compiler::PackagePlan> planned =
+        planPackage(scenes, settingsOf(arguments, options), std::move(made));
+    if (!planned) {
+        return fail(console, planned.error());
     }
-    tell(console, summaryOf(outcome), std::nullopt, false, base::millisecondsSince(start));
+    const gltf::SceneList list(scenes);
+    tell(console, summaryOf(Outcome{arguments, list, planned->plan}), std::nullopt, false,
+         base::millisecondsSince(start));
     return kExitDone;
 }
 
@@ -319,6 +326,9 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
     };
+    if (Status possible = checkOutputs(arguments); !possible) {
+        return fail(console, possible.error());
+    }
     console.progress("reading " + base::join(arguments.scenes));
     const Result<gltf::ImportOptions> import =
         importOptions(arguments.settings, ImageReading::None, cache.store());
@@ -341,6 +351,11 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
     if (!lock) {
         return fail(console, lock.error());
     }
+    if (lock->text) {
+        if (Status possible = base::checkOutputFile(arguments.lock.file); !possible) {
+            return fail(console, possible.error());
+        }
+    }
     report(lock->warnings);
     report(lock->notes);
     // From here on there is one plan, made where it is first needed.
@@ -352,13 +367,9 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
     }
     report(effectWarnings(list, settingsOf(arguments, plan->options)));
+    report(idleSettings(*scenes, compiler::kOfCompile, arguments.settings, plan->options));
     if (console.refused()) {
         return kExitFailed;
-    }
-    if (arguments.dryRun) {
-        const compiler::Plan planned =
-            made ? std::move(*made) : makePlan(list.materials(), list.primitives(), plan->options);
-        return dryRun(console, Outcome{arguments, list, planned}, plan->options, start);
     }
     // The files of scenes come first, each in the state in which it was read.
     const std::vector<compiler::FileState> sceneFiles = filesOf(*scenes);
@@ -371,6 +382,9 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         !arguments.depfile.file.empty() && !listed) {
         return fail(console, listed.error());
     }
+    if (arguments.dryRun) {
+        return dryRun(console, arguments, *scenes, plan->options, std::move(made), start);
+    }
     if (!arguments.planOnly.empty()) {
         return planOnly(console, arguments, *scenes, plan->options, std::move(made), *lock, dependencies,
                         start);
@@ -382,10 +396,11 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         watched->readMs = base::millisecondsSince(start);
     }
     console.progress("compiling " + base::join(arguments.scenes));
-    Result<compiler::CompiledPackage> package =
-        compilePackage(*scenes, settingsOf(arguments, plan->options), cache.modules(), std::move(made),
-                       watched != nullptr ? &watched->warm : nullptr,
-                       watched != nullptr && watched->showing ? &*watched->showing : nullptr);
+    compiler::CompileSettings settings = settingsOf(arguments, plan->options);
+    settings.progress = console.countTo("compiling");
+    Result<compiler::CompiledPackage> package = compilePackage(
+        *scenes, settings, cache.modules(), std::move(made), watched != nullptr ? &watched->warm : nullptr,
+        watched != nullptr && watched->showing ? &*watched->showing : nullptr);
     if (!package) {
         if (watched != nullptr && package.error().id == "outdated") {
             watched->outdated = true;
@@ -437,8 +452,13 @@ int compile(const Console& console, const CompileArguments& arguments) {
 void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line) {
     auto arguments = std::make_shared<CompileArguments>();
     arguments->line.assign(line.begin(), line.end());
-    CLI::App& command = addCommand(app, "compile", "Compile a scene's materials into a package of shaders",
-                                   "glint compile scene.gltf -o scene.glint --merge none --emit glsl,header");
+    CLI::App& command = addCommand(
+        app, {.name = "compile",
+              .what = "Compile a scene's materials into a package of shaders",
+              .examples = {"glint compile scene.gltf -o scene.glint",
+                           "glint compile scene.gltf -o scene.glint --strategy auto --emit header,library"},
+              .usual = {"--output", "--embed", "--strategy", "--effects", "--merge", "--bounces", "--emit",
+                        "--watch", "--dry-run", "--jobs"}});
     addCompileOptions(command, *arguments);
     command.callback([arguments, &command, &chosen] {
         settleCompile(command, *arguments);

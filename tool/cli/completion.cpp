@@ -44,17 +44,6 @@ bool mentions(const std::string& text, const char* word) {
     return text.find(word) != std::string::npos;
 }
 
-// Returns the beginning of the text in one line. Details, defaults and the meanings of values follow it in
-// the text.
-std::string shortened(std::string text) {
-    std::ranges::replace(text, '\n', ' ');
-    std::size_t end = text.size();
-    for (const char* const rest : {"; ", ": ", " (default"}) {
-        end = std::min(end, text.find(rest));
-    }
-    return text.substr(0, end);
-}
-
 ArgumentModel argumentOf(CLI::Option& option) {
     const std::string type = option.get_type_name();
     ArgumentModel argument;
@@ -73,14 +62,14 @@ OptionModel optionOf(CLI::Option& option) {
     for (const std::string& name : option.get_lnames()) {
         model.names.push_back("--" + name);
     }
-    model.help = shortened(option.get_description());
+    model.help = shortText(option);
     model.takesValue = option.get_items_expected_max() > 0;
     model.value = argumentOf(option);
     return model;
 }
 
 CommandModel commandOf(CLI::App& command) {
-    CommandModel model{command.get_name(), shortened(command.get_description()), {}, {}};
+    CommandModel model{command.get_name(), command.get_description(), {}, {}};
     for (CLI::Option* option : command.get_options(std::function<bool(CLI::Option*)>())) {
         if (!option->get_positional()) {
             model.options.push_back(optionOf(*option));
@@ -328,9 +317,12 @@ std::string fishCompletion(const std::vector<CommandModel>& commands) {
 
 void addCompletion(CLI::App& app, Action& chosen) {
     auto shell = std::make_shared<std::string>();
-    CLI::App& command =
-        addCommand(app, "completion", "Print a script that completes this command line in a shell",
-                   "glint completion bash > ~/.local/share/bash-completion/completions/glint");
+    CLI::App& command = addCommand(
+        app, {.name = "completion",
+              .what = "Print a script that completes this command line in a shell",
+              .examples = {"glint completion bash > ~/.local/share/bash-completion/completions/glint",
+                           "source <(glint completion zsh)"},
+              .usual = {"--help"}});
     addChoice(command, "SHELL", *shell, {"bash", "zsh", "fish"}, "the shell").required();
     command.callback([shell, &app, &chosen] {
         chosen = [shell, &app](const Console& console) {

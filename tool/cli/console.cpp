@@ -136,6 +136,14 @@ void Console::progress(std::string_view text) const {
     }
 }
 
+std::function<void(std::size_t, std::size_t)> Console::countTo(std::string what) const {
+    return [this, what = std::move(what)](std::size_t done, std::size_t all) {
+        if (!state_->options.verbose) {
+            progress(fmt::format("{} {} of {}", what, done, all));
+        }
+    };
+}
+
 void Console::detail(std::string_view text) const {
     if (state_->options.verbose && !text.empty()) {
         const std::chrono::duration<double> elapsed = base::Clock::now() - state_->start;

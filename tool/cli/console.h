@@ -59,6 +59,9 @@ public:
     // Shows the current activity in a line that the next message replaces; with --verbose the line stays.
     // Silent unless stderr is a terminal, or with --verbose. An empty text clears the line.
     void progress(std::string_view text) const override;
+    // Returns a function that shows "compiling 31 of 64" on a terminal. Any thread may call it while no other
+    // one uses the console.
+    std::function<void(std::size_t done, std::size_t all)> countTo(std::string what) const;
     // Reports what was read, decided or made; only with --verbose.
     void detail(std::string_view text) const override;
     // Writes the JSON and all buffered text. Error "output" if stdout can't take it, for instance on a full

@@ -290,8 +290,12 @@ int diff(const Console& console, const DiffArguments& arguments) {
 
 void addDiff(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<DiffArguments>();
-    CLI::App& command = addCommand(app, "diff", "Show the differences between two packages",
-                                   "glint diff before.glint after.glint");
+    CLI::App& command =
+        addCommand(app, {.name = "diff",
+                         .what = "Show the differences between two packages",
+                         .examples = {"glint diff before.glint after.glint",
+                                      "glint diff before.glint after.glint --exit-code --quiet"},
+                         .usual = {"--exit-code", "--verbose", "--json"}});
     addText(command, "A", arguments->before, "DIR", "folder of the package before").required();
     addText(command, "B", arguments->after, "DIR", "folder of the package after").required();
     addFlag(command, "--exit-code", arguments->exitCode, "exit 1 if anything differs");

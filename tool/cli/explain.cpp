@@ -224,8 +224,12 @@ int explain(const Console& console, const ExplainArguments& arguments) {
 void addExplain(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<ExplainArguments>();
     CLI::App& command =
-        addCommand(app, "explain", "Show which key and which shader each material gets, and what was dropped",
-                   "glint explain scene.gltf --material Leaves --alpha tested");
+        addCommand(app, {.name = "explain",
+                         .what = "Show which key and which shader each material gets, and what was dropped",
+                         .examples = {"glint explain scene.gltf",
+                                      "glint explain scene.gltf --material Leaves --alpha tested"},
+                         .usual = {"--material", "--plan", "--merge", "--alpha", "--hit-lobes", "--bounces",
+                                   "--variant", "--verbose", "--json"}});
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
     CLI::Option& material = addText(command, "--material", arguments->material, "NAME|INDEX",
                                     "show only this material; numbers count from 0 (default:\n"
@@ -239,7 +243,7 @@ void addExplain(CLI::App& app, Action& chosen) {
     addCalibration(command, arguments->settings);
     addSettings(command, compiler::kOfExplain, arguments->settings);
     addProfileInput(command, arguments->settings);
-    addLockInput(command, arguments->lock);
+    addLockOptions(command, arguments->lock, false);
     command.callback([arguments, &command, &chosen] {
         settleSettings(command, arguments->settings);
         checkProfile(command, arguments->settings);

@@ -374,8 +374,11 @@ int show(const Console& console, const InspectArguments& arguments) {
 
 void addInspect(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<InspectArguments>();
-    CLI::App& command =
-        addCommand(app, "inspect", "Show what a package contains", "glint inspect scene.glint");
+    CLI::App& command = addCommand(
+        app, {.name = "inspect",
+              .what = "Show what a package contains",
+              .examples = {"glint inspect scene.glint", "glint inspect scene.glint --disassemble 0"},
+              .usual = {"--disassemble", "--verbose", "--json"}});
     addText(command, "DIR", arguments->folder, "DIR", "folder of the package").required();
     addText(command, "--disassemble", arguments->disassemble, "ID|NAME",
             "print modules as SPIR-V assembly instead: those of a\n"

@@ -214,7 +214,8 @@ Status lintPath(const Console& console, const LintArguments& arguments, const st
     }
     const std::size_t begin = report.modules.size();
     for (const inspect::LintFile& file : files->files) {
-        console.progress(fmt::format("lint {}", file.path.string()));
+        console.progress(fmt::format("lint {} of {}: {}", report.modules.size() - begin + 1,
+                                     files->files.size(), file.path.string()));
         report.modules.push_back(
             inspect::lintModule(file, arguments.budgets(), report.malioc, arguments.core));
     }
@@ -267,9 +268,13 @@ void addBudget(CLI::App& command, const std::string& flag, Budget& budget, const
 
 void addLint(CLI::App& app, Action& chosen) {
     auto arguments = std::make_shared<LintArguments>();
-    CLI::App& command =
-        addCommand(app, "lint", "Find code in SPIR-V that is slow on mobile GPUs, and check budgets",
-                   "glint lint scene.glint --max-texture-fetches 12 --werror");
+    CLI::App& command = addCommand(
+        app,
+        {.name = "lint",
+         .what = "Find code in SPIR-V that is slow on mobile GPUs, and check budgets",
+         .examples = {"glint lint scene.glint", "glint lint scene.glint --max-texture-fetches 12 --werror"},
+         .usual = {"--max-instructions", "--max-texture-fetches", "--max-ray-queries", "--malioc", "--core",
+                   "--werror", "-W", "--json"}});
     command.add_option("PATH", arguments->paths, "SPIR-V files, packages, or folders of .spv files")
         ->type_name("FILE|DIR")
         ->required()
@@ -280,9 +285,8 @@ void addLint(CLI::App& app, Action& chosen) {
     addBudget(command, "--max-texture-fetches", arguments->textureFetches, "texture fetches");
     addBudget(command, "--max-ray-queries", arguments->rayQueries, "ray queries");
     addText(command, "--malioc", arguments->malioc, "PROGRAM",
-            "Arm's Mali Offline Compiler, for cycles and registers\nof compute shaders (default: malioc, if "
-            "PATH has "
-            "it)");
+            "Arm's Mali Offline Compiler; for cycles and registers\n"
+            "of compute shaders (default: malioc, if PATH has it)");
     addText(command, "--core", arguments->core, "NAME",
             "the GPU that malioc compiles for (default: malioc's)");
     command.callback([arguments, &chosen] {

@@ -1,5 +1,6 @@
 // glint render: renders a picture of a scene with the runtime.
 #include "base/clock.h"
+#include "base/staged_file.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/cache.h"
@@ -43,7 +44,7 @@ namespace {
 Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
                               const compiler::PlanOptions& plan, std::uint32_t tracers,
                               const gltf::Scene& scene, std::optional<Result<Package>> given,
-                              RenderReport& report) {
+                              compiler::ModuleCache* cache, RenderReport& report) {
     if (given) {
         Result<Package>& package = *given;
         if (!package) {
@@ -59,14 +60,15 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
         if (checked && isLit && package->shape().effects.lights == 0) {
             console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
                                       "has no effect shadow, so the lights of the picture cast no shadows",
-                                      "compile it with --effects auto,shadow, or render with --sun off"});
+                                      "compile it with --effects auto,shadow, or render with --no-sun"});
         }
         return checked ? std::move(package) : Result<Package>(checked.error());
     }
     const base::Clock::time_point start = base::Clock::now();
-    const compiler::CompileSettings settings = measure::compileSettings(arguments, plan, tracers, scene);
+    compiler::CompileSettings settings = measure::compileSettings(arguments, plan, tracers, scene);
+    settings.progress = console.countTo("compiling");
     console.report(effectWarnings(gltf::SceneList({&scene, 1}), settings));
-    Result<Package> package = scene_view::compileAndLoad(scene, settings);
+    Result<Package> package = scene_view::compileAndLoad(scene, settings, cache);
     report.compileMs = base::millisecondsSince(start);
     report.merge = nameOf(plan.merge);
     return package;
@@ -139,6 +141,22 @@ Status settleStrategy(const Console& console, const compiler::PlanOptions& plan,
     return okStatus();
 }
 
+// Reports options that were given and change nothing.
+void reportIdle(const Console& console, const RenderArguments& arguments, const compiler::PlanOptions& plan,
+                const gltf::Scene& scene, const std::optional<Result<Package>>& given) {
+    compiler::Settings settings = arguments;
+    if (given && *given) {
+        // The package has decided which effects there are.
+        settings.compile.effects = {false, (*given)->shape().effects.all};
+    }
+    console.report(idleSettings({&scene, 1}, compiler::kOfRender, settings, plan));
+    const Result<image::ImageFormat> format = image::imageFormat(arguments.output);
+    if (arguments.exposure != "auto" && format && *format == image::ImageFormat::Exr) {
+        console.report(idleWarning(arguments.scene, "--exposure " + arguments.exposure,
+                                   "an EXR file keeps the light as it is"));
+    }
+}
+
 std::array<std::uint8_t, 3> colorOf(PixelPath path) {
     switch (path) {
         case PixelPath::Screen:
@@ -183,16 +201,14 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
 // Reads the scene's images in the formats of the device. Those that are compressed for it stay in the cache
 // of compiled modules.
 Status readTextures(const Console& console, const RenderArguments& arguments, const Context& context,
-                    const Package& package, const gltf::Scene& scene, scene_view::SceneViewData& data,
-                    RenderReport& report) {
+                    const Package& package, const gltf::Scene& scene, CompileCache& cache,
+                    scene_view::SceneViewData& data, RenderReport& report) {
     console.progress("reading textures of " + arguments.scene);
-    CompileCache cache(CacheArguments{}, "");
     Result<std::shared_ptr<const scene_view::TextureSet>> textures =
         scene_view::loadTextures(scene, measure::textureOptions(arguments, context, package, cache.store()));
     if (!textures) {
         return textures.error();
     }
-    cache.close(console);
     console.report((*textures)->notes);
     report.start.texturesMs = (*textures)->milliseconds;
     const std::uint32_t found = (*textures)->found;
@@ -252,7 +268,7 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
 // Does all the work between reading the scene and writing the files.
 Status render(const Console& console, const RenderArguments& asked, gltf::Scene& scene,
               const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
-              std::optional<Result<Package>> given, RenderReport& report) {
+              std::optional<Result<Package>> given, CompileCache& cache, RenderReport& report) {
     RenderArguments arguments = asked;
     const Result<std::optional<Movement>> movement =
         chooseMovement(arguments.motion, scene, !arguments.materials.empty());
@@ -271,13 +287,18 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         return camera.error();
     }
     report.camera = camera->name;
+    if (measure::addsSun(arguments, scene)) {
+        report.sun = scene_view::sunLight();
+        report.sunAutomatic = arguments.sun == compiler::Sun::Auto;
+    }
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const base::Clock::time_point begin = base::Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
     if (!context) {
         return context.error();
     }
-    PipelineCacheFile pipelineCache(console, **context, pipelineCacheFolder(arguments.pipelines, {}));
+    PipelineCacheFile pipelineCache(console, **context,
+                                    pipelineCacheFolder(arguments.pipelines, arguments.cache));
     report.start.deviceMs = base::millisecondsSince(begin);
     report.device = (*context)->deviceName();
     report.driver = (*context)->driverName();
@@ -285,9 +306,10 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         !settled) {
         return settled;
     }
+    reportIdle(console, arguments, plan, scene, given);
     console.progress("compiling " + arguments.scene);
     const Result<Package> package = obtainPackage(console, arguments, plan, (*context)->handles().tracers,
-                                                  scene, std::move(given), report);
+                                                  scene, std::move(given), cache.modules(), report);
     if (!package) {
         return package.error();
     }
@@ -298,9 +320,11 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     }
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);
-    if (Status read = readTextures(console, arguments, **context, *package, scene, data, report); !read) {
+    if (Status read = readTextures(console, arguments, **context, *package, scene, cache, data, report);
+        !read) {
         return read;
     }
+    cache.close(console);
     report.alpha = nameOf(package->alpha());
     report.cases = package->caseCount();
     for (const package::CaseEntry& entry : package->cases()) {
@@ -324,7 +348,8 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
                            *movement,
                            camera->view,
                            aspect,
-                           reference ? &*reference : nullptr};
+                           reference ? &*reference : nullptr,
+                           console.countTo("rendering sample")};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = measure::checkValidation(console, **context); !valid) {
@@ -371,11 +396,12 @@ int run(const Console& console, const RenderArguments& arguments) {
     report.height = arguments.renderer.height;
 
     const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
-    Status status =
-        checkOutputFile(frames ? numberedFile(arguments.output, frames->first).string() : arguments.output);
-    for (const std::string& file : {arguments.stats, arguments.coverage, arguments.profileOutput}) {
+    Status status = okStatus();
+    for (const std::string& file :
+         {frames ? numberedFile(arguments.output, frames->first).string() : arguments.output, arguments.stats,
+          arguments.coverage, arguments.profileOutput}) {
         if (status && !file.empty()) {
-            status = checkOutputFile(file);
+            status = base::checkOutputFile(file);
         }
     }
     if (status && arguments.denoise) {
@@ -386,8 +412,8 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     console.progress("reading " + arguments.scene);
-    CompileCache known(CacheArguments{}, "");
-    Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files, known.store());
+    CompileCache cache(arguments.cache, "");
+    Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files, cache.store());
     if (!import) {
         console.report(import.error());
         return kExitFailed;
@@ -419,7 +445,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     if (console.refused()) {
         return kExitFailed;
     }
-    status = render(console, arguments, *scene, scenes, plan->options, std::move(given), report);
+    status = render(console, arguments, *scene, scenes, plan->options, std::move(given), cache, report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;
@@ -438,9 +464,14 @@ int run(const Console& console, const RenderArguments& arguments) {
 }  // namespace
 
 void addRender(CLI::App& app, Action& chosen) {
-    CLI::App& command =
-        addCommand(app, "render", "Render a scene with its compiled shaders",
-                   "glint render scene.gltf -o scene.png --size 1280x720 --spp 16 --strategy auto");
+    CLI::App& command = addCommand(
+        app,
+        {.name = "render",
+         .what = "Render a scene with its compiled shaders",
+         .examples = {"glint render scene.gltf -o scene.png",
+                      "glint render scene.gltf -o scene.png --size 1280x720 --spp 64 --bounces 4 --denoise"},
+         .usual = {"--output", "--size", "--spp", "--camera", "--environment", "--exposure", "--bounces",
+                   "--strategy", "--frames", "--denoise"}});
     const auto arguments = std::make_shared<RenderArguments>();
     addRenderOptions(command, arguments, [arguments, &chosen] {
         chosen = [arguments](const Console& console) { return run(console, *arguments); };

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
-
 namespace glint::cli {
 
 namespace {
@@ -81,20 +79,6 @@ std::string droppedText(const compiler::Plan& plan) {
                         dropped.reason});
     }
     return rows.empty() ? std::string() : "\ndropped\n" + formatFields(rows);
-}
-
-Status checkOutputFile(const std::filesystem::path& file) {
-    std::error_code error;
-    const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";
-    if (!std::filesystem::is_directory(parent, error)) {
-        return makeError("output-folder", file.string(),
-                         "can't be written, because its folder does not exist",
-                         "make the folder " + parent.string() + " first");
-    }
-    if (std::filesystem::is_directory(file, error)) {
-        return makeError("output-folder", file.string(), "is a folder", "name a file within it");
-    }
-    return okStatus();
 }
 
 base::Json statisticsToJson(const compiler::SpirvStatistics& statistics) {

@@ -10,7 +10,6 @@
 #include <glint/package_modules.h>
 #include <glint/result.h>
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,10 +28,6 @@ base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& pl
 std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
 std::string droppedText(const compiler::Plan& plan);
-
-// Returns the error "output-folder" unless `file` could be created: its folder must exist, and it must not be
-// a folder itself.
-Status checkOutputFile(const std::filesystem::path& file);
 
 // bytes, instructions, textureFetches, rayQueries, branches
 base::Json statisticsToJson(const compiler::SpirvStatistics& statistics);

@@ -29,7 +29,7 @@ struct ViewArguments : RenderArguments {
     std::string folder = ".";
     std::string script;
     bool plays = false;
-    bool hidesPanel = false;
+    bool panel = true;
 };
 
 view::Request requestOf(const Console& console, const ViewArguments& arguments, CompileCache& cache) {
@@ -42,7 +42,7 @@ view::Request requestOf(const Console& console, const ViewArguments& arguments, 
     request.plays = arguments.plays;
     request.folder = arguments.folder;
     request.script = arguments.script;
-    request.showsPanel = !arguments.hidesPanel;
+    request.showsPanel = arguments.panel;
     request.observer = &console;
     request.modules = cache.modules();
     request.store = cache.store();
@@ -67,12 +67,12 @@ view::Request requestOf(const Console& console, const ViewArguments& arguments, 
 }
 
 int show(const Console& console, const ViewArguments& arguments, ShowWindow showWindow) {
-    CompileCache cache(CacheArguments{}, "");
+    CompileCache cache(arguments.cache, "");
     view::Request request = requestOf(console, arguments, cache);
     std::unique_ptr<PipelineCacheFile> pipelines;
     request.opened = [&](Context& context) {
-        pipelines = std::make_unique<PipelineCacheFile>(console, context,
-                                                        pipelineCacheFolder(arguments.pipelines, {}));
+        pipelines = std::make_unique<PipelineCacheFile>(
+            console, context, pipelineCacheFolder(arguments.pipelines, arguments.cache));
     };
     request.closing = [&](Context&) {
         pipelines->save();
@@ -106,38 +106,24 @@ int startProgram(const Console& console, std::span<const char* const> line) {
 }  // namespace
 
 void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, ShowWindow showWindow) {
-    CLI::App& command =
-        addCommand(app, "view", "Show a scene in a window, and change every setting while it runs",
-                   "glint view scene.gltf --size 1280x720 --bounces 4");
+    CLI::App& command = addCommand(
+        app,
+        {.name = "view",
+         .what = "Show a scene in a window, and change every setting while it runs",
+         .examples = {"glint view scene.gltf", "glint view scene.gltf --size 1280x720 --bounces 4 --play"},
+         .usual = {"--size", "--spp", "--camera", "--environment", "--exposure", "--bounces", "--strategy",
+                   "--play", "--package", "--device"}});
     const auto arguments = std::make_shared<ViewArguments>();
     arguments->samples = kSamplesInWindow;
     addSceneOptions(command, *arguments);
-    addText(command, "--package", arguments->package, "DIR",
-            "use this package of the scene instead of compiling it,\n"
-            "and the next one when it is written (glint compile\n"
-            "--watch)")
-        .group("Shaders");
+    addPackageOption(command, *arguments, "; and the next one when it is written (glint compile --watch)");
     const std::string group = "Window";
-    addText(command, "--time", arguments->motion.time, "SECONDS",
-            "begin at this time of the animation (default: the rest\npose)")
-        .group(group)
-        ->check(CLI::Validator(
-            [](const std::string& text) {
-                double seconds = 0.0;
-                return compiler::parseReal(text, 0.0, 1e6, seconds)
-                           ? std::string()
-                           : "\"" + text + "\" is no number from 0 to 1000000";
-            },
-            ""));
-    addText(command, "--animation", arguments->motion.animation, "NAME|INDEX|all",
-            "which animation plays, by name or number from 0; all: all\n"
-            "of them at once (default: 0)")
-        .group(group);
+    addMoment(command, arguments->motion, "begin", group);
     addFlag(command, "--play", arguments->plays, "begin to play the animation").group(group);
-    addFlag(command, "--no-panel", arguments->hidesPanel, "begin without the panel; Tab shows it")
+    addFlag(command, "--panel", arguments->panel, "begin with the panel; Tab shows and hides it")
         .group(group);
     addText(command, "--screenshots", arguments->folder, "DIR",
-            "where screenshots are written (default: here)")
+            "where screenshots are written, under new names (default:\nhere)")
         .group(group);
     addText(command, "--script", arguments->script, "FILE",
             "replay keys, mouse moves and clicks (docs/view.md), for\ntests and tours")

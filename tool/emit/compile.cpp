@@ -193,7 +193,8 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings s
     const base::Clock::time_point planned = base::Clock::now();
     const auto compileAll = [&] {
         return compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm,
-                              prepared->shownEarly ? showing->isOutdated : std::function<bool()>());
+                              prepared->shownEarly ? showing->isOutdated : std::function<bool()>(),
+                              settings.progress);
     };
     // The driver makes the pipeline of the early package at the same time, and that is awaited first.
     Result<std::vector<CompiledModule>> compiled =

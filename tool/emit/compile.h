@@ -106,6 +106,10 @@ inline Result<CompiledPackage> compilePackage(const gltf::Scene& scene, const Co
     return compilePackage(std::span(&scene, 1), settings, cache);
 }
 
+// Returns the error that writePackage() would have, as far as it can be known before there is a package: the
+// folder holds something else, or takes no files. Leaves nothing behind.
+Status checkPackageFolder(const std::filesystem::path& folder);
+
 // Replaces the contents of `folder` by the package. Files that did not change keep their time stamps, and
 // files of the earlier package that are no longer part of it are removed. tables.bin is written last, so that
 // a reader never sees a mixture that passes its checks. A failure leaves the earlier package whole. It is an

@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -152,12 +153,14 @@ private:
 class TextCompiler {
 public:
     TextCompiler(const std::vector<DistinctTexts::Text>& texts, bool debugInfo, ModuleCache* cache,
-                 WarmModules* warm, const std::function<bool()>& isOutdated)
+                 WarmModules* warm, const std::function<bool()>& isOutdated,
+                 const std::function<void(std::size_t, std::size_t)>& progress)
         : texts_(texts),
           options_{debugInfo},
           cache_(cache),
           warm_(warm),
           isOutdated_(isOutdated),
+          progress_(progress),
           results_(texts.size()),
           done_(texts.size()) {}
 
@@ -171,6 +174,7 @@ public:
             results_[text] = compile(text);
             done_[text] = true;
             done_[text].notify_all();
+            tellProgress(order.size());
             return results_[text]->ok();
         });
         for (const std::size_t text : order) {
@@ -188,6 +192,14 @@ public:
     }
 
 private:
+    void tellProgress(std::size_t all) {
+        const std::lock_guard lock(telling_);
+        ++told_;
+        if (progress_) {
+            progress_(told_, all);
+        }
+    }
+
     // What is joined comes last, so that its parts were started before it. Parts of what is there already are
     // not needed.
     std::vector<std::size_t> orderOfWork() {
@@ -264,6 +276,9 @@ private:
     ModuleCache* cache_;
     WarmModules* warm_;
     const std::function<bool()>& isOutdated_;
+    const std::function<void(std::size_t, std::size_t)>& progress_;
+    std::mutex telling_;
+    std::size_t told_ = 0;
     std::vector<std::optional<Result<CompiledText>>> results_;
     std::vector<std::atomic<bool>> done_;
     int jobs_ = 1;
@@ -330,12 +345,12 @@ std::string moduleCompiler() {
     return fmt::format("glint {}; {}", toolVersion(), compilerIdentity());
 }
 
-Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache, WarmModules* warm,
-                                                   const std::function<bool()>& isOutdated) {
+Result<std::vector<CompiledModule>> compileModules(
+    std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache, WarmModules* warm,
+    const std::function<bool()>& isOutdated, const std::function<void(std::size_t, std::size_t)>& progress) {
     const DistinctTexts distinct(sources, debugInfo);
     Result<std::vector<std::optional<CompiledText>>> compiled =
-        TextCompiler(distinct.texts(), debugInfo, cache, warm, isOutdated).run(jobs);
+        TextCompiler(distinct.texts(), debugInfo, cache, warm, isOutdated, progress).run(jobs);
     if (!compiled) {
         return compiled.error();
     }

@@ -32,11 +32,11 @@ std::string moduleCompiler();
 // texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported
 // error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
 // SPIR-V get the same `file`, that of the first of them. If `isOutdated` is given and returns true before a
-// text is compiled, on any thread, the error is "outdated".
-Result<std::vector<CompiledModule>> compileModules(std::vector<ModuleSource> sources, int jobs,
-                                                   bool debugInfo, ModuleCache* cache = nullptr,
-                                                   WarmModules* warm = nullptr,
-                                                   const std::function<bool()>& isOutdated = {});
+// text is compiled, on any thread, the error is "outdated". `progress` is CompileSettings::progress.
+Result<std::vector<CompiledModule>> compileModules(
+    std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache = nullptr,
+    WarmModules* warm = nullptr, const std::function<bool()>& isOutdated = {},
+    const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 // Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
 // readCompiledModule(); if there are several, that of the first module is reported.

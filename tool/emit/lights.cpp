@@ -125,7 +125,7 @@ Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
     }
     if (isOn && !why->empty()) {
         return makeError("emissive-lights", "",
-                         fmt::format("--emissive-lights on needs shadow rays of Glint's own: {}", *why),
+                         fmt::format("--emissive-lights needs shadow rays of Glint's own: {}", *why),
                          "add the effect shadow, or leave out --emissive-lights");
     }
     return why->empty() ? EmissiveLights::On : EmissiveLights::Off;
@@ -143,7 +143,7 @@ Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSe
     }
     if (isOn && !why->empty()) {
         return makeError("sky-light", "",
-                         fmt::format("--sky-light on needs shadow rays and a sky of Glint's own: {}", *why),
+                         fmt::format("--sky-light needs shadow rays and a sky of Glint's own: {}", *why),
                          "add the effect shadow, or leave out --sky-light");
     }
     return why->empty() ? SkyLight::On : SkyLight::Off;
@@ -161,7 +161,7 @@ Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const Com
     }
     if (isOn && !why->empty()) {
         return makeError("sized-lights", "",
-                         fmt::format("--sized-lights on needs shadow rays of Glint's own: {}", *why),
+                         fmt::format("--sized-lights needs shadow rays of Glint's own: {}", *why),
                          "add the effect shadow, or leave out --sized-lights");
     }
     return why->empty() ? SizedLights::On : SizedLights::Off;

@@ -25,7 +25,7 @@ struct SamplesOfEmitters {
 };
 inline constexpr SamplesOfEmitters kSamplesOfEmitters[] = {{16, 2}, {512, 4}};
 
-// `--emissive-lights auto` takes no more triangles of a scene as lights.
+// `--emissive-lights=auto` takes no more triangles of a scene as lights.
 inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
 
 // Returns the number of triangles of all instances of a scene that emit light, now or at a time of an

@@ -28,6 +28,7 @@ struct ImportOptions {
     // must differ between programs that may find other things.
     base::Memo* memo = nullptr;
     std::string memoScope{};
+    int jobs = 0;  // threads that read textures; 0: one for each core
     // These limits keep hostile files from using up the machine's memory.
     std::uint64_t maxVertices = 1ULL << 28;  // over all accessors
     std::uint64_t maxFileBytes = 1ULL << 32;

@@ -163,7 +163,7 @@ public:
                     works_[static_cast<std::size_t>(image)].lookups.try_emplace(std::move(key), lookup);
                 });
         }
-        base::runParallel(works_.size(), 0, [&](std::size_t i) {
+        base::runParallel(works_.size(), options_.jobs, [&](std::size_t i) {
             // No exception may leave a thread.
             try {
                 readImage(scene_.images[i], works_[i]);

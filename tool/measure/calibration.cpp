@@ -131,8 +131,10 @@ private:
                 groups[group] = compileGroup(settings_, tracers, plans[group], cache_);
             }
         };
-        const std::size_t wanted =
-            std::min<std::size_t>(plans.size(), std::thread::hardware_concurrency() / kCoresPerPackage);
+        const int jobs = settings_.render.compile.jobs;
+        const std::size_t cores =
+            jobs > 0 ? static_cast<std::size_t>(jobs) : std::thread::hardware_concurrency();
+        const std::size_t wanted = std::min(plans.size(), cores / kCoresPerPackage);
         std::vector<std::jthread> threads;
         for (std::size_t i = 1; i < wanted; ++i) {
             threads.emplace_back(work);
@@ -161,7 +163,8 @@ private:
         const std::string name =
             fmt::format("{} {} cases, {}, {} rays", scene.options.cases, nameOf(scene.options.cost),
                         nameOf(scene.options.coherence), rays);
-        observer_.progress(fmt::format("{:.0f} s: {}", secondsSinceStart(), name));
+        const std::size_t all = costs_.size() * cases_.size() * coherences_.size() * rays_.size();
+        observer_.progress(fmt::format("point {} of {}: {}", report_.entries.size() + 1, all, name));
         PointOptions options{rays, report_.rounds, report_.seed};
         if (!settings_.pictures.empty() && rays == rays_.front()) {
             const std::string file =

@@ -1,16 +1,15 @@
 #include "measure/measurer.h"
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "image/error.h"
 #include "measure/rounds.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <random>
-#include <thread>
 #include <utility>
 
 namespace glint::measure {
@@ -21,25 +20,17 @@ bool sameBits(const LinearImage& a, const LinearImage& b) {
     return a.pixels == b.pixels;
 }
 
-// Returns the errors of all pictures, using all cores. The first picture is the default's. A picture that
-// equals the default's gets its errors.
-std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth) {
+// Returns the errors of all pictures, on at most `jobs` threads. The first picture is the default's. A
+// picture that equals the default's gets its errors.
+std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth,
+                                         int jobs) {
     std::vector<image::ImageErrors> errors(images.size());
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t i = next++; i < images.size(); i = next++) {
-            if (i == 0 || !sameBits(*images[i], *images[0])) {
-                errors[i] = image::measureErrors(*images[i], truth.image, truth.exposure);
-            }
+    base::runParallel(images.size(), jobs, [&](std::size_t i) {
+        if (i == 0 || !sameBits(*images[i], *images[0])) {
+            errors[i] = image::measureErrors(*images[i], truth.image, truth.exposure);
         }
-    };
-    {
-        std::vector<std::jthread> threads;
-        for (unsigned i = 1; i < std::max(1U, std::thread::hardware_concurrency()); ++i) {
-            threads.emplace_back(work);
-        }
-        work();
-    }
+        return true;
+    });
     for (std::size_t i = 1; i < images.size(); ++i) {
         if (sameBits(*images[i], *images[0])) {
             errors[i] = errors[0];
@@ -147,7 +138,7 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
     for (const Entry* const entry : all) {
         means.push_back(&entry->mean);
     }
-    const std::vector<image::ImageErrors> errors = errorsOf(means, truth_);
+    const std::vector<image::ImageErrors> errors = errorsOf(means, truth_, bed_.base().compile.jobs);
     for (std::size_t i = baseIsKnown_ ? 1 : 0; i < all.size(); ++i) {
         all[i]->point->errorOfMean = errors[i];
     }
@@ -182,7 +173,7 @@ void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
     for (const Entry* const entry : entries) {
         images.push_back(&entry->exposure.image);
     }
-    const std::vector<image::ImageErrors> errors = errorsOf(images, truth_);
+    const std::vector<image::ImageErrors> errors = errorsOf(images, truth_, bed_.base().compile.jobs);
     const double baseMs = entries[0]->exposure.milliseconds;
     const double baseHitMs = entries[0]->exposure.hitMs;
     for (std::size_t i = 0; i < entries.size(); ++i) {

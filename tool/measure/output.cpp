@@ -1,4 +1,5 @@
 #include "base/files.h"
+#include "base/staged_file.h"
 #include "image/compare.h"
 #include "image/png.h"
 #include "image/tone.h"
@@ -121,15 +122,10 @@ Status checkBenchFolder(const fs::path& folder, const char* mark) {
         return makeError("bench-folder", folder.string(), "holds something other than a bench",
                          "give an empty folder, a new one, or that of an earlier bench");
     }
-    fs::path parent = fs::absolute(folder, error);
-    while (!parent.empty() && !fs::exists(parent, error) && parent != parent.parent_path()) {
-        parent = parent.parent_path();
-    }
-    if (!fs::is_directory(parent, error)) {
-        return makeError("bench-folder", folder.string(),
-                         fmt::format("can't be made: {} is no folder", parent.string()), "give another -o");
-    }
-    return okStatus();
+    const Status possible = base::checkOutputFolder(folder);
+    return possible ? possible
+                    : Status(makeError("bench-folder", folder.string(), possible.error().message,
+                                       "give another -o, or check the folder and its permissions"));
 }
 
 Status writeBench(const BenchReport& report, const fs::path& folder) {

@@ -83,10 +83,12 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     facts.sizedMayShow = compiler::sizedLightsOf({&scene, 1}, emissive).ok();
     const scene_view::SceneViewData data = sceneView(settings, scene);
     facts.punctualLights = !data.lights.empty();
+    const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
+    facts.directionalLights = directional > 0;
+    facts.placedLights = static_cast<std::size_t>(directional) < data.lights.size();
     compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
     const Result<compiler::EmissiveLights> emissiveLights = compiler::emissiveLightsOf({&scene, 1}, own);
     own.emissiveLights = emissiveLights ? *emissiveLights : compiler::EmissiveLights::Off;
-    const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
     facts.lights = compiler::countLights(scene, own) - static_cast<std::size_t>(directional);
     own.lightSamples.reset();
     const Result<std::uint32_t> samples = compiler::lightSamplesOf({&scene, 1}, own);
@@ -139,6 +141,7 @@ scene_view::TextureOptions textureOptions(const compiler::Settings& settings, co
     options.fit.compress = settings.compressTextures;
     options.fit.decodeEmission = package.emission() != nullptr;
     options.cache = cache;
+    options.threads = static_cast<std::uint32_t>(settings.compile.jobs);
     return options;
 }
 
@@ -170,6 +173,9 @@ RendererOptions rendererOptions(const compiler::Settings& settings) {
     options.bounces = settings.compile.maxBounces;
     options.checkOrder = settings.validate;
     options.screenMarch = settings.frame.screenSteps > 0;
+    if (options.pipelineThreads == 0) {
+        options.pipelineThreads = static_cast<std::uint32_t>(settings.compile.jobs);
+    }
     return options;
 }
 

@@ -83,10 +83,6 @@ Result<compiler::Configuration> readSettings(const std::filesystem::path& file) 
             return settingsError(file, pointer, "is neither a text nor a number",
                                  fmt::format("write it as on the command line, behind --{}", name));
         }
-        if (compiler::sweptSetting(name)->values.form == compiler::ValueForm::Switch && *word != "on" &&
-            *word != "off") {
-            return settingsError(file, pointer, fmt::format("is \"{}\", neither on nor off", *word), kHint);
-        }
         settings.emplace(name, std::move(*word));
     }
     return settings;

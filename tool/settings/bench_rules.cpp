@@ -48,7 +48,49 @@ std::string withoutChoice(std::string_view value, const BenchFacts& facts, const
     }
     return static_cast<std::size_t>(chosen) < facts.lights
                ? ""
-               : fmt::format("the default has no more lights with a position: {}", facts.lights);
+               : fmt::format("there are no more lights with a position: {}", facts.lights);
+}
+
+std::string neverIdle(const BenchFacts& /*facts*/, const Configuration& /*base*/) {
+    return "";
+}
+
+// A higher limit of roughness may call for reflections itself, and a lower one may have removed them.
+std::string idleReflections(const BenchFacts& facts, const Configuration& /*base*/) {
+    BenchFacts any = facts;
+    any.effects = facts.effectsOfAnyRoughness;
+    return withoutEffect(*sweptSetting("max-roughness"), any);
+}
+
+std::string idleMarch(const BenchFacts& facts, const Configuration& base) {
+    const std::string reason = withoutEffect(*sweptSetting("ssr"), facts);
+    return reason.empty() && base.find("ssr")->second == "off" ? "--ssr is off" : reason;
+}
+
+std::string idleLightRadius(const BenchFacts& facts, const Configuration& /*base*/) {
+    return facts.placedLights ? "" : "the picture has no point or spot light";
+}
+
+std::string idleSunAngle(const BenchFacts& facts, const Configuration& /*base*/) {
+    return facts.directionalLights ? "" : "the picture has no directional light";
+}
+
+// More samples than lights take every light, as a lower number does where there is one light.
+std::string idleChoice(const BenchFacts& facts, const Configuration& base) {
+    const std::string& own = base.find("lights")->second;
+    return own == kAll ? "" : withoutChoice(own, facts, base);
+}
+
+std::string idleTextures(const BenchFacts& facts, const Configuration& /*base*/) {
+    return facts.textures ? "" : "there are no textures";
+}
+
+std::string idleAlpha(const BenchFacts& facts, const Configuration& /*base*/) {
+    return facts.masks ? "" : "no material has alpha";
+}
+
+std::string idleTracer(const BenchFacts& facts, const Configuration& /*base*/) {
+    return facts.effects.empty() ? "no effect traces rays" : "";
 }
 
 std::string withoutEmission(std::string_view value, const BenchFacts& facts, const Configuration& /*base*/) {

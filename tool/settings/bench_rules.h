@@ -1,5 +1,5 @@
-// Which values of settings a bench tries: rules for rows of the table of settings, whose members `against`
-// and `triedFor` they are.
+// When settings matter: rules for rows of the table of settings, whose members `idle`, `against` and
+// `triedFor` they are.
 #pragma once
 
 #include "settings/table.h"
@@ -18,6 +18,17 @@ std::string withoutChoice(std::string_view value, const BenchFacts& facts, const
 std::string withoutEmission(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutSkyLight(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutSizedLights(std::string_view value, const BenchFacts& facts, const Configuration& base);
+
+// Why settings change nothing, for rows whose reasons are not those above.
+std::string neverIdle(const BenchFacts& facts, const Configuration& base);
+std::string idleReflections(const BenchFacts& facts, const Configuration& base);
+std::string idleMarch(const BenchFacts& facts, const Configuration& base);
+std::string idleLightRadius(const BenchFacts& facts, const Configuration& base);
+std::string idleSunAngle(const BenchFacts& facts, const Configuration& base);
+std::string idleChoice(const BenchFacts& facts, const Configuration& base);
+std::string idleTextures(const BenchFacts& facts, const Configuration& base);
+std::string idleAlpha(const BenchFacts& facts, const Configuration& base);
+std::string idleTracer(const BenchFacts& facts, const Configuration& base);
 
 // The values to try, for rows that have no fixed list. `base` is the value of the default.
 std::vector<std::string> strategiesToTry(const BenchFacts& facts, const std::string& base, bool quick);

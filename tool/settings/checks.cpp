@@ -17,6 +17,23 @@ std::vector<SettingWord> wordsOf(const Descriptor& row) {
     return words;
 }
 
+bool isSwitch(const Descriptor& row) {
+    const std::vector<SettingWord> words = wordsOf(row);
+    const auto isOfSwitch = [](const SettingWord& word) {
+        return word.name == "on" || word.name == "off" || word.name == "auto";
+    };
+    return row.values.form == ValueForm::Switch ||
+           (row.values.form == ValueForm::Word && std::ranges::all_of(words, isOfSwitch));
+}
+
+std::vector<std::string> optionWords(const Descriptor& row, const std::string& value) {
+    const std::string name(row.name);
+    if (!isSwitch(row)) {
+        return {"--" + name, value};
+    }
+    return {value == "on" ? "--" + name : value == "off" ? "--no-" + name : "--" + name + "=" + value};
+}
+
 std::string withoutEffect(const Descriptor& row, const BenchFacts& facts) {
     std::string reason;
     for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
@@ -31,6 +48,14 @@ std::string withoutEffect(const Descriptor& row, const BenchFacts& facts) {
     return reason;
 }
 
+std::string idleReason(const Descriptor& row, const BenchFacts& facts, const Configuration& base) {
+    if (row.idle != nullptr) {
+        return row.idle(facts, base);
+    }
+    std::string reason = withoutEffect(row, facts);
+    return reason.empty() && row.bench.against != nullptr ? row.bench.against("", facts, base) : reason;
+}
+
 std::string boundText(double bound) {
     std::string text = fmt::format("{:g}", bound);
     if (bound < 1e7 || text.find('.') != std::string::npos) {
@@ -43,6 +68,9 @@ std::string boundText(double bound) {
 std::string complaintAbout(const Descriptor& row, std::string_view text) {
     const SettingValues& values = row.values;
     std::vector<std::string> names;
+    if (values.form == ValueForm::Switch) {
+        names = {"on", "off"};
+    }
     for (const SettingWord& word : wordsOf(row)) {
         names.push_back(word.name);
     }
@@ -56,7 +84,7 @@ std::string complaintAbout(const Descriptor& row, std::string_view text) {
     double real = 0.0;
     switch (values.form) {
         case ValueForm::Text:
-            return fmt::format("\"{}\" is no {}", text, values.further);
+            return fmt::format("\"{}\" is no {}; give one", text, values.further);
         case ValueForm::Whole:
         case ValueForm::Real:
             if (isWhole ? parseWhole(text, static_cast<std::int64_t>(values.min),
@@ -64,17 +92,15 @@ std::string complaintAbout(const Descriptor& row, std::string_view text) {
                         : parseReal(text, values.min, values.max, real)) {
                 return "";
             }
-            return names.empty()
-                       ? fmt::format("\"{}\" is no {}number from {}", text, isWhole ? "whole " : "", range)
-                       : fmt::format("\"{}\" is neither {} nor a number from {}", text,
-                                     fmt::join(names, ", "), range);
+            return names.empty() ? fmt::format("\"{}\" is no {}number from {}; give one", text,
+                                               isWhole ? "whole " : "", range)
+                                 : fmt::format("\"{}\" is neither {} nor a number from {}; give one of these",
+                                               text, fmt::join(names, ", "), range);
         default:
-            if (!values.further.empty()) {
-                return fmt::format("\"{}\" is none of {}, {}{}", text, fmt::join(names, ", "), values.further,
-                                   base::suggestion(text, names));
-            }
-            return fmt::format("\"{}\" is none of {}{}", text, fmt::join(names, ", "),
-                               base::suggestion(text, names));
+            const std::string suggestion = base::suggestion(text, names);
+            return fmt::format("\"{}\" is none of {}{}{}{}", text, fmt::join(names, ", "),
+                               values.further.empty() ? "" : ", ", values.further,
+                               suggestion.empty() ? "; give one of them" : suggestion);
     }
 }
 

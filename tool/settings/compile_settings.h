@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -83,7 +84,7 @@ struct CompileSettings {
     EffectRequest effects{false, builtinEffects({"shadow", "reflection"})};
     // The renderer adds a light to those of the scenes, which --effects auto takes into account.
     bool addsLight = false;
-    // The renderer gives lights a size, which --sized-lights auto takes into account.
+    // The renderer gives lights a size, which --sized-lights=auto takes into account.
     bool sizesLights = false;
     // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
     // lights (emit/lights.h).
@@ -99,7 +100,10 @@ struct CompileSettings {
     bool textureLevels = false;         // shaders note the finest level that they read of each texture
     std::vector<std::string> layers{};  // images beside the picture, as --layers names them
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
-    int jobs = 0;               // threads; 0 means one for each core
+    int jobs = 0;  // threads; 0 means one for each core
+    // Gets how many modules and parts are done, and how many there are to do. It may be called by any thread,
+    // by one at a time.
+    std::function<void(std::size_t done, std::size_t all)> progress{};
     bool emitHeader = true;     // glint_tables.h
     bool emitGlsl = false;      // writes the flattened sources, in glsl/
     bool emitLibrary = false;   // writes shading as functions in GLSL, in library/

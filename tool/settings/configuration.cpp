@@ -2,6 +2,9 @@
 
 #include "settings/table.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace glint::compiler {
 
 std::vector<std::string> settingNames() {
@@ -38,13 +41,8 @@ std::vector<std::string> wordsOf(const Configuration& configuration) {
     std::vector<std::string> words;
     for (const std::string& name : settingNames()) {
         const auto value = configuration.find(name);
-        const bool isSwitch = sweptSetting(name)->values.form == ValueForm::Switch;
-        if (value == configuration.end() || (isSwitch && value->second == "off")) {
-            continue;
-        }
-        words.push_back("--" + name);
-        if (!isSwitch) {
-            words.push_back(value->second);
+        if (value != configuration.end()) {
+            std::ranges::move(optionWords(*sweptSetting(name), value->second), std::back_inserter(words));
         }
     }
     return words;

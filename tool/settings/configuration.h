@@ -25,7 +25,9 @@ struct BenchFacts {
     bool sizedMayShow = false;   // rays of packages with the default's effects can find lights with a size
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
-    bool packsTextures = true;    // the device reads BC formats, and this program packs them
+    bool placedLights = false;       // the picture has point or spot lights
+    bool directionalLights = false;  // the picture has directional lights, or a sun
+    bool packsTextures = true;       // the device reads BC formats, and this program packs them
     bool punctualLights = false;  // the picture has punctual lights or a sun, which no path finds by itself
     std::size_t lights = 0;       // with a position, of which the default's hierarchy chooses
     bool manyLights = false;      // more than --lights auto takes whole
@@ -51,7 +53,7 @@ std::vector<std::string> settingNames();
 Configuration configurationOf(const Settings& settings);
 // Returns `settings` with the values of `configuration`, which must be valid.
 Settings withSettings(Settings settings, const Configuration& configuration);
-// Returns the words of a command line: {"--spp", "4"}. A switch that is off is left out.
+// Returns the words of a command line: {"--spp", "4"}.
 std::vector<std::string> wordsOf(const Configuration& configuration);
 
 }  // namespace glint::compiler

@@ -64,6 +64,9 @@ struct Settings {
     std::vector<std::string> materials;  // folders of packs: material features of a user's own
     std::vector<std::string> packLobes;  // lobes of these that hits keep besides those of compile.plan.keys
     bool validate = false;
+
+    // The names of the settings that have another value than usual because the user gave it.
+    std::vector<std::string> given;
 };
 
 // Returns the lobes that hits keep with "base": the base models, and what is declared as part of the base.

@@ -31,7 +31,7 @@ enum SettingCommand : std::uint32_t {
 };
 
 enum class ValueForm : std::uint8_t {
-    Switch,  // on or off; on the command line the option alone
+    Switch,  // on or off
     Word,    // one of the words
     List,    // words, separated by commas
     Whole,   // a number within the range, or one of the words
@@ -97,6 +97,10 @@ struct Descriptor {
     SettingBench bench{};
     std::string_view document{};  // says more: "reflections.md#ray-binning"
     bool recorded = false;        // a member of the manifest's `settings`
+    // Returns why the setting changes nothing in pictures of the configuration `base`, or an empty text.
+    // Null: the reasons are that the effects that have it are absent, and those of bench.against for all
+    // values.
+    std::string (*idle)(const BenchFacts& facts, const Configuration& base) = nullptr;
 };
 
 // Rows of the same name have no command in common.
@@ -109,9 +113,17 @@ constexpr bool isCompiled(const Descriptor& row) {
 }
 
 std::vector<SettingWord> wordsOf(const Descriptor& row);
+// Returns whether the values are on, off and perhaps auto. On the command line these are --x, --no-x and
+// --x=auto.
+bool isSwitch(const Descriptor& row);
+// Returns the words that give the setting a value on a command line.
+std::vector<std::string> optionWords(const Descriptor& row, const std::string& value);
 // Returns why the setting of a row changes nothing: only effects that the default configuration lacks have
 // it. Returns an empty text if it may change something.
 std::string withoutEffect(const Descriptor& row, const BenchFacts& facts);
+// Returns why the setting of a row changes nothing in pictures of the configuration `base`, whatever its
+// value. Returns an empty text if it may change something.
+std::string idleReason(const Descriptor& row, const BenchFacts& facts, const Configuration& base);
 // Returns "\"fast\" is none of on, off", or an empty text for a value. A list is checked word by word.
 std::string complaintAbout(const Descriptor& row, std::string_view text);
 // Returns a bound of a range: "0.5", "1e9".

@@ -455,7 +455,7 @@ inline constexpr SettingValues kSize{
             std::uint32_t height = 0;
             return parseSize(text, width, height);
         },
-    .further = "size such as 960x540"};
+    .further = "size such as 960x540, of 1 to 16384 pixels each way and 67108864 in all"};
 
 inline constexpr SettingValues kSky{
     .form = ValueForm::Real,

@@ -234,9 +234,7 @@ Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std
 }
 
 std::string compilerIdentity() {
-    const glslang::Version version = glslang::GetVersion();
-    return fmt::format("glslang {}.{}.{}{}; {}; {}", version.major, version.minor, version.patch,
-                       version.flavor == nullptr ? "" : version.flavor, spvSoftwareVersionDetailsString(),
+    return fmt::format("glslang {}; {}; {}", glslangVersion(), spvSoftwareVersionDetailsString(),
                        kSpirvSourceHash);
 }
 
@@ -245,7 +243,13 @@ bool supportsPositionFetch() {
 }
 
 std::string glslangVersion() {
-    return fmt::format("{}.{}", GLSLANG_VERSION_MAJOR, GLSLANG_VERSION_MINOR);
+    const glslang::Version version = glslang::GetVersion();
+    return fmt::format("{}.{}.{}{}", version.major, version.minor, version.patch,
+                       version.flavor == nullptr ? "" : version.flavor);
+}
+
+std::string spirvToolsVersion() {
+    return spvSoftwareVersionString();
 }
 
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words) {

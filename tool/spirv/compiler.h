@@ -60,8 +60,9 @@ Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std
 std::string compilerIdentity();
 // Returns whether the glslang that this was built with knows GL_EXT_ray_tracing_position_fetch.
 bool supportsPositionFetch();
-// Returns glslang's version, "12.0".
+// Return the versions of the libraries: "12.0.0", "v2023.1".
 std::string glslangVersion();
+std::string spirvToolsVersion();
 
 // Returns the text form of a module, for people.
 Result<std::string> disassemble(const std::vector<std::uint32_t>& words);

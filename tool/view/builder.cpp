@@ -287,6 +287,9 @@ Status Builder::makePackage(const BuildOrder& order, Build& build) {
         compiler::CompileSettings compile =
             measure::compileSettings(settings, build.options, context_.handles().tracers, *build.scene);
         compile.emitHeader = false;
+        compile.progress = [this](std::size_t done, std::size_t all) {
+            say(fmt::format("compiling {} of {}", done, all));
+        };
         // The package also has the strategies that were asked for before, so that a renderer of one of them
         // can switch to it.
         strategies_ = sceneKey_ == strategiesKey_ ? strategies_ | compile.strategies : compile.strategies;

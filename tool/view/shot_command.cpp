@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 
 namespace glint::view {
@@ -27,11 +28,7 @@ std::vector<std::string> shotWords(const compiler::Settings& settings, const Sho
         if (row.name == "layers") {
             continue;  // files of pictures hold none
         }
-        if (row.values.form == compiler::ValueForm::Switch) {
-            words.push_back("--" + std::string(row.name));
-        } else {
-            add(row.name, value);
-        }
+        std::ranges::move(optionWords(row, value), std::back_inserter(words));
     }
     const std::pair<std::string_view, const std::string&> files[] = {
         {"environment", settings.environment},

@@ -51,8 +51,10 @@ std::string commandsOf(const compiler::Descriptor& row) {
 std::string valuesOf(const compiler::Descriptor& row) {
     const compiler::SettingValues& values = row.values;
     std::vector<std::string> parts;
-    for (const compiler::SettingWord& word : wordsOf(row)) {
-        parts.push_back("`" + word.name + "`");
+    const bool isPlain = values.form == compiler::ValueForm::Switch;
+    for (const compiler::SettingWord& word :
+         isPlain ? std::vector<compiler::SettingWord>{{"on", ""}, {"off", ""}} : wordsOf(row)) {
+        parts.push_back("`" + (isSwitch(row) ? optionWords(row, word.name).front() : word.name) + "`");
     }
     if (values.form == compiler::ValueForm::Whole || values.form == compiler::ValueForm::Real) {
         parts.push_back(
@@ -110,7 +112,8 @@ std::string sentencesOf(const compiler::Descriptor& row) {
     text += ".";
     for (const compiler::SettingWord& word : wordsOf(row)) {
         if (!word.what.empty()) {
-            text += fmt::format(" `{}`: {}.", word.name, word.what);
+            text += fmt::format(" `{}`: {}.", isSwitch(row) ? optionWords(row, word.name).front() : word.name,
+                                word.what);
         }
     }
     if (!row.document.empty()) {

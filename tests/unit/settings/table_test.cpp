@@ -61,14 +61,10 @@ TEST(SettingsTable, KeepsEachValueThatItNames) {
             values.push_back(word.name);
         }
         for (const std::string& value : values) {
-            if (row.values.form == compiler::ValueForm::Switch) {
-                EXPECT_TRUE(value == "on" || value == "off") << value;
-            } else {
-                // The words of a list are checked one by one.
-                std::istringstream words(value);
-                for (std::string word; std::getline(words, word, ',');) {
-                    EXPECT_EQ(complaintAbout(row, word), "") << value;
-                }
+            // The words of a list are checked one by one.
+            std::istringstream words(value);
+            for (std::string word; std::getline(words, word, ',');) {
+                EXPECT_EQ(complaintAbout(row, word), "") << value;
             }
             // "all" and "base" may be written as what they stand for.
             const bool isList = row.values.form == compiler::ValueForm::List;
@@ -97,10 +93,8 @@ TEST(SettingsTable, RefusesNumbersOutsideOfTheRangeAndOtherText) {
             EXPECT_NE(complaintAbout(row, std::to_string(row.values.max * 2.0 + 1.0)), "") << row.name;
             EXPECT_NE(complaintAbout(row, "nan"), "") << row.name;
         }
-        if (row.values.form != compiler::ValueForm::Switch) {
-            EXPECT_NE(complaintAbout(row, "no value"), "") << row.name;
-            EXPECT_NE(complaintAbout(row, ""), "") << row.name;
-        }
+        EXPECT_NE(complaintAbout(row, "no value"), "") << row.name;
+        EXPECT_NE(complaintAbout(row, ""), "") << row.name;
     }
 }
 

@@ -40,7 +40,7 @@ measure::Candidate parseCandidate(const std::string& text) {
     const std::size_t sign = text.find('=');
     if (sign == std::string::npos || sign == 0 || sign + 1 == text.size()) {
         throw CLI::ValidationError("--candidate",
-                                   "\"" + text + "\" is not NAME=DIR, such as mine=out/package");
+                                   "\"" + text + "\" is not NAME=DIR; give one, such as mine=out/package");
     }
     return {text.substr(0, sign), text.substr(sign + 1)};
 }
@@ -56,8 +56,10 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.render.renderer.height = 270;
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder for index.html, bench.json, settings.json and\nimages/; with --calibrate for "
-            "calibration.json")
+            "folder of the results; index.html, bench.json,\n"
+            "settings.json and images/, with --calibrate\n"
+            "calibration.json; those of an earlier run are replaced, and\n"
+            "any other content refused")
         .required();
     addSceneOptions(command, arguments.render);
     // Without --calibrate, checkCalibrateOptions() requires it.
@@ -65,7 +67,7 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
         "the scene, .gltf or .glb; none with --calibrate");
     const std::string sweep = "Sweep";
     addFlag(command, "--quick", arguments.quick,
-            fmt::format("fewer values, pairs and rounds, a less certain reference,\n"
+            fmt::format("fewer values, pairs and rounds; a less certain reference,\n"
                         "and {} unless --size is given",
                         kQuickSize))
         .group(sweep);
@@ -113,20 +115,20 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
                         kReferenceError, kQuickReferenceError))
         .group(errors);
     addInteger(command, "--reference-spp", arguments.referenceSamples, 0, 1 << 24,
-               fmt::format("the most samples per pixel of the reference; 0: {}, or {}\n"
-                           "with --quick",
+               fmt::format("the most samples per pixel of the reference; 0: {}, or\n"
+                           "{} with --quick",
                            kReferenceSamples, kQuickReferenceSamples))
         .group(errors);
     const std::string advice = "Advice";
     addReal(command, "--budget-ms", arguments.budgetMs, 0.0, 1e9,
-            "write the most exact settings whose pictures take at\nmost this long to DIR/settings.json (0 to "
+            "write the most exact settings within this time; to\nDIR/settings.json, by the time of a picture "
+            "(0 to "
             "1e9)")
         .group(advice);
     addReal(command, "--max-error", arguments.maxError, 0.0, 1e9,
-            "write the fastest settings with at most this error, in\nthe metric (0 to 1e9)")
+            "write the fastest settings with at most this error; in the\nmetric (0 to 1e9)")
         .group(advice);
     addCalibrateOptions(command, arguments.calibrate);
-    addCacheOptions(command, arguments.cache);
 }
 
 void settleBench(const CLI::App& command, BenchArguments& arguments) {
@@ -142,9 +144,9 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
     if (std::ranges::find(arguments.only, kDenoise) != arguments.only.end()) {
         arguments.filter = exampleFilter();
         if (arguments.filter == nullptr) {
-            throw CLI::ValidationError(
-                "--only",
-                "denoise needs a glint that was built with its examples: -DGLINT_BUILD_EXAMPLES=ON");
+            throw CLI::ValidationError("--only",
+                                       "denoise needs a glint that was built with its examples; build it "
+                                       "with -DGLINT_BUILD_EXAMPLES=ON");
         }
     }
     for (const std::string& text : arguments.candidateWords) {

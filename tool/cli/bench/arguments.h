@@ -15,7 +15,6 @@ namespace glint::cli {
 struct BenchArguments : measure::BenchSettings {
     RenderArguments render;  // the default that everything is compared with
     std::vector<std::string> candidateWords;
-    CacheArguments cache;
     CalibrateArguments calibrate;
 
     std::string command;                 // to repeat it

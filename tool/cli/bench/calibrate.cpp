@@ -64,7 +64,7 @@ Status measureAll(const Console& console, const BenchArguments& arguments,
         return context.error();
     }
     report.machine = measure::machineOf(**context);
-    CompileCache cache(arguments.cache, "");
+    CompileCache cache(arguments.render.cache, "");
     Status done = measure::runCalibration(console, settingsOf(arguments), **context, cache.modules(), report);
     cache.close(console);
     return done;

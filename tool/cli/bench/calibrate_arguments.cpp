@@ -22,7 +22,7 @@ constexpr std::uint64_t kMaxRays = 64 * kMillion;
 
 // A calibration takes the options of these groups, and the options listed below. It decides everything else
 // itself.
-constexpr std::string_view kTakenGroups[] = {kGroup, "Device", "Output", "Report"};
+constexpr std::string_view kTakenGroups[] = {kGroup, "Device", "Output", "Report", kWork};
 constexpr std::string_view kTaken[] = {
     "--quick",       "--rounds",    "--output",     "--seed",
     "--binning",     "--ordering",  "--tracer",     "--energy-compensation",
@@ -68,8 +68,9 @@ void addCounts(CLI::App& command, const std::string& flags, std::string& value, 
             [min, max](const std::string& text) {
                 return text == "auto" || parseCounts(text, min, max)
                            ? std::string()
-                           : fmt::format("\"{}\" is neither auto nor a list of numbers from {} to {}", text,
-                                         min, max);
+                           : fmt::format(
+                                 "\"{}\" is neither auto nor a list of numbers from {} to {}; give one", text,
+                                 min, max);
             },
             ""))
         ->group(kGroup);
@@ -113,8 +114,9 @@ void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
     addFlag(command, "--calibrate-shadows", arguments.shadows,
             "hits send shadow rays to those lights; needs\n--calibrate-lights")
         .group(kGroup);
-    addText(command, "--pictures", arguments.pictures, "DIR",
-            "with --calibrate: write the smallest picture of each\nscene here, too")
+    addText(
+        command, "--pictures", arguments.pictures, "DIR",
+        "with --calibrate: write the smallest picture of each\nscene here, too; existing files are replaced")
         .group(kGroup);
 }
 
@@ -125,13 +127,13 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
         }
         const std::string name = option->get_name();
         if (arguments.enabled && !isTaken(*option)) {
-            throw CLI::ValidationError(name,
-                                       option->get_positional()
-                                           ? "can't be combined with --calibrate, which makes its own scenes"
-                                           : "can't be combined with --calibrate; leave out one of them");
+            throw CLI::ValidationError(
+                name, option->get_positional()
+                          ? "can't be combined with --calibrate, which makes its own scenes; leave it out"
+                          : "can't be combined with --calibrate; leave out one of them");
         }
         if (!arguments.enabled && option->get_group() == kGroup) {
-            throw CLI::ValidationError(name, "needs --calibrate");
+            throw CLI::ValidationError(name, "needs --calibrate; give both, or neither");
         }
     }
     if (!arguments.enabled && command.get_option("SCENE")->count() == 0) {

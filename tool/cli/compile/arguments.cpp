@@ -1,8 +1,10 @@
 #include "cli/compile/arguments.h"
 
+#include "base/staged_file.h"
 #include "base/text.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "emit/compile.h"
 #include "emit/host.h"
 #include "emit/package/embed_source.h"
 #include "materials/packs.h"
@@ -14,6 +16,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -32,11 +35,24 @@ bool isGiven(const CLI::App& command, const std::string& name) {
     return option != nullptr && option->count() > 0;
 }
 
+// Says what is wrong with a folder's name that looks like a file of another kind.
+std::string complaintAboutFolder(const std::string& text) {
+    constexpr std::string_view kFiles[] = {".png", ".exr",  ".hdr", ".jpg", ".jpeg", ".gltf",
+                                           ".glb", ".json", ".spv", ".cpp", ".h"};
+    const std::string extension = std::filesystem::path(text).extension().string();
+    return std::ranges::find(kFiles, extension) == std::end(kFiles)
+               ? std::string()
+               : fmt::format(
+                     "is a package's folder, and \"{}\" is named like a file; name a folder such as "
+                     "{}.glint, or use glint render for pictures",
+                     text, std::filesystem::path(text).stem().string());
+}
+
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addSettings(command, compiler::kOfCompile, arguments.settings);
     addCalibration(command, arguments.settings);
     addProfileInput(command, arguments.settings);
-    addLockOptions(command, arguments.lock);
+    addLockOptions(command, arguments.lock, true);
     addHostOption(command, arguments.settings);
     addFlag(command, "--environment-map", arguments.settings.compile.environmentMap,
             "rays that leave the scene see an environment map, which\n"
@@ -52,7 +68,7 @@ void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option&
     CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly, "DIR",
                                 "compile nothing: write each module's source into this\n"
                                 "folder, and a build.ninja that compiles them one by one\n"
-                                "and makes the package");
+                                "and makes the package; an earlier plan is replaced");
     CLI::Option& launcher = addText(command, kLauncher, arguments.launcher, "COMMAND",
                                     "with --plan-only: the command that runs each compilation,\n"
                                     "such as the client of a build farm");
@@ -70,14 +86,16 @@ void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option&
 
 void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the package; an earlier package is replaced\n"
-            "(required without --embed or --dry-run)")
+            "folder of the package; an earlier package is replaced,\n"
+            "and any other content refused (required without --embed\n"
+            "or --dry-run)")
+        .check(CLI::Validator(complaintAboutFolder, ""))
+        ->group("Output");
+    addOutputFile(command, "--embed", arguments.embed, "FILE.cpp", {".cpp", ".cc", ".cxx"},
+                  "write the package as a C++ source; a header comes beside it, for programs that ship no "
+                  "files, and -o "
+                  "is then optional")
         .group("Output");
-    addImageOutput(command, "--embed", arguments.embed, {".cpp", ".cc", ".cxx"},
-                   "write the package as a C++ source, with a header beside\n"
-                   "it, for programs that ship no files; -o is then optional")
-        .group("Output")
-        ->type_name("FILE.cpp");
     addChoices(command, "--emit", arguments.emit, {"glsl", "header", "library", "linkable"},
                "what else the package contains, separated by commas:\n"
                "glsl: the shaders' sources; header: C++ tables; library:\n"
@@ -85,19 +103,19 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
                "linkable: these functions as SPIR-V, for linkers")
         .group("Output");
     CLI::Option& dry =
-        addFlag(command, "--dry-run", arguments.dryRun, "plan only: compile nothing and write nothing");
+        addFlag(command, "--dry-run", arguments.dryRun,
+                "read, check and plan everything as usual; compile nothing\nand write nothing");
     dry.group("Output");
     CLI::Option& watch = addFlag(command, kWatch, arguments.watch,
-                                 "compile again whenever an input changes, until Ctrl-C, and\n"
-                                 "increment the counter in DIR.stamp after each new package");
+                                 "compile again whenever an input changes, until Ctrl-C;\n"
+                                 "increments the counter in DIR.stamp after each new package");
     watch.group("Output")->excludes(&dry);
-    addFlag(command, "--no-early", arguments.noEarly,
-            "with --watch: write whole packages alone, and no early one\n"
-            "that shows an edit of a pack as a draft")
+    addFlag(command, "--early", arguments.early,
+            "with --watch: also write an early package that shows an\n"
+            "edit of a pack as a draft")
         .group("Output")
         ->needs(&watch);
-    addInteger(command, "--jobs", arguments.jobs, 0, 1024, "threads that compile; 0: one for each core")
-        .group("Output");
+    addJobs(command, arguments.settings.compile.jobs);
     addCacheOptions(command, arguments.cache);
     addDepfileOptions(command, arguments.depfile);
     addFarmOptions(command, arguments, dry);
@@ -117,10 +135,10 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
 
 void settleCompile(const CLI::App& command, CompileArguments& arguments) {
     if (arguments.output.empty() && arguments.embed.empty() && !arguments.dryRun) {
-        throw CLI::RequiredError("-o DIR (or --embed FILE.cpp, or --dry-run)");
+        throw CLI::ValidationError("--output", "is missing; give -o DIR, --embed FILE.cpp or --dry-run");
     }
     if (arguments.watch && arguments.output.empty()) {
-        throw CLI::RequiredError("-o DIR, which --watch");
+        throw CLI::ValidationError("--output", "is missing, and --watch needs it; give -o DIR");
     }
     if (arguments.watch && isGiven(command, "--json")) {
         throw CLI::ExcludesError(kWatch, "--json");
@@ -152,6 +170,29 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
     }
 }
 
+Status checkOutputs(const CompileArguments& arguments) {
+    Status possible = okStatus();
+    if (!arguments.planOnly.empty()) {
+        possible = base::checkOutputFolder(arguments.planOnly);
+    } else if (!arguments.output.empty()) {
+        possible = compiler::checkPackageFolder(arguments.output);
+    }
+    if (possible && arguments.planOnly.empty() && !arguments.embed.empty()) {
+        // Its folder is made.
+        possible = base::checkOutputFolder(std::filesystem::path(arguments.embed).parent_path());
+        if (!possible) {
+            possible = makeError(possible.error().id, arguments.embed, possible.error().message,
+                                 possible.error().hint);
+        }
+    }
+    std::error_code error;
+    if (possible && std::filesystem::is_directory(arguments.embed, error)) {
+        possible = base::checkOutputFile(arguments.embed);
+    }
+    return possible && !arguments.depfile.file.empty() ? base::checkOutputFile(arguments.depfile.file)
+                                                       : possible;
+}
+
 std::string planFile(const CompileArguments& arguments) {
     return (std::filesystem::path(arguments.planOnly) / "build.ninja").string();
 }
@@ -173,7 +214,6 @@ compiler::CompileSettings settingsOf(const CompileArguments& arguments, const co
         return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
     };
     compiler::CompileSettings settings = measure::compileSettings(arguments.settings, plan);
-    settings.jobs = static_cast<int>(arguments.jobs);
     settings.emitHeader = emits("header");
     settings.emitGlsl = emits("glsl");
     settings.emitLibrary = emits("library");

@@ -22,7 +22,6 @@ struct CompileArguments {
     compiler::Settings settings;
     LockArguments lock;
     std::vector<std::string> emit{"header"};
-    std::int64_t jobs = 0;
     CacheArguments cache;
     DepfileArguments depfile;
     std::string settingsFile;              // that completeLine() has read; empty: none
@@ -34,11 +33,13 @@ struct CompileArguments {
     std::string modules;                   // folder of compiled modules; empty: they are compiled
     bool dryRun = false;
     bool watch = false;
-    bool noEarly = false;
+    bool early = true;              // early packages of a watch
     std::vector<std::string> line;  // the command line, without the program; for --watch
 };
 
 void addCompileOptions(CLI::App& command, CompileArguments& arguments);
+// Returns an error if what the command is to write can't be written. Leaves nothing behind.
+Status checkOutputs(const CompileArguments& arguments);
 // Fills in the members that follow from the parsed `command`. Throws a CLI::ParseError if options contradict
 // each other.
 void settleCompile(const CLI::App& command, CompileArguments& arguments);

@@ -58,12 +58,15 @@ Result<std::string> escape(std::string_view name, bool isTarget) {
 }  // namespace
 
 void addDepfileOptions(CLI::App& command, DepfileArguments& arguments) {
-    addText(command, "--depfile", arguments.file, "FILE", "list the files that were read, for Make and Ninja")
-        .group("Output");
+    CLI::Option& file = addOutputFile(command, "--depfile", arguments.file, "FILE", {},
+                                      "list the files that were read, for Make and Ninja");
+    file.group("Output");
     addTexts(command, "--depfile-target", arguments.targets, "NAME",
              "target of that list (default: the package's\n"
-             "manifest.json, else the file of --embed); may be repeated")
+             "manifest.json, else the file of --embed); needs --depfile;\n"
+             "may be repeated")
         .group("Output")
+        ->needs(&file)
         ->allow_extra_args(false);
 }
 

@@ -72,7 +72,7 @@ private:
 Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
     CLI::App app;
     CompileArguments arguments;
-    CLI::App& command = addCommand(app, "compile", "", "");
+    CLI::App& command = addCommand(app, {.name = "compile"});
     addCompileOptions(command, arguments);
     ReportArguments report;
     addReportOptions(command, report);
@@ -90,8 +90,9 @@ Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
         app.parse(words);
         settleCompile(command, arguments);
     } catch (const CLI::ParseError& error) {
-        const std::optional<Diagnostic> ofFile = blameFile(*completed, error.what());
-        return ofFile ? *ofFile : makeError("settings-file", "", error.what());
+        const std::string message = explain(error, command);
+        const std::optional<Diagnostic> ofFile = blameFile(*completed, message);
+        return ofFile ? *ofFile : makeError("settings-file", "", message);
     }
     arguments.line = line;
     return arguments;
@@ -213,7 +214,7 @@ private:
         // Warnings that count as errors are those of this run.
         const Console own(console_.options());
         WatchedRun run(warm_);
-        if (!arguments_.noEarly && whole_ && std::ranges::all_of(changed_, isGlsl)) {
+        if (arguments_.early && whole_ && std::ranges::all_of(changed_, isGlsl)) {
             run.showing = compiler::EarlyShowing{
                 &*whole_, [&](const auto& early) { return writeEarly(early, own, why, start, run.readMs); },
                 [this] { return watch_.looksChanged(); }};

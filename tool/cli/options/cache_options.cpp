@@ -32,12 +32,12 @@ void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
             "folder that keeps compiled shaders; none: keep nothing\n"
             "(default: $GLINT_CACHE, else $XDG_CACHE_HOME/glint, else\n"
             "~/.cache/glint)")
-        .group("Output");
+        .group(kWork);
     constexpr std::int64_t kLargest = 1 << 20;
     addInteger(command, "--cache-size", arguments.mebibytes, 1, kLargest,
                "size limit of the cache in MiB; the least recently used\n"
                "entries are removed first")
-        .group("Output");
+        .group(kWork);
 }
 
 std::optional<fs::path> cacheFolder(const CacheArguments& arguments) {

@@ -112,7 +112,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"effect-unknown", kError, "`--effects` names an effect that neither Glint nor a pack has."},
     {"effect-unused", kWarning, "An effect is asked for that the scene can't use."},
     {"emissive-lights", kError,
-     "`--emissive-lights on` in a package that has no shadow rays, or whose lights or geometry are a host's "
+     "`--emissive-lights` in a package that has no shadow rays, or whose lights or geometry are a host's "
      "own."},
     {"engine-scene", kError,
      "A scene of a host's own (`EngineScene`) has a number out of range, or lacks something that the package "
@@ -319,10 +319,13 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-still", kError, "The runtime was given a pose of a scene that was uploaded without motion."},
     {"scene-textures", kError, "The scene has more textures than the device takes."},
     {"scene-upload", kError, "The runtime was given a pose of a scene whose upload is not complete."},
+    {"setting-idle", kWarning,
+     "An option was given that changes nothing, for instance `--ordering` with a strategy that sorts no "
+     "hits."},
     {"settings-file", kError,
      "The file of `--settings` is not a settings file, or has an unknown setting or value."},
     {"sized-lights", kError,
-     "`--sized-lights on` in a package that has no shadow rays, or whose lights are a host's own."},
+     "`--sized-lights` in a package that has no shadow rays, or whose lights are a host's own."},
     {"skin-attribute", kError, "A primitive has joints without weights, or weights without joints."},
     {"skin-influences", kWarning, "A primitive has more sets of joints than Glint reads."},
     {"skin-joint-outside", kWarning, "A joint of a skin is not in the scene; the skin is left out."},
@@ -332,7 +335,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"skin-weights", kWarning, "The weights of a vertex do not sum to 1; they are scaled."},
     {"sky", kError, "The runtime was given a sky that is negative or not finite."},
     {"sky-light", kError,
-     "`--sky-light on` in a package that has no shadow rays, or whose lights or sky are a host's own."},
+     "`--sky-light` in a package that has no shadow rays, or whose lights or sky are a host's own."},
     {"source-conditional", kError,
      "A conditional of a shader source can't be decided or is unbalanced: a defect of Glint."},
     {"source-include", kError, "An include of a shader source does not exist: a defect of Glint."},

@@ -30,10 +30,12 @@ std::vector<std::string> idsOf(std::uint8_t severities) {
 std::string checkId(const std::string& id, std::uint8_t severities) {
     const DiagnosticInfo* const info = findDiagnostic(id);
     if (info == nullptr) {
-        return "there is no diagnostic \"" + id + "\"" + base::suggestion(id, idsOf(severities));
+        const std::string suggestion = base::suggestion(id, idsOf(severities));
+        return "there is no diagnostic \"" + id + "\"" +
+               (suggestion.empty() ? "; docs/diagnostics.md lists them" : suggestion);
     }
     return (info->severities & severities) != 0 ? std::string()
-                                                : "\"" + id + "\" is an error whatever is said of warnings";
+                                                : "\"" + id + "\" is always an error; name a warning";
 }
 
 std::string checkWarning(const std::string& value) {
@@ -47,7 +49,7 @@ std::string checkWarning(const std::string& value) {
     if (text.starts_with(kNoPrefix)) {
         return checkId(value.substr(kNoPrefix.size()), kWarning | kNote);
     }
-    return "\"" + value + "\" is neither no-ID, error nor error=ID";
+    return "\"" + value + "\" is neither no-ID, error nor error=ID; give one of these";
 }
 
 }  // namespace
@@ -81,7 +83,7 @@ ConsoleOptions ReportArguments::options() const {
 
 void ReportArguments::check() const {
     if (quiet && verbose) {
-        throw CLI::ValidationError("--verbose", "contradicts --quiet; leave out one of them");
+        throw CLI::ValidationError("--verbose", "can't be combined with --quiet; leave out one of them");
     }
 }
 
@@ -91,8 +93,8 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
         addFlag(command, "--json", arguments.json, "print the result and all diagnostics as JSON")
             .group(group);
     }
-    addFlag(command, "--quiet", arguments.quiet, "print only errors").group(group);
-    addFlag(command, "--verbose", arguments.verbose, "print what is read, decided and made, with times")
+    addFlag(command, "-q,--quiet", arguments.quiet, "print only errors").group(group);
+    addFlag(command, "-v,--verbose", arguments.verbose, "print what is read, decided and made, with times")
         .group(group);
     addChoice(command, "--color", arguments.color, {"auto", "always", "never"},
               "colour of diagnostics; auto: where stderr is a terminal\nand NO_COLOR is not set")
@@ -106,7 +108,7 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
             [](const std::string& id) { return id == kAll ? std::string() : checkId(id, kWarning); }, ""));
     command
         .add_option("-W", arguments.warnings,
-                    "-Wno-ID: hide warnings and notes of this id; -Werror,\n"
+                    "hide warnings and notes; -Wno-ID: those of this id; -Werror,\n"
                     "-Werror=ID: the same as --werror; may be repeated")
         ->type_name("no-ID|error=ID")
         ->allow_extra_args(false)

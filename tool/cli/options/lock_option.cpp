@@ -1,6 +1,7 @@
 #include "cli/options/lock_option.h"
 
 #include "base/files.h"
+#include "base/staged_file.h"
 #include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/report.h"
@@ -47,7 +48,7 @@ bool isToBeMade(const LockArguments& arguments) {
 // The result is empty if there is no file yet.
 Result<compiler::LockText> readLock(const LockArguments& arguments, const materials::MaterialModel& model) {
     if (isToBeMade(arguments)) {
-        if (Status possible = checkOutputFile(arguments.file); !possible) {
+        if (Status possible = base::checkOutputFile(arguments.file); !possible) {
             return possible.error();
         }
         return compiler::LockText{};
@@ -189,18 +190,17 @@ private:
 
 }  // namespace
 
-void addLockInput(CLI::App& command, LockArguments& arguments) {
-    addText(command, "--lock", arguments.file, "FILE",
-            "take shader IDs from this file, which glint compile\n"
-            "--lock keeps")
-        .group("Shaders");
-}
-
-void addLockOptions(CLI::App& command, LockArguments& arguments) {
-    arguments.isWritten = true;
+void addLockOptions(CLI::App& command, LockArguments& arguments, bool isWritten) {
+    arguments.isWritten = isWritten;
     CLI::Option& lock = addText(command, "--lock", arguments.file, "FILE",
-                                "keep shader IDs from build to build in this file, which\n"
-                                "is created, and extended by new keys; commit it");
+                                isWritten ? "keep shader IDs from build to build in this file, which\n"
+                                            "is created, and extended by new keys; commit it"
+                                          : "take shader IDs from this file, which glint compile\n"
+                                            "--lock keeps");
+    lock.group("Shaders");
+    if (!isWritten) {
+        return;
+    }
     CLI::Option& frozen = addFlag(command, "--locked", arguments.frozen,
                                   "fail, and write nothing, if the lock file would change\n(needs --lock)");
     CLI::Option& prune = addFlag(command, "--lock-prune", arguments.prune,
@@ -208,7 +208,7 @@ void addLockOptions(CLI::App& command, LockArguments& arguments) {
                                  "frees their IDs (needs --lock, excludes --locked)");
     frozen.needs(&lock);
     prune.needs(&lock)->excludes(&frozen);
-    for (CLI::Option* option : {&lock, &frozen, &prune}) {
+    for (CLI::Option* option : {&frozen, &prune}) {
         option->group("Shaders");
     }
 }

@@ -21,10 +21,8 @@ struct LockArguments {
     bool isWritten = false;  // by the command; else the file must be there
 };
 
-// Adds --lock FILE, for commands that only read it.
-void addLockInput(CLI::App& command, LockArguments& arguments);
-// Adds --lock FILE, --locked and --lock-prune, for commands that write it.
-void addLockOptions(CLI::App& command, LockArguments& arguments);
+// Adds --lock FILE; for commands that write the file also --locked and --lock-prune.
+void addLockOptions(CLI::App& command, LockArguments& arguments, bool isWritten);
 
 struct LockChoice {
     std::optional<std::string> text;  // what is to be written; nothing where the file stays as it is

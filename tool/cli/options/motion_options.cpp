@@ -1,6 +1,7 @@
 #include "cli/options/motion_options.h"
 
 #include "base/suggest.h"
+#include "cli/table.h"
 #include "settings/settings.h"
 
 #include <fmt/format.h>
@@ -64,13 +65,13 @@ Result<std::vector<std::size_t>> chooseAnimations(const gltf::Scene& scene, cons
 void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
     const std::string group = "Movement";
     CLI::Option& frames = addText(command, "--frames", arguments.frames, "A:B",
-                                  "play an animation and write frames A to B, or one frame,\n"
-                                  "each as out.0007.png");
+                                  "play an animation and write frames A to B, or one frame;\n"
+                                  "each as out.0007.png, in place of an existing file");
     frames.group(group)->check(CLI::Validator(
         [](const std::string& text) {
             return parseFrames(text) ? std::string()
                                      : "\"" + text + "\" is neither a frame such as 7 nor a range such as " +
-                                           "0:23, of 0 to 1000000";
+                                           "0:23; give one, of 0 to 1000000";
         },
         ""));
     addReal(command, "--fps", arguments.fps, 0.001, 10000.0,
@@ -78,29 +79,34 @@ void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
             "--frames)")
         .needs(&frames)
         ->group(group);
-    addText(command, "--time", arguments.time, "SECONDS",
-            "render one picture at this time of the animation, 0 to\n"
-            "1000000 (default: the rest pose)")
-        .excludes(&frames)
-        ->group(group)
-        ->check(CLI::Validator(
-            [](const std::string& text) {
-                double seconds = 0.0;
-                return compiler::parseReal(text, 0.0, kMaxSeconds, seconds)
-                           ? std::string()
-                           : "\"" + text + "\" is no number from 0 to 1000000";
-            },
-            ""));
-    addText(command, "--animation", arguments.animation, "NAME|INDEX|all",
-            "which animation plays, by name or number from 0; all: all\n"
-            "of them at once (default: 0)")
-        .group(group);
+    addMoment(command, arguments, "render one picture", group);
+    command.get_option("--time")->excludes(&frames);
     addNamed(command, "--refit", arguments.builds,
              "how acceleration structures follow; auto: they are\n"
              "refitted, and rebuilt by rule; always: only refitted;\n"
              "never: rebuilt in each frame; needs --frames")
         .needs(&frames)
         ->group(group);
+}
+
+void addMoment(CLI::App& command, MotionArguments& arguments, const std::string& what,
+               const std::string& group) {
+    addText(
+        command, "--time", arguments.time, "SECONDS",
+        wrapped(what + " at this time of the animation (0 to 1000000, default: the rest pose)", kHelpColumns))
+        .group(group)
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                double seconds = 0.0;
+                return compiler::parseReal(text, 0.0, kMaxSeconds, seconds)
+                           ? std::string()
+                           : "\"" + text + "\" is no number from 0 to 1000000; give one";
+            },
+            ""));
+    addText(command, "--animation", arguments.animation, "NAME|INDEX|all",
+            "which animation plays, by name or number from 0; all: all\n"
+            "of them at once (default: 0)")
+        .group(group);
 }
 
 std::optional<FrameRange> parseFrames(const std::string& text) {

@@ -22,7 +22,11 @@ struct MotionArguments {
     std::string animation = "0";
     MotionView::Builds builds = MotionView::Builds::ByRule;
 };
+// Adds --frames and what belongs to it, and addMoment().
 void addMotionOptions(CLI::App& command, MotionArguments& arguments);
+// Adds --time and --animation. `what` says what happens at that time.
+void addMoment(CLI::App& command, MotionArguments& arguments, const std::string& what,
+               const std::string& group);
 
 // The frames of a sequence. The first and the last are rendered too.
 struct FrameRange {

@@ -1,6 +1,7 @@
 #include "cli/options/options.h"
 
 #include "base/suggest.h"
+#include "cli/table.h"
 #include "settings/settings.h"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <sstream>
 
 namespace glint::cli {
@@ -25,6 +27,13 @@ std::string quoted(const std::string& text) {
     return "\"" + text + "\"";
 }
 
+std::string complaintAboutWhole(const std::string& text, std::int64_t min, std::int64_t max) {
+    std::int64_t number = 0;
+    return compiler::parseWhole(text, min, max, number)
+               ? std::string()
+               : fmt::format("{} is no whole number from {} to {}; give one", quoted(text), min, max);
+}
+
 // The name of a check that checks nothing. Its description holds the choices, for choicesOf().
 constexpr const char* kChoices = "choices";
 
@@ -34,26 +43,24 @@ CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& ch
         if (std::find(choices.begin(), choices.end(), text) != choices.end()) {
             return std::string();
         }
+        const std::string suggestion = base::suggestion(text, choices);
         return fmt::format("{} is none of {}{}", quoted(text), fmt::join(choices, ", "),
-                           base::suggestion(text, choices));
+                           suggestion.empty() ? "; give one of them" : suggestion);
     });
 }
 
 }  // namespace
 
 std::string withNote(const std::string& help, const std::string& note) {
-    constexpr std::size_t kColumns = 58;
     const std::size_t lineBreak = help.rfind('\n');
     const std::size_t last = help.size() - (lineBreak == std::string::npos ? 0 : lineBreak + 1);
-    return help + (last + 1 + note.size() > kColumns ? "\n" : " ") + note;
+    return help + (last + 1 + note.size() > kHelpColumns ? "\n" : " ") + note;
 }
 
-CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& what,
-                     const std::string& example) {
-    CLI::App* command = app.add_subcommand(name, what);
+CLI::App& addCommand(CLI::App& app, const CommandText& text) {
+    CLI::App* command = app.add_subcommand(text.name, text.what);
     command->group("Commands");
-    command->footer("Example:\n  " + example);
-    command->get_formatter()->column_width(32);
+    command->formatter(std::make_shared<HelpFormatter>(text));
     return *command;
 }
 
@@ -118,13 +125,7 @@ CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_
         command
             .add_option(flags, value, withNote(help, fmt::format("({} to {}, default: {})", min, max, value)))
             ->type_name("N");
-    return check(option, [min, max](const std::string& text) {
-        std::int64_t number = 0;
-        if (compiler::parseWhole(text, min, max, number)) {
-            return std::string();
-        }
-        return fmt::format("{} is no whole number from {} to {}", quoted(text), min, max);
-    });
+    return check(option, [min, max](const std::string& text) { return complaintAboutWhole(text, min, max); });
 }
 
 CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value, double min, double max,
@@ -134,42 +135,74 @@ CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value,
         double number = 0.0;
         return compiler::parseReal(text, min, max, number)
                    ? std::string()
-                   : fmt::format("{} is no number from {} to {}", quoted(text), min, max);
+                   : fmt::format("{} is no number from {} to {}; give one", quoted(text), min, max);
     });
 }
 
 CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& value, const std::string& type,
                      const std::string& help) {
     CLI::Option* option = command.add_option(flags, value, help)->type_name(type);
-    return check(option, [](const std::string& text) {
-        return text.empty() ? std::string("is empty") : std::string();
-    });
+    return check(option,
+                 [](const std::string& text) { return text.empty() ? std::string(kEmpty) : std::string(); });
 }
 
 CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                       const std::string& type, const std::string& help) {
     CLI::Option* option = command.add_option(flags, values, help)->type_name(type)->allow_extra_args();
-    return check(option, [](const std::string& text) {
-        return text.empty() ? std::string("is empty") : std::string();
-    });
+    return check(option,
+                 [](const std::string& text) { return text.empty() ? std::string(kEmpty) : std::string(); });
 }
 
-CLI::Option& addImageOutput(CLI::App& command, const std::string& flags, std::string& value,
-                            const std::vector<std::string>& extensions, const std::string& help) {
-    CLI::Option* option = command.add_option(flags, value, help)->type_name("IMAGE");
-    return check(option, [extensions](const std::string& text) {
+CLI::Option& addOutputFile(CLI::App& command, const std::string& flags, std::string& value,
+                           const std::string& type, const std::vector<std::string>& extensions,
+                           const std::string& help) {
+    const std::string whole = wrapped(help + "; an existing file is replaced", kHelpColumns);
+    CLI::Option& option = addText(command, flags, value, type, whole);
+    return extensions.empty() ? option : check(&option, [extensions](const std::string& text) {
         std::string extension = std::filesystem::path(text).extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
                        [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
         if (std::find(extensions.begin(), extensions.end(), extension) != extensions.end()) {
             return std::string();
         }
-        return fmt::format("{} does not end in {}", quoted(text), fmt::join(extensions, " or "));
+        return fmt::format("{} does not end in {}; name such a file", quoted(text),
+                           fmt::join(extensions, " or "));
     });
 }
 
 CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, const std::string& help) {
-    return *command.add_flag(flags, value, help);
+    const std::string whole = value ? withNote(help, "(default: on)") : help;
+    return *command.add_flag(switchFlags(flags, "true", "false"), value, whole);
+}
+
+std::string switchFlags(const std::string& flags, const std::string& on, const std::string& off) {
+    const std::size_t name = flags.find("--") + 2;
+    std::string all;
+    for (std::size_t begin = 0; begin <= flags.size();) {
+        const std::size_t end = std::min(flags.find(',', begin), flags.size());
+        all += flags.substr(begin, end - begin) + "{" + on + "},";
+        begin = end + 1;
+    }
+    return all + "--no-" + flags.substr(name) + "{" + off + "}";
+}
+
+void addJobs(CLI::App& command, int& jobs) {
+    constexpr int kMost = 1024;
+    const std::string help =
+        fmt::format("threads that work at a time; 0: one for each core\n(0 to {}, default: {})", kMost, jobs);
+    check(command.add_option("-j,--jobs", jobs, help)->type_name("N")->group(kWork),
+          [](const std::string& text) { return complaintAboutWhole(text, 0, kMost); });
+}
+
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks) {
+    addText(command, "--device", device, "NAME", "part of the GPU's name (default: the first suitable one)")
+        .group("Device");
+    addFlag(
+        command, "--validate", validate,
+        wrapped("run with the Vulkan validation layers, synchronisation included: any message is an error" +
+                    checks,
+                kHelpColumns))
+        .group("Device");
 }
 
 void addWords(const CLI::Option& option, std::vector<std::string>& words) {
@@ -179,7 +212,15 @@ void addWords(const CLI::Option& option, std::vector<std::string>& words) {
     }
     const std::string name = option.get_name();
     if (option.get_items_expected_max() == 0) {
-        words.push_back(name);
+        // The last one counts. Lists, such as that of --werror, have several values.
+        const std::vector<std::string>& values = option.results();
+        const bool isList = option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+        for (std::size_t i = isList ? 0 : values.size() - 1; i < values.size(); ++i) {
+            const std::string& value = values[i];
+            const bool isOff = value == "false" || value == "off";
+            const bool isOn = value == "true" || value == "on";
+            words.push_back(isOff ? "--no-" + name.substr(2) : isOn ? name : name + "=" + value);
+        }
         return;
     }
     const std::string join = name.starts_with("--") ? name + "=" : name;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cli/console.h"
+#include "cli/options/usage.h"
 
 #include <glint/names.h>
 
@@ -14,12 +15,14 @@
 
 namespace glint::cli {
 
+// The group of options about how a command works, which change nothing in what it writes.
+inline constexpr const char* kWork = "Work";
+
 // The work of a subcommand once its command line is parsed. Returns the exit code.
 using Action = std::function<int(const Console&)>;
 
-// Adds a subcommand with an example at the end of its help.
-CLI::App& addCommand(CLI::App& app, const std::string& name, const std::string& what,
-                     const std::string& example);
+// Adds a subcommand with its short help.
+CLI::App& addCommand(CLI::App& app, const CommandText& text);
 
 // Appends a note to an option's text: on its last line, or on a new line if that would be too long.
 std::string withNote(const std::string& help, const std::string& note);
@@ -61,10 +64,20 @@ CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& v
 // Adds an option for one or more texts.
 CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                       const std::string& type, const std::string& help);
-// Adds an option for an image to write. Its extension must be one of `extensions`.
-CLI::Option& addImageOutput(CLI::App& command, const std::string& flags, std::string& value,
-                            const std::vector<std::string>& extensions, const std::string& help);
+// Adds an option for a file to write, which replaces an existing one, as the help then says. Its extension
+// must be one of `extensions`, if there are any.
+CLI::Option& addOutputFile(CLI::App& command, const std::string& flags, std::string& value,
+                           const std::string& type, const std::vector<std::string>& extensions,
+                           const std::string& help);
+// Adds a boolean option: --x sets it, and --no-x clears it. `value` is the default.
 CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, const std::string& help);
+// Returns the same for `flags` of an option with the values on and off, and perhaps others by --x=VALUE.
+std::string switchFlags(const std::string& flags, const std::string& on, const std::string& off);
+
+// Adds --jobs: how many threads work at the same time.
+void addJobs(CLI::App& command, int& jobs);
+// Adds --device and --validate. `checks` is what the latter does besides.
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {});
 
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);

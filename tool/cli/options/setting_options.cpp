@@ -6,17 +6,18 @@
 #include "cli/table.h"
 #include "materials/packs.h"
 
+#include <glint/measure/render_settings.h>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 namespace glint::cli {
 
 namespace {
-
-constexpr std::size_t kHelpColumns = 58;
 
 std::vector<std::string> namesOf(const std::vector<compiler::SettingWord>& words) {
     std::vector<std::string> names;
@@ -47,7 +48,8 @@ std::string helpOf(const compiler::Descriptor& row, const compiler::Settings& se
     std::vector<std::string> others;
     for (const compiler::SettingWord& word : wordsOf(row)) {
         if (!word.what.empty()) {
-            text += fmt::format("; {}: {}", word.name, word.what);
+            const std::string name = isSwitch(row) ? optionWords(row, word.name).front() : word.name;
+            text += fmt::format("; {}: {}", name, word.what);
         } else if (values.form == compiler::ValueForm::List) {
             others.push_back(word.name);
         }
@@ -60,31 +62,51 @@ std::string helpOf(const compiler::Descriptor& row, const compiler::Settings& se
         return withNote(text, fmt::format("({} to {}, default: {})", compiler::boundText(values.min),
                                           compiler::boundText(values.max), values.text(settings)));
     }
-    return values.form == compiler::ValueForm::Switch
-               ? text
-               : withNote(text, fmt::format("(default: {})", values.text(settings)));
+    const std::string usual = values.text(settings);
+    return isSwitch(row) && usual == "off" ? text : withNote(text, fmt::format("(default: {})", usual));
 }
 
 void addSetting(CLI::App& command, const compiler::Descriptor& row, compiler::Settings& settings) {
     const std::string flags = "--" + std::string(row.name);
     const std::string help = helpOf(row, settings);
-    const auto set = [&row, &settings](const CLI::results_t& words) {
+    const auto set = [&row, &settings, usual = row.values.text(settings)](const CLI::results_t& words) {
         row.values.set(settings, fmt::format("{}", fmt::join(words, ",")));
+        std::erase(settings.given, row.name);
+        if (row.values.text(settings) != usual) {
+            settings.given.emplace_back(row.name);
+        }
         return true;
     };
-    CLI::Option* const option = row.values.form == compiler::ValueForm::Switch
-                                    ? command.add_flag_callback(
-                                          flags, [set] { set({"on"}); }, help)
-                                    : command.add_option(flags, set, help)->type_name(typeOf(row));
-    option->group(std::string(row.group));
-    if (row.values.form == compiler::ValueForm::Switch) {
-        return;
+    CLI::Option* option = nullptr;
+    if (isSwitch(row)) {
+        const auto value = std::make_shared<std::string>();
+        option = command.add_flag(switchFlags(flags, "on", "off"), *value, help);
+        option->each([value, set](const std::string& word) { set({word}); });
+    } else {
+        option = command.add_option(flags, set, help)->type_name(typeOf(row));
     }
+    option->group(std::string(row.group));
     if (row.values.form == compiler::ValueForm::List) {
         option->expected(1, CLI::detail::expected_max_vector_size)->delimiter(',')->allow_extra_args(false);
     }
-    keepChoices(*option, namesOf(wordsOf(row)));
+    if (!isSwitch(row)) {
+        keepChoices(*option, namesOf(wordsOf(row)));
+    }
     option->check(CLI::Validator([&row](const std::string& text) { return complaintAbout(row, text); }, ""));
+}
+
+// Returns the settings that decide whether those of `which` change anything. A package for several strategies
+// counts as one of a strategy that sorts hits, if it has such a one.
+compiler::Settings decisive(compiler::SettingCommand which, compiler::Settings settings) {
+    if (which == compiler::kOfCompile) {
+        const std::uint32_t ordered = settings.compile.strategies & package::orderedStrategies();
+        for (const package::Strategy strategy : package::strategies()) {
+            if (((ordered != 0 ? ordered : settings.compile.strategies) & strategy) != 0) {
+                settings.strategy = strategy;
+            }
+        }
+    }
+    return settings;
 }
 
 // Returns null for a command without that option.
@@ -126,7 +148,7 @@ void settleTrust(const CLI::App& command, compiler::Settings& settings) {
     if (givenOption(command, "--trust-textures") != nullptr) {
         throw CLI::ValidationError(
             "--trust-textures",
-            fmt::format("on can't be combined with {}, with which textures may hold anything at run time: "
+            fmt::format("can't be combined with {}, with which textures may hold anything at run time; "
                         "leave out one of them",
                         changes));
     }
@@ -159,7 +181,7 @@ void settleSettings(const CLI::App& command, compiler::Settings& settings) {
         settings.renderer.tracer == package::kTracerRayQuery) {
         throw CLI::ValidationError(
             "--tracer",
-            fmt::format("ray-query can't run --strategy {}, which is a ray tracing pipeline: "
+            fmt::format("ray-query can't run --strategy {}, which is a ray tracing pipeline; "
                         "leave out --tracer, or use --strategy {}",
                         package::nameOf(*settings.strategy), package::strategyTable().front().name));
     }
@@ -175,11 +197,14 @@ void checkProfile(const CLI::App& command, const compiler::Settings& settings) {
     }
     if (policy == compiler::MergePolicy::Profile && settings.profile.empty()) {
         throw CLI::ValidationError(
-            "--merge", "profile needs the hits that `glint render --profile FILE` counted: profile:FILE");
+            "--merge",
+            "profile needs the hits that `glint render --profile FILE` counted; give profile:FILE");
     }
     if (!takesHits(policy) && !settings.profile.empty()) {
         throw CLI::ValidationError(
-            "--profile", fmt::format("is for --merge profile and auto, not for --merge {}", nameOf(policy)));
+            "--profile",
+            fmt::format("is for --merge profile and auto, not for --merge {}; leave out one of them",
+                        nameOf(policy)));
     }
 }
 
@@ -215,6 +240,48 @@ void addHostOption(CLI::App& command, compiler::Settings& settings) {
         .group("Shaders");
 }
 
+Diagnostic idleWarning(const std::string& where, const std::string& words, const std::string& reason) {
+    return makeWarning("setting-idle", where, fmt::format("{} changes nothing: {}", words, reason),
+                       "leave it out");
+}
+
+std::vector<Diagnostic> idleSettings(std::span<const gltf::Scene> scenes, compiler::SettingCommand which,
+                                     const compiler::Settings& given, compiler::PlanOptions plan) {
+    std::vector<Diagnostic> warnings;
+    const std::string where = scenes.empty() ? std::string() : scenes.front().path;
+    if (!given.calibration.empty() && !given.compile.strategyChoice) {
+        warnings.push_back(idleWarning(where, "--calibration", "only --strategy auto reads it"));
+    }
+    if (given.given.empty()) {
+        return warnings;
+    }
+    const compiler::Settings settings = decisive(which, given);
+    const compiler::Configuration base = configurationOf(settings);
+    plan.keys.keptLobes = materials::kLobeMask;  // whether --hit-lobes has any to take away
+    std::vector<compiler::BenchFacts> facts;
+    for (const gltf::Scene& scene : scenes) {
+        facts.push_back(measure::factsOf(settings, scene, plan));
+    }
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if ((row.commands & which) == 0 || std::ranges::find(given.given, row.name) == given.given.end()) {
+            continue;
+        }
+        std::string reason;
+        for (const compiler::BenchFacts& scene : facts) {
+            reason = idleReason(row, scene, base);
+            if (reason.empty()) {
+                break;
+            }
+        }
+        if (!reason.empty()) {
+            warnings.push_back(idleWarning(
+                where, fmt::format("{}", fmt::join(optionWords(row, row.values.text(settings)), " ")),
+                reason));
+        }
+    }
+    return warnings;
+}
+
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
                                           base::Memo* texels) {
     const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(settings.materials);
@@ -240,6 +307,7 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, Im
     options.memoScope = texels != nullptr ? compiler::programIdentity() : "";
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;
+    options.jobs = settings.compile.jobs;
     options.materialModel = *model;
     return options;
 }

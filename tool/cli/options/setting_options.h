@@ -8,7 +8,9 @@
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace glint::cli {
 
@@ -26,6 +28,13 @@ void addProfileInput(CLI::App& command, compiler::Settings& settings);
 void addCalibration(CLI::App& command, compiler::Settings& settings);
 // Adds --variant NAME, --strict-paths and --materials DIR.
 void addReadingOptions(CLI::App& command, compiler::Settings& settings);
+
+// Returns the warning "setting-idle": `words` of the command line change nothing, for a reason.
+Diagnostic idleWarning(const std::string& where, const std::string& words, const std::string& reason);
+// Returns a warning for each setting that was given and changes nothing: for a picture with `settings`, or
+// for a package of the scenes. `plan` is what it is planned with.
+std::vector<Diagnostic> idleSettings(std::span<const gltf::Scene> scenes, compiler::SettingCommand which,
+                                     const compiler::Settings& settings, compiler::PlanOptions plan);
 
 // What a command needs of images.
 enum class ImageReading : std::uint8_t {

@@ -4,6 +4,7 @@
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
 #include "cli/render/open_image_denoise.h"
+#include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
 
@@ -29,11 +30,13 @@ constexpr const char* kMapIntensity = "--environment-intensity";
 
 void addEnvironmentOptions(CLI::App& command, compiler::Settings& settings) {
     addText(command, kMap, settings.environment, "FILE",
-            "light the scene by this equirectangular map, .hdr or\n.exr, instead of a gradient")
+            "light the scene by this equirectangular map; a .hdr or .exr\n"
+            "file, instead of a gradient")
         .check(CLI::Validator(
             [](const std::string& text) {
                 const Result<image::RadianceFormat> format = image::radianceFormat(text);
-                return format ? std::string() : "\"" + text + "\" does not end in .hdr or .exr";
+                return format ? std::string()
+                              : "\"" + text + "\" does not end in .hdr or .exr; name such a file";
             },
             ""))
         ->group("Environment");
@@ -42,7 +45,7 @@ void addEnvironmentOptions(CLI::App& command, compiler::Settings& settings) {
 void checkEnvironmentOptions(const CLI::App& command) {
     for (const char* option : {kRotation, kMapIntensity}) {
         if (command.count(option) > 0 && command.count(kMap) == 0) {
-            throw CLI::ValidationError(option, "needs --environment");
+            throw CLI::ValidationError(option, "needs --environment; give both, or neither");
         }
     }
 }
@@ -63,21 +66,17 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
                 double stops = 0.0;
                 return text == "auto" || compiler::parseReal(text, -kMaxExposure, kMaxExposure, stops)
                            ? std::string()
-                           : "\"" + text + "\" is neither auto nor a number from -32 to 32";
+                           : "\"" + text + "\" is neither auto nor a number from -32 to 32; give one";
             },
             ""))
         ->group(group);
 }
 
 void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
-    addText(command, "--device", arguments.device, "NAME",
-            "part of the GPU's name (default: the first suitable one)")
-        .group("Device");
-    addFlag(command, "--validate", arguments.validate,
-            "run with the Vulkan validation layers, synchronisation\nincluded: any message is an error; also "
-            "checks the order\nof hits")
-        .group("Device");
+    addDeviceChoice(command, arguments.device, arguments.validate, "; also checks the order of hits");
     addPipelineOptions(command, arguments.pipelines);
+    addJobs(command, arguments.compile.jobs);
+    addCacheOptions(command, arguments.cache);
 }
 
 constexpr const char* kView = "--view";
@@ -112,7 +111,8 @@ std::string complaintAboutView(const std::string& text) {
         known.emplace_back(view.name);
     }
     const std::string suggestion = base::suggestion(name, known);
-    return fmt::format("\"{}\" is no view{}", text, suggestion.empty() ? "; --help lists them" : suggestion);
+    return fmt::format("\"{}\" is no view{}", text,
+                       suggestion.empty() ? "; --help-all lists them" : suggestion);
 }
 
 void addViewOptions(CLI::App& command, RenderArguments& arguments) {
@@ -137,23 +137,25 @@ void settleView(const CLI::App& command, RenderArguments& arguments) {
     const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view);
     const bool compares = view && view->info->readsReference;
     if (command.count(kViewReference) > 0 && !compares) {
-        throw CLI::ValidationError(kViewReference, "needs --view difference");
+        throw CLI::ValidationError(kViewReference, "needs --view difference; give both, or neither");
     }
     if (!view) {
         return;
     }
     if (compares && arguments.viewReference.empty()) {
-        throw CLI::ValidationError(kView, "difference needs --view-reference FILE");
+        throw CLI::ValidationError(kView,
+                                   "difference needs a picture to compare with; give --view-reference FILE");
     }
     const Result<image::ImageFormat> format = image::imageFormat(arguments.output);
     if (format && *format != image::ImageFormat::Png) {
         const std::vector<std::string> layers = measure::layersFor(*view);
         throw CLI::ValidationError(
-            kView, layers.empty()
-                       ? std::string("is drawn into a PNG file: -o FILE.png")
-                       : fmt::format("is drawn into a PNG file: -o FILE.png; for the numbers use --layers {} "
-                                     "and no view",
-                                     fmt::join(layers, ",")));
+            kView,
+            layers.empty()
+                ? std::string("is drawn into a PNG file; give -o FILE.png")
+                : fmt::format("is drawn into a PNG file; give -o FILE.png, or for the numbers --layers {} "
+                              "and no view",
+                              fmt::join(layers, ",")));
     }
     if (arguments.package.empty()) {
         for (std::string& layer : measure::layersFor(*view)) {
@@ -179,24 +181,21 @@ void settleDenoising(RenderArguments& arguments) {
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
-    addText(command, "--stats", arguments.stats, "FILE.json", "write times and counters as JSON")
+    addOutputFile(command, "--stats", arguments.stats, "FILE.json", {}, "write times and counters as JSON")
         .group("Report");
     addFlag(command, "--pipeline-statistics", arguments.pipelineStatistics,
             "report the driver's statistics of each pipeline, such as\n"
             "registers, spills and instructions")
         .group("Report");
-    addImageOutput(command, "--coverage", arguments.coverage, {".png"},
-                   "write how each pixel of the last sample got its\n"
-                   "reflection; orange: found in screen space; blue: by a\n"
-                   "ray that hit; light blue: by a ray that missed; grey: no\n"
-                   "ray; black: no surface")
+    addOutputFile(
+        command, "--coverage", arguments.coverage, "FILE.png", {".png"},
+        "write how each pixel of the last sample got its reflection; orange: found in screen space; blue: "
+        "by a ray that hit; light blue: by a ray that missed; grey: no ray; black: no surface")
         .group("Report");
-    addText(command, "--profile", arguments.profileOutput, "FILE.json",
-            "count the hits of every permutation, for --merge profile\n"
-            "and auto; needs --strategy " +
-                countingStrategies() +
-                "; the default of\n"
-                "--merge is then none, and no other value works")
+    addOutputFile(command, "--profile", arguments.profileOutput, "FILE.json", {},
+                  "count the hits of every permutation, for --merge profile and auto; needs --strategy " +
+                      countingStrategies() +
+                      "; the default of --merge is then none, and no other value works")
         .group("Report");
 }
 
@@ -214,13 +213,14 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
     if (command.count("--merge") > 0 && arguments.compile.plan.merge != compiler::MergePolicy::None) {
         throw CLI::ValidationError("--profile",
                                    "counts the hits of every permutation, each of which needs a shader of "
-                                   "its own: leave out --merge " +
+                                   "its own; leave out --merge " +
                                        command.get_option("--merge")->results().front());
     }
     if (!arguments.strategy || !package::infoOf(*arguments.strategy).dispatchesCases) {
         throw CLI::ValidationError(
-            "--profile", "needs --strategy " + countingStrategies() + ", which orders hits by shader, not " +
-                             compiler::sweptSetting("strategy")->values.text(arguments));
+            "--profile", "can't count with --strategy " +
+                             compiler::sweptSetting("strategy")->values.text(arguments) +
+                             ", which does not order hits by shader; use --strategy " + countingStrategies());
     }
     arguments.compile.plan.merge = compiler::MergePolicy::None;
 }
@@ -242,6 +242,15 @@ void checkPackageChoice(const CLI::App& command) {
             throw CLI::ValidationError(option, "is decided by --package; leave out one of them");
         }
     }
+}
+
+void addPackageOption(CLI::App& command, RenderArguments& arguments, const std::string& further) {
+    addText(command, "--package", arguments.package, "DIR",
+            wrapped("use this package of the scene instead of compiling it" + further +
+                        " (excludes --host, --profile, and all settings that are decided for the package: "
+                        "docs/cli.md)",
+                    kHelpColumns))
+        .group("Shaders");
 }
 
 void addSceneOptions(CLI::App& command, RenderArguments& arguments) {
@@ -267,20 +276,17 @@ void checkSceneOptions(const CLI::App& command, RenderArguments& arguments) {
 
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
                       const std::function<void()>& then) {
-    addImageOutput(command, "-o,--output", arguments->output, {".png", ".exr"},
-                   "the picture; .png: exposed and tone mapped (Khronos PBR\nNeutral), 8-bit sRGB; .exr: "
-                   "linear, 32-bit float")
+    addOutputFile(
+        command, "-o,--output", arguments->output, "IMAGE", {".png", ".exr"},
+        "the picture, a .png or .exr file; .png: exposed and tone mapped (Khronos PBR Neutral), 8-bit sRGB; "
+        ".exr: linear, 32-bit float")
         .required();
     addSceneOptions(command, *arguments);
     addMotionOptions(command, arguments->motion);
-    addText(command, "--package", arguments->package, "DIR",
-            "use this package of the scene instead of compiling it\n"
-            "(excludes --host, --profile, and all settings that are\n"
-            "decided for the package: docs/cli.md)")
-        .group("Shaders");
+    addPackageOption(command, *arguments);
     addFlag(command, "--denoise", arguments->denoise,
-            "remove the noise of each picture with Open Image Denoise,\n"
-            "if glint was built with it (docs/layers.md)")
+            "remove the noise of each picture; by Open Image Denoise, if\n"
+            "glint was built with it (docs/layers.md)")
         .group("Picture");
     addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);
@@ -288,7 +294,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         checkPackageChoice(command);
         checkSceneOptions(command, *arguments);
         const bool plays = !arguments->motion.frames.empty() || !arguments->motion.time.empty();
-        if (!plays && command.get_option("--animation")->count() > 0) {
+        if (!plays && command.count("--animation") > 0) {
             throw CLI::ValidationError("--animation", "needs --frames or --time; give one of them");
         }
         if (!arguments->motion.frames.empty() && !arguments->coverage.empty()) {
@@ -296,7 +302,7 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         }
         const Result<image::ImageFormat> format = image::imageFormat(arguments->output);
         if (!arguments->compile.layers.empty() && format && *format != image::ImageFormat::Exr) {
-            throw CLI::ValidationError("--layers", "needs a file that has room for layers: -o FILE.exr");
+            throw CLI::ValidationError("--layers", "needs a file that has room for layers; give -o FILE.exr");
         }
         settleView(command, *arguments);
         settleDenoising(*arguments);

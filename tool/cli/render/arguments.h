@@ -1,6 +1,7 @@
 // The command line of glint render.
 #pragma once
 
+#include "cli/options/cache_options.h"
 #include "cli/options/motion_options.h"
 #include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
@@ -30,6 +31,7 @@ struct RenderArguments : compiler::Settings {
     std::string viewReference;  // a file that it compares with
     std::string profileOutput;  // counts hits by key; Settings::profile is the file that planning reads
     PipelineArguments pipelines;
+    CacheArguments cache;
 };
 
 // Declares the options that make a picture, whatever its use: the scene, size, effects, shaders, the device.
@@ -37,6 +39,8 @@ void addSceneOptions(CLI::App& command, RenderArguments& arguments);
 // Throws a CLI::ParseError if some of them contradict each other.
 void checkSceneOptions(const CLI::App& command, RenderArguments& arguments);
 
+// Adds --package; `further` is what the help says besides.
+void addPackageOption(CLI::App& command, RenderArguments& arguments, const std::string& further = {});
 // Throws a CLI::ParseError if an option is given that --package decides.
 void checkPackageChoice(const CLI::App& command);
 

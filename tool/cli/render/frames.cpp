@@ -118,6 +118,10 @@ public:
             if (!std::exchange(begun_, true)) {
                 report_.start.firstSampleMs = base::millisecondsSince(begin);
             }
+            const std::size_t pictures = setup_.movement ? setup_.movement->moments.size() : 1;
+            if (setup_.progress) {
+                setup_.progress(++samplesDone_, pictures * report_.samples);
+            }
             return countsHits ? addHits() : okStatus();
         };
         Result<LinearImage> image = renderer_->render(options, report_.samples, afterSample);
@@ -236,6 +240,7 @@ private:
     scene_view::SceneViewData& data_;
     RenderReport& report_;
     CameraView camera_;
+    std::size_t samplesDone_ = 0;  // of all pictures
     scene_view::SkyChoice sky_;
     package::Effect onScreen_ = 0;  // for --coverage
     std::unique_ptr<GpuScene> gpuScene_;

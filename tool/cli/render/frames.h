@@ -24,6 +24,8 @@ struct FrameSetup {
     CameraView camera;                         // of the first picture
     double aspect = 1.0;                       // width / height
     const LinearImage* reference = nullptr;    // that of --view-reference; null: none
+    // Gets how many samples of all pictures are done, and how many there are.
+    std::function<void(std::size_t done, std::size_t all)> progress{};
 };
 
 // Renders and writes every picture, and fills in the measurements. `scene` and `data`, which was made from

@@ -35,6 +35,20 @@ base::Json toJson(const std::optional<scene_view::SkyChoice>& sky) {
             {"lightIlluminance", base::orNull(sky->lights)}};
 }
 
+base::Json sunToJson(const RenderReport& report) {
+    return report.sun ? base::Json{{"illuminance", report.sun->intensity},
+                                   {"direction", report.sun->direction},
+                                   {"automatic", report.sunAutomatic}}
+                      : base::Json(nullptr);
+}
+
+// Describes the added light in one line.
+std::string sunText(const RenderReport& report) {
+    const std::string lux = fmt::format("{:.3g} lux", report.sun->intensity[0]);
+    return lux + (report.sunAutomatic ? ", added because the scene has no light (--no-sun leaves it out)"
+                                      : " (--sun)");
+}
+
 constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
     switch (action) {
         case MotionStatistics::TopLevel::Updated:
@@ -240,6 +254,7 @@ base::Json toJson(const RenderReport& report) {
             {"exposure", report.exposure},
             {"exposureAutomatic", report.exposureAutomatic},
             {"sky", toJson(report.sky)},
+            {"sun", sunToJson(report)},
             {"cases", report.cases},
             {"compileMs", base::orNull(report.compileMs)},
             {"environment", toJson(report.environment)},
@@ -320,6 +335,9 @@ std::string toText(const RenderReport& report, Detail detail) {
          fmt::format("{} in {}", formatBytes(scene.blasBytes), formatMilliseconds(scene.blasBuildMs))}};
     if (report.sky) {
         rows.insert(rows.end() - 3, {"sky", toText(*report.sky)});
+    }
+    if (report.sun) {
+        rows.insert(rows.end() - 3, {"sun", sunText(report)});
     }
     if (report.environment) {
         const Environment::Statistics& map = report.environment->statistics;

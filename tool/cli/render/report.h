@@ -69,8 +69,11 @@ struct RenderReport {
     std::uint32_t samples = 0;
     std::uint32_t seed = 0;
     std::string camera;
-    double exposure = 0.0;                     // stops
-    bool exposureAutomatic = false;            // chosen by the first picture
+    double exposure = 0.0;           // stops
+    bool exposureAutomatic = false;  // chosen by the first picture
+    // The light of --sun, if it was added, and whether it was because the scene has none.
+    std::optional<LightView> sun;
+    bool sunAutomatic = false;
     std::optional<scene_view::SkyChoice> sky;  // absent: an environment map lights the scene
     std::optional<double> compileMs;           // absent: a package was given
     std::uint32_t cases = 0;

@@ -200,6 +200,17 @@ Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs:
 
 }  // namespace
 
+Status checkPackageFolder(const fs::path& folder) {
+    const Result<Names> earlier = inspectFolder(folder);
+    if (!earlier) {
+        return earlier.error();
+    }
+    const Status possible = base::checkOutputFolder(folder);
+    return possible ? possible
+                    : Status(makeError("output-write", folder.string(), possible.error().message,
+                                       possible.error().hint));
+}
+
 Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     const Result<fs::path> resolved = resolveOutput(folder);
     if (!resolved) {

@@ -127,7 +127,8 @@ Result<MaterialChecksReport> checkMaterials(const CheckMaterialsOptions& options
     report.device = (*evaluator)->deviceName();
     report.samples = options.samples;
     for (const CheckedFeature& feature : scene->features) {
-        observer.progress(fmt::format("checking {}", feature.code->name));
+        observer.progress(fmt::format("checking {} of {}: {}", report.features.size() + 1,
+                                      scene->features.size(), feature.code->name));
         const std::string layer = feature.code->layer.empty() ? std::string() : feature.code->name;
         const FeatureOnDevice on{**evaluator, *scene, feature, (*evaluator)->lobeOf(layer), options.samples};
         Result<FeatureChecks> checks = checkFeature(on);

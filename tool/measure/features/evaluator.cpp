@@ -41,6 +41,7 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
 
     observer.progress("compiling");
     compiler::CompileSettings settings = checkedSettings();
+    settings.jobs = options.jobs;
     if ((evaluator->context_->handles().tracers & package::kTracerRayQuery) == 0) {
         settings.tracers = package::kTracerRayPipeline;
     }

@@ -78,7 +78,8 @@ Result<std::vector<FeatureProofOutcome>> proveMaterials(const ProveMaterialsOpti
     const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     std::vector<FeatureProofOutcome> outcomes;
     for (const CheckedFeature& feature : checked->features) {
-        observer.progress(fmt::format("proving {}", feature.code->name));
+        observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked->features.size(),
+                                      feature.code->name));
         const Result<compiler::FeatureProof> proof =
             compiler::compileFeatureProof(checked->scene, plan, settings, *feature.code);
         FeatureProofOutcome outcome;

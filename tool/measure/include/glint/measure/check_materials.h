@@ -92,6 +92,7 @@ struct CheckMaterialsOptions {
     std::uint32_t samples = 4096;     // directions for each combination and view
     std::uint32_t combinations = 12;  // of parameters, for each feature
     bool pictures = false;
+    int jobs = 0;  // threads that compile; 0: one for each core
 };
 
 // Checks the features of the packs. Errors: those of loadMaterialModel(), of compiling and of the device,
