@@ -287,6 +287,8 @@ struct FrameConstants {
     vec2 jitter;        // offset of the sample from the pixel centre, pixels in [-0.5, 0.5)
     float pixelWidth;   // width of that cone at the camera, metres; 0 for perspective
     float sampleLodBias;  // of levels that derivatives of the screen choose: log2 of that cone's share of the pixel
+    float lengthUnit;   // metres: a power of two, in which packed records count the widths of cones
+    float perLengthUnit;  // 1 / lengthUnit
     uint sampleIndex;   // 0 for the first sample of a pixel
     uint seed;
     uint averaged;  // samples in the mean that this one joins; 0: the picture starts with it
