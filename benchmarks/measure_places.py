@@ -83,7 +83,7 @@ def difference(arguments, folder):
     found = json.loads(compared.stdout)
     share = 100 * found["differing"] / found["pixels"]
     unreal = f", {found['nonFinite']} not finite" if found["nonFinite"] else ""
-    return f"{found['relative']['value']:.2g} ({share:.1f} %{unreal})"
+    return f"{found['maxRelative']['value']:.2g} ({share:.1f} %{unreal})"
 
 
 def decades(text):

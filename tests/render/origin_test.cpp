@@ -161,8 +161,7 @@ Difference differenceOf(const LinearImage& image, const LinearImage& reference) 
     for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
         double most = 0.0;
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double error =
-                std::abs(double{image.pixels[i][channel]} - reference.pixels[i][channel]);
+            const double error = std::abs(double{image.pixels[i][channel]} - reference.pixels[i][channel]);
             EXPECT_TRUE(std::isfinite(error));
             most = std::max(most, error / std::max(1.0F, reference.pixels[i][channel]));
         }

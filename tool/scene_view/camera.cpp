@@ -224,9 +224,8 @@ Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view) {
                 extend(own, base::toVector(point) - from);
             }
         }
-        const Bounds placed = own.empty() || !joints.empty()
-                                  ? own
-                                  : inWorld(transformedBox(own, instance.objectToWorld), view);
+        const Bounds placed =
+            own.empty() || !joints.empty() ? own : inWorld(transformedBox(own, instance.objectToWorld), view);
         bounds = isFiniteBox(placed) ? united(bounds, placed) : bounds;
     }
     return united(bounds, worldBounds(rigid));

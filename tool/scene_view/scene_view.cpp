@@ -183,8 +183,7 @@ gltf::Matrix4 translation(const glm::dvec3& by) {
 
 // Returns a transform into the world as one from a mesh with an origin into a scene with an origin.
 gltf::Matrix4 rebased(const gltf::Matrix4& world, const Place& mesh, const Place& scene) {
-    gltf::Matrix4 result =
-        mesh == Place{} ? world : gltf::multiply(world, translation(base::toVector(mesh)));
+    gltf::Matrix4 result = mesh == Place{} ? world : gltf::multiply(world, translation(base::toVector(mesh)));
     for (std::size_t axis = 0; axis < 3; ++axis) {
         result[12 + axis] -= scene[axis];
     }
@@ -241,8 +240,8 @@ std::vector<Placed> placedThings(const gltf::Scene& scene, const SceneViewData& 
 }
 
 // Returns the origin of a scene: 0, or a place among most of what the scene has if that is far from 0. A
-// thing that lies elsewhere, such as a lamp left at 0, does not count. The place is rounded to a grid, so that
-// it stays the same while a scene moves a little.
+// thing that lies elsewhere, such as a lamp left at 0, does not count. The place is rounded to a grid, so
+// that it stays the same while a scene moves a little.
 Place originOf(std::vector<Placed> things) {
     if (things.empty()) {
         return {};
@@ -386,7 +385,8 @@ void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
             instance.objectToWorld[0] = mirror;
             for (const gltf::Matrix4& joint :
                  jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])) {
-                std::array<float, 12>& rows = data.joints[i].emplace_back(toRows(rebased(joint, mesh, data.origin)));
+                std::array<float, 12>& rows =
+                    data.joints[i].emplace_back(toRows(rebased(joint, mesh, data.origin)));
                 std::transform(rows.begin(), rows.begin() + 4, rows.begin(),
                                [&](float element) { return mirror * element; });
             }

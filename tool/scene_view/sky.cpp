@@ -47,8 +47,7 @@ std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneVie
     // Skinned vertices are in the world already.
     const glm::dvec3 from = base::toVector(skinned ? view.origin : view.meshOrigins[instance.mesh]);
     for (glm::dvec3& position : positions) {
-        position =
-            skinned ? position - from : base::transformed(instance.objectToWorld, position - from);
+        position = skinned ? position - from : base::transformed(instance.objectToWorld, position - from);
     }
     return positions;
 }

@@ -166,7 +166,7 @@ constexpr std::span<const Named<OpacityUse>> namesOf(OpacityUse /*type*/) {
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
     std::span<const InstanceView> instances;    // relative to `origin`, as `lights` are
-    std::span<const ImageView> images;  // indexed by the package's TextureEntry::image
+    std::span<const ImageView> images;          // indexed by the package's TextureEntry::image
     std::span<const LightView> lights;
     std::uint32_t packageScene = 0;  // index of the scene in the package
     // Whether GpuScene::update() will move the scene. The resources for it are only made if so.

@@ -106,9 +106,8 @@ void moveToWorld(const std::array<double, 3>& origin, LayerValues& values) {
         if (std::ranges::all_of(place, [](float value) { return value == 0.0F; })) {
             continue;
         }
-        std::ranges::transform(place, origin, place.begin(), [](float value, double from) {
-            return static_cast<float>(from + value);
-        });
+        std::ranges::transform(place, origin, place.begin(),
+                               [](float value, double from) { return static_cast<float>(from + value); });
     }
 }
 

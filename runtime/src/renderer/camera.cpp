@@ -130,8 +130,8 @@ float sampleConeScale(std::uint32_t averagedSamples) {
     return 1.0F / std::sqrt(static_cast<float>(std::max(averagedSamples, 1U)));
 }
 
-void fillCamera(const CameraView& camera, const std::array<double, 3>& origin, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,
-                gpu::FrameConstants& constants) {
+void fillCamera(const CameraView& camera, const std::array<double, 3>& origin, std::uint32_t width,
+                std::uint32_t height, gpu::vec2 jitter, gpu::FrameConstants& constants) {
     const glm::vec3 position(camera.position[0] - origin[0], camera.position[1] - origin[1],
                              camera.position[2] - origin[2]);
     const glm::vec3 forward = toVector(camera.forward);

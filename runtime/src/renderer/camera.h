@@ -29,7 +29,7 @@ float sampleConeScale(std::uint32_t averagedSamples);
 // height pixels. The constants are relative to the scene's `origin` (SceneView::origin). The
 // ray of pixel (x, y) goes through the point p = (2 (x + 0.5 + jitter.x) / width - 1, 1 - 2 (y + 0.5 +
 // jitter.y) / height) of the view. Points that worldToClip takes to that pixel's centre lie on this ray.
-void fillCamera(const CameraView& camera, const std::array<double, 3>& origin, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,
-                gpu::FrameConstants& constants);
+void fillCamera(const CameraView& camera, const std::array<double, 3>& origin, std::uint32_t width,
+                std::uint32_t height, gpu::vec2 jitter, gpu::FrameConstants& constants);
 
 }  // namespace glint

@@ -198,7 +198,8 @@ TEST(SceneOrigin, FarNodesKeepTheirDigits) {
 TEST(SceneOrigin, FarVerticesAreRebasedExactly) {
     gltf::Scene scene = oneTriangle();
     gltf::Primitive& far = scene.meshes[0].primitives[0];
-    far.positions = {{1000000.5F, 0.25F, -8000000.0F}, {1000001.0F, 0.75F, -8000000.5F}, {1000000.0F, 1, -8e6F}};
+    far.positions = {
+        {1000000.5F, 0.25F, -8000000.0F}, {1000001.0F, 0.75F, -8000000.5F}, {1000000.0F, 1, -8e6F}};
     scene.nodes[0].world = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, -1000000, 8e6, 1};
     const SceneViewData data = makeSceneView(scene);
     EXPECT_NE(data.meshOrigins[0], Place{});

@@ -46,8 +46,8 @@ struct SceneViewData {
     // for nodes. They are added in double precision and then rebased: those of vertices by mesh, those of the
     // world by pose. Both origins are 0 where everything is close enough to 0. poseSceneView() is the border;
     // cameras and bounds stay in the world.
-    std::array<double, 3> origin{};                   // SceneView::origin, in the world
-    std::vector<std::array<double, 3>> meshOrigins;   // by mesh number, in the mesh's space in the file
+    std::array<double, 3> origin{};                    // SceneView::origin, in the world
+    std::vector<std::array<double, 3>> meshOrigins;    // by mesh number, in the mesh's space in the file
     std::vector<std::vector<gltf::Float3>> positions;  // of primitives whose mesh has an origin
     std::vector<Bounds> meshBoxes;                     // by mesh number, in the mesh's space in the file
     // By instance: what places it.
@@ -83,8 +83,8 @@ struct SceneViewData {
 // Returns every mesh that a node places, with the numbers of mesh and primitive that the Scene has.
 // Primitives without a triangle are left out, and so are instances of meshes that have no other, and nodes
 // that are never shown. Positions are in metres, lights in lux (directional) and candela (point and spot).
-// Copies no pixels, and positions only of meshes that are far from their own origin: `scene` must outlive the result. Its images must have been decoded, or
-// loadTextures() must read them, or the runtime refuses them.
+// Copies no pixels, and positions only of meshes that are far from their own origin: `scene` must outlive the
+// result. Its images must have been decoded, or loadTextures() must read them, or the runtime refuses them.
 SceneViewData makeSceneView(const gltf::Scene& scene);
 
 // Returns the layout of the package's material records. `model` is that of the materials which it was
@@ -95,8 +95,8 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
 // animations change needs this before it is uploaded.
 void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data);
 
-// Takes the pose of `scene`, from which `data` was made: its origin, instances, joints, weights, materials and
-// lights. Lights that were added after those of the scene stay; they must be directional.
+// Takes the pose of `scene`, from which `data` was made: its origin, instances, joints, weights, materials
+// and lights. Lights that were added after those of the scene stay; they must be directional.
 void poseSceneView(const gltf::Scene& scene, SceneViewData& data);
 
 // Returns three rows of four of a column-major matrix.
