@@ -116,8 +116,8 @@ gltf::Matrix4 worldOf(const gltf::Scene& scene, const gltf::Node& node, std::siz
 }
 
 // Places are rebased if they are this many times as far from 0 as they are apart. Nearer ones lose at most
-// 2^-20 of the scene's size to single precision, and keep the numbers that the file gives them.
-constexpr double kFar = 16.0;
+// 2^-17 of the scene's size to single precision, and keep the numbers that the file gives them.
+constexpr double kFar = 128.0;
 
 double largest(const glm::dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
@@ -204,7 +204,8 @@ Placed placedBox(const gltf::Matrix4& world, const Bounds& box) {
     return {base::transformed(world, centreOf(box)), largest(extent)};
 }
 
-// What the origin of a scene follows. Of many instances, some thousand are enough.
+// What the origin of a scene follows: what it draws, and the cameras of the file, which decide where there
+// are few things. Of many instances, some thousand are enough.
 std::vector<Placed> placedThings(const gltf::Scene& scene, const SceneViewData& data) {
     constexpr std::size_t kMostInstances = 4096;
     std::vector<Placed> things;
@@ -228,11 +229,6 @@ std::vector<Placed> placedThings(const gltf::Scene& scene, const SceneViewData& 
     for (const gltf::Camera& camera : scene.cameras) {
         things.push_back({{camera.world[12], camera.world[13], camera.world[14]}, 0.0});
     }
-    for (const gltf::Light& light : scene.lights) {
-        if (light.type != gltf::LightType::Directional) {
-            things.push_back({base::toVector(light.position), 0.0});
-        }
-    }
     std::erase_if(things, [](const Placed& thing) {
         return !std::isfinite(thing.radius) || !base::isFinite(base::toArray(thing.centre));
     });
@@ -246,16 +242,25 @@ Place originOf(std::vector<Placed> things) {
     if (things.empty()) {
         return {};
     }
+    const auto medianOf = [&](std::size_t number, const auto& value) {
+        const auto at = things.begin() + static_cast<std::ptrdiff_t>(number);
+        std::ranges::nth_element(things, at, {}, value);
+        return value(*at);
+    };
     glm::dvec3 middle{};
-    const auto upper = things.begin() + static_cast<std::ptrdiff_t>(things.size() / 2);
     for (glm::length_t axis = 0; axis < 3; ++axis) {
-        std::ranges::nth_element(things, upper, {}, [&](const Placed& thing) { return thing.centre[axis]; });
-        middle[axis] = upper->centre[axis];
+        middle[axis] =
+            medianOf(things.size() / 2, [axis](const Placed& thing) { return thing.centre[axis]; });
     }
-    const auto reach = [&](const Placed& thing) { return largest(thing.centre - middle) + thing.radius; };
-    const auto lower = things.begin() + static_cast<std::ptrdiff_t>((things.size() - 1) / 2);
-    std::ranges::nth_element(things, lower, {}, reach);
-    const double size = reach(*lower);
+    const std::size_t lower = (things.size() - 1) / 2;
+    double size =
+        medianOf(lower, [&](const Placed& thing) { return largest(thing.centre - middle) + thing.radius; });
+    // Cameras that are close to each other make no small scene.
+    std::erase_if(things, [](const Placed& thing) { return thing.radius == 0.0; });
+    if (!things.empty()) {
+        size = std::max(size,
+                        medianOf((things.size() - 1) / 2, [](const Placed& thing) { return thing.radius; }));
+    }
     if (!(size > 0.0) || !(largest(middle) > kFar * size)) {
         return {};
     }
