@@ -123,7 +123,7 @@ double largest(const glm::dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-glm::dvec3 centreOf(const Bounds& box) {
+glm::dvec3 middleOf(const Bounds& box) {
     return 0.5 * (base::toVector(box.min) + base::toVector(box.max));
 }
 
@@ -149,7 +149,7 @@ Bounds boxOf(const gltf::Mesh& mesh) {
 // two from that of the origin, or it is 0, so the differences are exact (Sterbenz 1974).
 Place originOf(const Bounds& box) {
     Place origin{};
-    const glm::dvec3 centre = centreOf(box);
+    const glm::dvec3 centre = middleOf(box);
     const glm::dvec3 half = halfOf(box);
     if (!std::isfinite(largest(half)) || !(largest(centre) > kFar * largest(half))) {
         return origin;
@@ -201,7 +201,7 @@ Placed placedBox(const gltf::Matrix4& world, const Bounds& box) {
     const glm::dvec3 half = halfOf(box);
     const glm::dvec3 extent =
         glm::abs(linear[0]) * half.x + glm::abs(linear[1]) * half.y + glm::abs(linear[2]) * half.z;
-    return {base::transformed(world, centreOf(box)), largest(extent)};
+    return {base::transformed(world, middleOf(box)), largest(extent)};
 }
 
 // What the origin of a scene follows: what it draws, and the cameras of the file, which decide where there
