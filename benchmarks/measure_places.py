@@ -5,7 +5,7 @@
 
 The room of some metres is moved by 10^A to 10^B times its unit, and scaled by 10^A to 10^B: intensities of lights with
 the square, all lengths with it. Prints a table in Markdown: the worst difference to the picture at the origin, relative
-to the larger of 1 and the value, and the share of pixels that differ by more than 1e-4. OPTION goes to `glint render`.
+to the larger of 1 and the value, and the root of the mean of squared differences. OPTION goes to `glint render`.
 """
 
 import argparse
@@ -81,9 +81,8 @@ def difference(arguments, folder):
     compared = subprocess.run([arguments.glint, "compare", folder / "moved.exr", folder / "origin.exr", "--json"],
                               check=True, capture_output=True, text=True)
     found = json.loads(compared.stdout)
-    share = 100 * found["differing"] / found["pixels"]
-    unreal = f", {found['nonFinite']} not finite" if found["nonFinite"] else ""
-    return f"{found['maxRelative']['value']:.2g} ({share:.1f} %{unreal})"
+    unreal = f" | {found['nonFinite']} pixels are not finite" if found["nonFinite"] else ""
+    return f"{found['maxRelative']['value']:.2g} | {found['rmse']:.2g}{unreal}"
 
 
 def decades(text):
@@ -100,7 +99,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         picture(arguments, folder, 1.0, 0.0, "origin.exr")
-        print("| | worst difference (pixels that differ) |\n|---|---|")
+        print("| | worst difference | RMSE |\n|---|---|---|")
         for kind, exponents in (("moved by", arguments.distances), ("scaled by", arguments.scales)):
             for exponent in exponents:
                 place = (1.0, 10.0**exponent) if kind == "moved by" else (10.0**exponent, 0.0)
