@@ -49,7 +49,7 @@ std::string nameOf(const Place& place) {
 
 // A tiled floor with a mirror and a lamp of triangles, under a spherical lamp and a spot with a range. All
 // lengths that a file may give are there.
-gltf::Scene room() {
+gltf::Scene tiledRoom() {
     gltf::Scene scene = emptyScene();
     materials::Material tiles;
     tiles["metallicFactor"] = 0.0F;
@@ -89,7 +89,7 @@ gltf::Scene room() {
     return scene;
 }
 
-constexpr double kLampRadius = 0.25;
+constexpr double kRoomLampRadius = 0.25;
 
 glm::dvec3 offsetOf(const Place& place) {
     return place.scale * place.distance * glm::dvec3(1.0, 0.125, -0.75);
@@ -123,13 +123,13 @@ gltf::Scene placed(const Place& place, gltf::Scene scene) {
     return scene;
 }
 
-void sizeLights(double scale, scene_view::SceneViewData& data) {
+void sizeRoomLamps(double scale, scene_view::SceneViewData& data) {
     for (LightView& light : data.lights) {
-        light.size = static_cast<float>(kLampRadius * scale);
+        light.size = static_cast<float>(kRoomLampRadius * scale);
     }
 }
 
-compiler::CompileSettings settings() {
+compiler::CompileSettings roomSettings() {
     compiler::CompileSettings settings;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.effects = {false, compiler::builtinEffects({"shadow", "reflection", "indirect-diffuse"})};
@@ -176,7 +176,7 @@ Difference differenceOf(const LinearImage& image, const LinearImage& reference) 
 class MovedRoom {
 public:
     MovedRoom(const LoadedScene& loaded, const Way& way)
-        : loaded_(&loaded), room_(room()), data_(scene_view::makeSceneView(room_)) {
+        : loaded_(&loaded), room_(tiledRoom()), data_(scene_view::makeSceneView(room_)) {
         RendererOptions options = optionsOf(way);
         options.width = kWidth;
         options.height = kHeight;
@@ -193,7 +193,7 @@ public:
     LinearImage at(const Place& place) {
         const gltf::Scene moved = placed(place, room_);
         scene_view::poseSceneView(moved, data_);
-        sizeLights(place.scale, data_);
+        sizeRoomLamps(place.scale, data_);
         const Status updated = loaded_->gpuScene().updateAndWait(data_.motion());
         EXPECT_TRUE(updated.ok()) << toString(updated.error());
         Result<LinearImage> image = renderer_->render(frameOf(moved), kSamples);
@@ -253,9 +253,9 @@ TEST(SceneOrigin, PictureIsTheSameAtEachPlaceAndScale) {
             note(rows, fmt::format("distance {:g}", place.distance), difference);
         }
     };
-    forEachWay(room(), settings(), visit, [](scene_view::SceneViewData& data) {
+    forEachWay(tiledRoom(), roomSettings(), visit, [](scene_view::SceneViewData& data) {
         data.moves = true;
-        sizeLights(1.0, data);
+        sizeRoomLamps(1.0, data);
     });
     for (const auto& [name, difference] : rows) {
         std::cout << fmt::format("{}: worst {:.2g}, {:.2f} % of pixels differ\n", name, difference.worst,
