@@ -214,7 +214,7 @@ private:
 };
 
 std::vector<Place> places() {
-    std::vector<Place> places{{1.0, 1e3}, {1.0, 1e6}, {1e-4, 0.0}, {1e5, 0.0}, {1e-4, 1e9}, {1e5, 1e6}};
+    std::vector<Place> places{{1.0, 1e3}, {1.0, 1e6}, {1e5, 0.0}, {1e-4, 1e9}};
     if (test::nightly()) {
         places.clear();
         for (int scale = -6; scale <= 6; ++scale) {
@@ -246,6 +246,7 @@ TEST(SceneOrigin, PictureIsTheSameAtEachPlaceAndScale) {
         ASSERT_TRUE(moved.ok());
         const LinearImage reference = moved.at({});
         ASSERT_FALSE(reference.pixels.empty());
+        EXPECT_GT(meanOf(reference), 0.05) << "there is light to compare";
         for (const Place& place : places()) {
             const Difference difference = differenceOf(moved.at(place), reference);
             EXPECT_LE(difference.share, kMostDifferent) << nameOf(place) << ": worst " << difference.worst;
