@@ -1,6 +1,7 @@
 // Tests scenes and environments whose upload is recorded into a command buffer of the host's, and their
 // compaction.
 #include "context/context_state.h"
+#include "interop/scene.h"
 #include "render/edited_scene.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
