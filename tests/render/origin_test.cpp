@@ -137,7 +137,7 @@ compiler::CompileSettings roomSettings() {
     settings.emissiveLights = compiler::EmissiveLights::On;
     settings.lightSamples = 2;
     settings.maxBounces = 2;
-    settings.sampleRecord = package::SampleRecord::Packed;  // has lengths in few bits
+    settings.sampleRecord = package::SampleRecordFormat::Packed;  // has lengths in few bits
     return settings;
 }
 
