@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures how far the picture of a room depends on where the room is and on how large it is.
 
-    benchmarks/measure_places.py GLINT [--distances A:B] [--scales A:B] [OPTION…]
+    benchmarks/places/measure.py GLINT [--distances A:B] [--scales A:B] [OPTION…]
 
 The room of some metres is moved by 10^A to 10^B times its unit, and scaled by 10^A to 10^B: intensities of lights with
 the square, all lengths with it. Prints a table in Markdown: the worst difference to the picture at the origin, relative
