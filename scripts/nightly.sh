@@ -17,10 +17,11 @@ Sets up, builds, and runs all parts, or those that are named:
             other tests of pictures with each strategy and each tracer, where scripts/test.sh
             gives each strategy one tracer; test_strategies_agree with every merge policy for
             every scene; test_half and test_library with the gallery; convergence with every kind
-            of light; the orderings with more numbers of buckets and other subgroup sizes; twice to
-            three times as many materials in test_furnace and test_sampling; a fault at every call
-            that writes; the runtime as a subdirectory of another project, built and run. All with
-            lavapipe's LLVM passes, which scripts/test.sh leaves out
+            of light; a scene at every decade of place and scale; the orderings with more numbers of
+            buckets and other subgroup sizes; twice to three times as many materials in
+            test_furnace and test_sampling; a fault at every call that writes; the runtime as a
+            subdirectory of another project, built and run. All with lavapipe's LLVM passes, which
+            scripts/test.sh leaves out
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes

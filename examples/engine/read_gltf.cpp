@@ -102,7 +102,12 @@ World readGltf(const std::string& file, Format format, float aspect) {
         fail(toString(camera.error()));
     }
     const glint::CameraView& view = camera->view;
-    world.camera = {view.position, view.forward, view.up, view.halfWidth, view.halfHeight, view.near};
+    // All that the engine has is relative to the origin that the scene got.
+    std::array<float, 3> place{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        place[i] = static_cast<float>(view.position[i] - data.origin[i]);
+    }
+    world.camera = {place, view.forward, view.up, view.halfWidth, view.halfHeight, view.near};
     return world;
 }
 

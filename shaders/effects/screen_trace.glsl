@@ -38,6 +38,11 @@ ScreenPoint screenPoint(ScreenRay ray, vec3 origin, vec3 direction, float share)
     return point;
 }
 
+// The depth of a pixel's surface along the camera's axis, metres; 0 if there is none.
+float seenDepth(ivec2 place) {
+    return imageLoad(radianceImage, place).w * GLINT_FRAME.lengthUnit;
+}
+
 vec3 normalOf(vec4 position) {
     return octahedralDecode(unpackSnorm2x16(floatBitsToUint(position.w)));
 }
@@ -46,7 +51,7 @@ vec3 normalOf(vec4 position) {
 // The depth is that of the pixel's centre, while the point may be anywhere in the pixel. By depth alone a ray would hit
 // the floor that it leaves.
 bool isHidden(ScreenPoint point, ivec2 place) {
-    float seen = imageLoad(radianceImage, place).w;
+    float seen = seenDepth(place);
     if (seen == 0.0 || point.depth < seen) {
         return false;
     }
@@ -82,7 +87,7 @@ ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, f
         }
     }
     ScreenPoint point = screenPoint(ray, origin, direction, hidden);
-    float seen = imageLoad(radianceImage, point.place).w;
+    float seen = seenDepth(point.place);
     bool thick = point.depth - seen <= GLINT_FRAME.screenThickness * seen;
     vec3 before = screenPoint(ray, origin, direction, max(free - pixel, 0.0)).position;
     vec4 surface = imageLoad(positionImage, point.place);

@@ -6,14 +6,14 @@
 // A shader ID that no case has.
 const uint kNoShader = 0xFFFFFFFFu;
 
-// Encodes a cone's width in eighths of a power of two, from 2^-20 metres as 1 to 2^11.6 as 254. The error is at most a
-// sixteenth of a mip level. 0 means no width.
+// Encodes a cone's width in eighths of a power of two, from 2^-20 of FrameConstants::lengthUnit as 1 to
+// 2^11.6 of it as 254. The error is at most a sixteenth of a mip level. 0 means no width.
 uint packConeWidth(float width) {
-    return width > 0.0 ? uint(clamp(round(8.0 * (log2(width) + 20.0)), 1.0, 254.0)) : 0u;
+    return width > 0.0 ? uint(clamp(round(8.0 * (log2(width * GLINT_FRAME.perLengthUnit) + 20.0)), 1.0, 254.0)) : 0u;
 }
 
 float unpackConeWidth(uint code) {
-    return code > 0u ? exp2(float(code) * 0.125 - 20.0) : 0.0;
+    return code > 0u ? exp2(float(code) * 0.125 - 20.0) * GLINT_FRAME.lengthUnit : 0.0;
 }
 
 #if GLINT_HITS_IN_SAMPLES

@@ -287,6 +287,8 @@ struct FrameConstants {
     vec2 jitter;        // offset of the sample from the pixel centre, pixels in [-0.5, 0.5)
     float pixelWidth;   // width of that cone at the camera, metres; 0 for perspective
     float sampleLodBias;  // of levels that derivatives of the screen choose: log2 of that cone's share of the pixel
+    float lengthUnit;   // metres: a power of two, in which lengths count that are kept in few bits
+    float perLengthUnit;  // 1 / lengthUnit
     uint sampleIndex;   // 0 for the first sample of a pixel
     uint seed;
     uint averaged;  // samples in the mean that this one joins; 0: the picture starts with it
@@ -418,7 +420,7 @@ GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
 GLINT_CONSTANT(kSetFrame, 1u);
 GLINT_CONSTANT(kBindingSurface, 0u);      // rg32ui: geometry, primitive; also a colour attachment
 GLINT_CONSTANT(kBindingRadiance, 1u);     // rgba32f: light that leaves the primary surface, without effects that have
-                                          // rays; distance along the camera's axis, 0 for none
+                                          // rays; distance along the camera's axis in units of lengthUnit, 0 for none
 GLINT_CONSTANT(kBindingAccumulated, 2u);  // rgba32f: mean over the samples so far, linear. The same image as before if
                                           // frames do not accumulate
 GLINT_CONSTANT(kBindingResidual, 3u);     // rgba32f: what rounding leaves out of that mean, if frames accumulate

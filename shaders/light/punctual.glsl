@@ -11,8 +11,9 @@ struct LightSample {
     uint gate;       // kRaySent, or why no light arrives: kRayRange, kRayCone
 };
 
-// The squared distance to a light is at least 1 mm², which bounds the irradiance on a surface that touches a light.
-const float kMinSquaredDistance = 1e-6;
+// The least squared distance to a light, in m². It is far below what a surface in any scene has from a light, and keeps
+// the irradiance on one that touches a light, and the importances of the hierarchy (kMaxIntensity), finite.
+const float kMinSquaredDistance = 1e-20;
 
 LightSample sampleLight(LightRecord light, vec3 position) {
     if (light.type == kLightDirectional) {

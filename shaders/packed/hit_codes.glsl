@@ -1,8 +1,10 @@
 // Parts of a hit in fewer bits, for packed records of samples.
+#include "hit/bindings.glsl"
+
 #if GLINT_SAMPLE_RECORD_PACKED
 
-// Encodes a length as a number of steps of its logarithm, `steps` of which make a factor of two, from 2^-20 metres as 1
-// to the largest code. 0 means no length.
+// Encodes a number as steps of its logarithm, `steps` of which make a factor of two, from 2^-20 as 1 to the largest
+// code. 0 stands for 0. Widths are encoded in units of FrameConstants::lengthUnit.
 uint encodeLog2(float value, float steps, uint most) {
     precise float code = (log2(value) + 20.0) * steps;
     return value > 0.0 ? uint(clamp(roundEven(code), 1.0, float(most))) : 0u;
@@ -11,6 +13,16 @@ uint encodeLog2(float value, float steps, uint most) {
 float decodeLog2(uint code, float steps) {
     precise float power = float(code) / steps - 20.0;
     return code > 0u ? exp2(power) : 0.0;
+}
+
+uint encodeWidth(float width, float steps, uint most) {
+    precise float units = width * GLINT_FRAME.perLengthUnit;
+    return encodeLog2(units, steps, most);
+}
+
+float decodeWidth(uint code, float steps) {
+    precise float width = decodeLog2(code, steps) * GLINT_FRAME.lengthUnit;
+    return width;
 }
 
 // The width of a cone at a hit: 11 bits, exact to 1/128 of a mip level.
@@ -37,7 +49,7 @@ vec2 keptBarycentrics(vec2 barycentrics) {
 }
 
 float keptConeWidth(float width) {
-    return decodeLog2(encodeLog2(width, kHitWidthSteps, kMostHitWidthCode), kHitWidthSteps);
+    return decodeWidth(encodeWidth(width, kHitWidthSteps, kMostHitWidthCode), kHitWidthSteps);
 }
 #endif
 

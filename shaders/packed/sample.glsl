@@ -92,7 +92,7 @@ const uint kMostSpreadCode = 0x3FFu;
 
 uint packedState(EffectSample drawn, DirectionCode direction) {
     return drawn.outcome | direction.low << 4 | (direction.high >> 27) << 8 |
-           encodeLog2(drawn.coneWidth, kWidthSteps, kMostWidthCode) << 13 |
+           encodeWidth(drawn.coneWidth, kWidthSteps, kMostWidthCode) << 13 |
            encodeLog2(drawn.coneSpread, kSpreadSteps, kMostSpreadCode) << 22;
 }
 
@@ -152,7 +152,7 @@ EffectSample packedSample(uint place) {
     drawn.origin = uintBitsToFloat(start.xyz);
     drawn.outcome = start.w & kPackedOutcomeMask;
     drawn.direction = packedDirection(start.w, aim.y);
-    drawn.coneWidth = decodeLog2(start.w >> 13 & kMostWidthCode, kWidthSteps);
+    drawn.coneWidth = decodeWidth(start.w >> 13 & kMostWidthCode, kWidthSteps);
     drawn.weight = decodeWeight(uvec2(aim.x, aim.y >> 27));
     drawn.coneSpread = decodeLog2(start.w >> 22, kSpreadSteps);
     return drawn;
@@ -172,7 +172,7 @@ void putLight(uint place, vec3 light, uint outcome, uint path) {
 
 void putHit(uint place, HitRecord hit) {
     uint state = GLINT_PACKED_STARTS.data[place].w;
-    uint width = encodeLog2(hit.coneWidth, kHitWidthSteps, kMostHitWidthCode);
+    uint width = encodeWidth(hit.coneWidth, kHitWidthSteps, kMostHitWidthCode);
     GLINT_PACKED_STARTS.data[place] =
         uvec4(hit.primitive, encodeBarycentric(hit.barycentricU) | width << 24,
               encodeBarycentric(hit.barycentricV) | (width >> 8) << 24 | (state >> 8) << 27,
@@ -191,7 +191,7 @@ HitRecord packedHit(uint place) {
     uint geometry = start.w >> 8;
     uint width = start.y >> 24 | (start.z >> 24 & 7u) << 8;
     return HitRecord(geometry >= kLitGeometry24 ? kMissGeometry : geometry, start.x, decodeBarycentric(start.y),
-                     decodeBarycentric(start.z), decodeLog2(width, kHitWidthSteps));
+                     decodeBarycentric(start.z), decodeWidth(width, kHitWidthSteps));
 }
 
 // Returns the direction of a ray whose hit is stored.

@@ -257,6 +257,7 @@ void main() {
                            direct);
 #endif
     }
+    radianceDepth.w *= GLINT_FRAME.perLengthUnit;
     imageStore(radianceImage, place, storable(radianceDepth));
 #if GLINT_STARTS_ON_SCREEN
     if (GLINT_FRAME.screenSteps != 0u) {

@@ -18,7 +18,8 @@ inline double squared(double x) {
     return x * x;
 }
 
-inline Vec3 toVec(const std::array<float, 3>& v) {
+template <typename Number>
+Vec3 toVec(const std::array<Number, 3>& v) {
     return {v[0], v[1], v[2]};
 }
 

@@ -157,6 +157,32 @@ TEST(LayerMotion, FollowsSkins) {
                 [](gltf::Scene& scene) { scene.nodes[3].world = placed(0.1, 0.25, -2.4, 0.35); });
 }
 
+// A scene and its camera jump a thousand kilometres together. They have another origin there, and skins other
+// joints, but nothing moves in the picture. The host reads places in the world.
+TEST(LayerMotion, DoesNotContainThatOfTheOrigin) {
+    LayeredScene scene(painted(skinnedScene(0.1)), withMotion(), kWidth, kHeight);
+    ASSERT_TRUE(scene.ok());
+    const Frame near = draw(scene);
+    for (gltf::Node& node : scene.scene.nodes) {
+        node.world[12] += 1e6;
+    }
+    scene.scene.cameras[0].world[12] += 1e6;
+    const Frame far = draw(scene);
+    expectSameImage(far.image, near.image, "far away");
+    std::size_t surfaces = 0;
+    for (std::size_t i = 0; i < far.image.pixels.size(); ++i) {
+        EXPECT_NEAR(far.layers.at("motion", i, 0), 0.0F, 1e-3F);
+        EXPECT_NEAR(far.layers.at("motion", i, 1), 0.0F, 1e-3F);
+        if (far.layers.at("depth", i, 0) > 0.0F) {
+            ++surfaces;
+            // Floats near a million have steps of 1/16.
+            EXPECT_NEAR(far.layers.at("position", i, 0) - 1e6, near.layers.at("position", i, 0), 0.04);
+            EXPECT_NEAR(far.layers.at("position", i, 1), near.layers.at("position", i, 1), 1e-4);
+        }
+    }
+    EXPECT_GT(surfaces, 100U);
+}
+
 TEST(LayerMotion, FollowsMorphTargets) {
     checkMotion(morphedScene({0.1, 0.2}), "morph targets", [](gltf::Scene& scene) {
         scene.nodes[1].weights = {0.5, 0.6};

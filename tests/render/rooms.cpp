@@ -42,7 +42,7 @@ void addWall(gltf::Scene& scene, const materials::Material& material, gltf::Floa
 void addLamp(gltf::Scene& scene, gltf::Float3 position, gltf::Float3 color, float candela) {
     gltf::Light lamp;
     lamp.type = gltf::LightType::Point;
-    lamp.position = position;
+    lamp.position = {position[0], position[1], position[2]};
     lamp.color = color;
     lamp.intensity = candela;
     scene.lights.push_back(lamp);

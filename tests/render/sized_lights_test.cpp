@@ -88,7 +88,7 @@ void addLamp(gltf::Scene& scene, gltf::Float3 position, float candela) {
     gltf::Light lamp;
     lamp.type = gltf::LightType::Point;
     lamp.intensity = candela;
-    lamp.position = position;
+    lamp.position = {position[0], position[1], position[2]};
     scene.lights.push_back(lamp);
 }
 

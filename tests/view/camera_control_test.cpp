@@ -50,6 +50,26 @@ TEST(CameraControl, OrbitKeepsTargetAndDistance) {
     EXPECT_GT(camera.view(1.0).up[1], 0.0F);
 }
 
+// A place far from the world's origin has as many digits behind the point as one that is close.
+TEST(CameraControl, IsAsExactFarAway) {
+    CameraView view;
+    view.position = {2e8 + 0.0625, 1, 0};
+    view.forward = {0, 0, -1};
+    CameraControl camera;
+    camera.start(view, "Front", 4.0);
+    camera.look(0.0, 0.0);
+    EXPECT_NEAR(camera.placed().position[0], 2e8 + 0.0625, 1e-5);
+    EXPECT_NEAR(distanceOf(camera.placed()), 4.0, 1e-4);
+    const auto parsed = parsePlacedCamera(camera.name());
+    ASSERT_TRUE(parsed.has_value());
+    EXPECT_EQ(parsed->position, camera.placed().position);
+    // And in a scene of micrometres.
+    CameraControl small = startAt(1e-6F, 0, 3e-6F, 3e-6);
+    small.look(0.0, 0.0);
+    EXPECT_NEAR(small.placed().position[2], 3e-6, 1e-11);
+    EXPECT_NEAR(distanceOf(small.placed()), 3e-6, 1e-11);
+}
+
 TEST(CameraControl, LookKeepsThePosition) {
     CameraControl camera = startAt(1, 2, 3, 4.0);
     camera.look(0.25, 0.1);

@@ -117,7 +117,7 @@ struct Light {
     float range = 0.0F;              // metres; 0 means unlimited
     float innerConeAngle = 0.0F;     // radians
     float outerConeAngle = 0.7853982F;
-    Float3 position{};
+    std::array<double, 3> position{};     // in the world
     Float3 direction{0.0F, 0.0F, -1.0F};  // unit, the way the light travels
     int source = -1;                      // its number in the file
     bool shown = true;                    // its node is shown in the current pose

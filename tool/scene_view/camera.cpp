@@ -158,6 +158,17 @@ bool Bounds::empty() const {
     return min[0] > max[0] || min[1] > max[1] || min[2] > max[2];
 }
 
+namespace {
+
+// Returns a box that is relative to the scene's origin as one in the world.
+Bounds inWorld(const Bounds& box, const SceneViewData& scene) {
+    return box.empty() ? box
+                       : Bounds{base::toArray(base::toVector(box.min) + base::toVector(scene.origin)),
+                                base::toArray(base::toVector(box.max) + base::toVector(scene.origin))};
+}
+
+}  // namespace
+
 Bounds worldBounds(const SceneViewData& scene) {
     const std::vector<Bounds> meshes = meshBounds(scene);
     Bounds bounds = kNothing;
@@ -172,7 +183,7 @@ Bounds worldBounds(const SceneViewData& scene) {
             extend(bounds, base::toVector(placed.max));
         }
     }
-    return bounds;
+    return inWorld(bounds, scene);
 }
 
 Bounds united(const Bounds& a, const Bounds& b) {
@@ -189,6 +200,7 @@ Bounds united(const Bounds& a, const Bounds& b) {
 Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view) {
     SceneViewData rigid;
     rigid.primitives = view.primitives;
+    rigid.origin = view.origin;
     Bounds bounds = kNothing;
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
         const InstanceView& instance = view.instances[i];
@@ -203,15 +215,17 @@ Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view) {
         const std::vector<gltf::Matrix4> joints =
             instance.joints.empty() ? std::vector<gltf::Matrix4>()
                                     : jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
+        // Skinned vertices are already in world space. Others are relative to their mesh's origin.
+        const glm::dvec3 from =
+            joints.empty() ? base::toVector(view.meshOrigins[instance.mesh]) : glm::dvec3(0.0);
         Bounds own = kNothing;
         for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
             for (const std::array<double, 3>& point : deformedPositions(primitive, node.weights, joints)) {
-                extend(own, base::toVector(point));
+                extend(own, base::toVector(point) - from);
             }
         }
-        // Skinned vertices are already in world space.
         const Bounds placed =
-            own.empty() || !joints.empty() ? own : transformedBox(own, instance.objectToWorld);
+            own.empty() || !joints.empty() ? own : inWorld(transformedBox(own, instance.objectToWorld), view);
         bounds = isFiniteBox(placed) ? united(bounds, placed) : bounds;
     }
     return united(bounds, worldBounds(rigid));
@@ -239,7 +253,7 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
 
     CameraView view;
     view.position =
-        base::toFloat3(centre + backward * distance + (right * across.offset + up * upright.offset));
+        base::toArray(centre + backward * distance + (right * across.offset + up * upright.offset));
     view.forward = base::toFloat3(-backward);
     view.up = base::toFloat3(up);
     view.halfHeight = static_cast<float>(kHalfHeight);
@@ -262,7 +276,7 @@ Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, doub
                          "give it another scale, or use --camera auto");
     }
     CameraView view;
-    view.position = base::toFloat3({m[12], m[13], m[14]});
+    view.position = {m[12], m[13], m[14]};
     view.forward = base::toFloat3(*forward);
     view.up = base::toFloat3(*up);
     view.orthographic = camera.orthographic;
@@ -275,12 +289,13 @@ Result<CameraView> sceneCamera(const gltf::Scene& scene, std::size_t index, doub
 }
 
 std::optional<PlacedCamera> parsePlacedCamera(std::string_view text) {
+    constexpr double kMostCoordinate = 1e15;  // where a double still tells decimetres apart
     std::vector<double> numbers;
     std::string separators;
     for (const char *at = text.data(), *const end = at + text.size(); at <= end;) {
         double number = 0.0;
         const auto parsed = std::from_chars(at, end, number);
-        if (parsed.ec != std::errc() || !(std::abs(number) < 1e9)) {
+        if (parsed.ec != std::errc() || !(std::abs(number) < kMostCoordinate)) {
             return std::nullopt;
         }
         numbers.push_back(number);
@@ -313,7 +328,7 @@ CameraView viewOf(const PlacedCamera& camera, double aspect) {
     const glm::dvec3 right = glm::normalize(glm::cross(forward, glm::dvec3{0.0, 1.0, 0.0}));
     const double halfHeight = std::tan(camera.degrees * std::numbers::pi / 360.0);
     CameraView view;
-    view.position = base::toFloat3(position);
+    view.position = camera.position;
     view.forward = base::toFloat3(forward);
     view.up = base::toFloat3(glm::cross(right, forward));
     view.halfHeight = static_cast<float>(halfHeight);

@@ -98,7 +98,7 @@ void placeCamera(const gltf::Matrix4& world, gltf::Camera& camera) {
 }
 
 void placeLight(const gltf::Matrix4& world, gltf::Light& light) {
-    light.position = base::toFloat3({world[12], world[13], world[14]});
+    light.position = {world[12], world[13], world[14]};
     if (light.type == gltf::LightType::Point) {
         return;
     }

@@ -6,12 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace glint::scene_view {
 
 namespace {
 
-LightView toView(const gltf::Light& light) {
+using Place = std::array<double, 3>;
+
+LightView toView(const gltf::Light& light, const Place& origin) {
     LightView view;
     switch (light.type) {
         case gltf::LightType::Directional:
@@ -27,7 +30,7 @@ LightView toView(const gltf::Light& light) {
     for (std::size_t i = 0; i < 3; ++i) {
         view.intensity[i] = light.shown ? light.color[i] * light.intensity : 0.0F;
     }
-    view.position = light.position;
+    view.position = base::toFloat3(base::toVector(light.position) - base::toVector(origin));
     view.direction = light.direction;
     view.range = light.range;
     view.innerConeAngle = light.innerConeAngle;
@@ -112,6 +115,159 @@ gltf::Matrix4 worldOf(const gltf::Scene& scene, const gltf::Node& node, std::siz
     return gltf::multiply(node.world, gltf::instanceTransform(instancing, placement));
 }
 
+// Places are rebased if they are this many times as far from 0 as they are apart. Nearer ones lose at most
+// 2^-17 of the scene's size to single precision, and keep the numbers that the file gives them.
+constexpr double kFar = 128.0;
+
+double largest(const glm::dvec3& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
+glm::dvec3 middleOf(const Bounds& box) {
+    return 0.5 * (base::toVector(box.min) + base::toVector(box.max));
+}
+
+glm::dvec3 halfOf(const Bounds& box) {
+    return 0.5 * (base::toVector(box.max) - base::toVector(box.min));
+}
+
+// Returns the box of a mesh in its own space, as the file gives it.
+Bounds boxOf(const gltf::Mesh& mesh) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    glm::dvec3 lower(kInfinity);
+    glm::dvec3 upper(-kInfinity);
+    for (const gltf::Primitive& primitive : mesh.primitives) {
+        for (const gltf::Float3& position : primitive.positions) {
+            lower = glm::min(lower, base::toVector(position));
+            upper = glm::max(upper, base::toVector(position));
+        }
+    }
+    return {base::toArray(lower), base::toArray(upper)};
+}
+
+// Returns the origin that positions of a mesh get. The coordinates of an axis differ by less than a factor of
+// two from that of the origin, or it is 0, so the differences are exact (Sterbenz 1974).
+Place originOf(const Bounds& box) {
+    Place origin{};
+    const glm::dvec3 centre = middleOf(box);
+    const glm::dvec3 half = halfOf(box);
+    if (!std::isfinite(largest(half)) || !(largest(centre) > kFar * largest(half))) {
+        return origin;
+    }
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        if (std::abs(centre[axis]) > 3.0 * half[axis]) {
+            origin[static_cast<std::size_t>(axis)] = static_cast<float>(centre[axis]);
+        }
+    }
+    return origin;
+}
+
+// Adds the positions of a mesh's primitives from its origin on, if it has one.
+void rebase(const gltf::Primitive& primitive, const Place& origin, SceneViewData& data, PrimitiveView& view) {
+    if (origin == Place{}) {
+        return;
+    }
+    std::vector<gltf::Float3>& positions = data.positions.emplace_back();
+    positions.reserve(primitive.positions.size());
+    for (const gltf::Float3& position : primitive.positions) {
+        positions.push_back(base::toFloat3(base::toVector(position) - base::toVector(origin)));
+    }
+    view.positions = positions;
+}
+
+gltf::Matrix4 translation(const glm::dvec3& by) {
+    gltf::Matrix4 matrix = gltf::identity();
+    std::copy_n(glm::value_ptr(by), 3, matrix.begin() + 12);
+    return matrix;
+}
+
+// Returns a transform into the world as one from a mesh with an origin into a scene with an origin.
+gltf::Matrix4 rebased(const gltf::Matrix4& world, const Place& mesh, const Place& scene) {
+    gltf::Matrix4 result = mesh == Place{} ? world : gltf::multiply(world, translation(base::toVector(mesh)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        result[12 + axis] -= scene[axis];
+    }
+    return result;
+}
+
+// Something that is placed in the world: the middle of its box, and half of the box's longest side.
+struct Placed {
+    glm::dvec3 centre{};
+    double radius = 0.0;
+};
+
+Placed placedBox(const gltf::Matrix4& world, const Bounds& box) {
+    const glm::dmat3 linear(base::toMatrix(world));
+    const glm::dvec3 half = halfOf(box);
+    const glm::dvec3 extent =
+        glm::abs(linear[0]) * half.x + glm::abs(linear[1]) * half.y + glm::abs(linear[2]) * half.z;
+    return {base::transformed(world, middleOf(box)), largest(extent)};
+}
+
+// What the origin of a scene follows: what it draws, and the cameras of the file, which decide where there
+// are few things. Of many instances, some thousand are enough.
+std::vector<Placed> placedThings(const gltf::Scene& scene, const SceneViewData& data) {
+    constexpr std::size_t kMostInstances = 4096;
+    std::vector<Placed> things;
+    const std::size_t step = data.instances.size() / kMostInstances + 1;
+    for (std::size_t i = 0; i < data.instances.size(); i += step) {
+        const gltf::Node& node = scene.nodes[data.sources[i].node];
+        const Bounds& box = data.meshBoxes[data.instances[i].mesh];
+        Placed thing = placedBox(worldOf(scene, node, data.sources[i].placement), box);
+        if (isSkinned(scene, node)) {
+            // Joints place the vertices. Their mean is close enough.
+            const gltf::Skin& skin = scene.skins[static_cast<std::size_t>(node.skin)];
+            thing = {};
+            for (const gltf::Matrix4& joint : jointMatrices(scene, skin)) {
+                const Placed part = placedBox(joint, box);
+                thing.centre += part.centre / static_cast<double>(skin.joints.size());
+                thing.radius = std::max(thing.radius, part.radius);
+            }
+        }
+        things.push_back(thing);
+    }
+    for (const gltf::Camera& camera : scene.cameras) {
+        things.push_back({{camera.world[12], camera.world[13], camera.world[14]}, 0.0});
+    }
+    std::erase_if(things, [](const Placed& thing) {
+        return !std::isfinite(thing.radius) || !base::isFinite(base::toArray(thing.centre));
+    });
+    return things;
+}
+
+// Returns the origin of a scene: 0, or a place among most of what the scene has if that is far from 0. A
+// thing that lies elsewhere, such as a lamp left at 0, does not count. The place is rounded to a grid, so
+// that it stays the same while a scene moves a little.
+Place originOf(std::vector<Placed> things) {
+    if (things.empty()) {
+        return {};
+    }
+    const auto medianOf = [&](std::size_t number, const auto& value) {
+        const auto at = things.begin() + static_cast<std::ptrdiff_t>(number);
+        std::ranges::nth_element(things, at, {}, value);
+        return value(*at);
+    };
+    glm::dvec3 middle{};
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+        middle[axis] =
+            medianOf(things.size() / 2, [axis](const Placed& thing) { return thing.centre[axis]; });
+    }
+    const std::size_t lower = (things.size() - 1) / 2;
+    double size =
+        medianOf(lower, [&](const Placed& thing) { return largest(thing.centre - middle) + thing.radius; });
+    // Cameras that are close to each other make no small scene.
+    std::erase_if(things, [](const Placed& thing) { return thing.radius == 0.0; });
+    if (!things.empty()) {
+        size = std::max(size,
+                        medianOf((things.size() - 1) / 2, [](const Placed& thing) { return thing.radius; }));
+    }
+    if (!(size > 0.0) || !(largest(middle) > kFar * size)) {
+        return {};
+    }
+    const double grid = std::exp2(std::floor(std::log2(2.0 * size)));
+    return base::toArray(glm::round(middle / grid) * grid);
+}
+
 void poseMaterials(const gltf::Scene& scene, SceneViewData& data) {
     if (data.materialLayout.fields.empty()) {
         return;
@@ -144,12 +300,14 @@ void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData
 }
 
 SceneView SceneViewData::view() const {
-    return {primitives, instances, images,         lights,   packageScene,
-            moves,      materials, traversalOrder, vertices, opacity};
+    SceneView view{primitives, instances, images,         lights,   packageScene,
+                   moves,      materials, traversalOrder, vertices, opacity};
+    view.origin = origin;
+    return view;
 }
 
 MotionView SceneViewData::motion() const {
-    return {instances, lights, MotionView::Builds::ByRule, materials};
+    return {instances, lights, MotionView::Builds::ByRule, materials, origin};
 }
 
 std::array<float, 12> toRows(const gltf::Matrix4& matrix) {
@@ -163,11 +321,18 @@ SceneViewData makeSceneView(const gltf::Scene& scene) {
     SceneViewData data;
     const std::vector<bool> placed = placedMeshes(scene);
     std::vector<bool> visible(scene.meshes.size(), false);
+    data.meshBoxes.resize(scene.meshes.size());
+    data.meshOrigins.resize(scene.meshes.size());
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        if (placed[mesh]) {
+            data.meshBoxes[mesh] = boxOf(scene.meshes[mesh]);
+            data.meshOrigins[mesh] = originOf(data.meshBoxes[mesh]);
+        }
         const std::vector<gltf::Primitive>& primitives = scene.meshes[mesh].primitives;
         for (std::size_t index = 0; placed[mesh] && index < primitives.size(); ++index) {
             if (hasTriangles(primitives[index])) {
                 data.primitives.push_back(toView(primitives[index], mesh, index));
+                rebase(primitives[index], data.meshOrigins[mesh], data, data.primitives.back());
                 data.primitives.back().targets =
                     data.targets.emplace_back(toViews(primitives[index].targets));
                 data.primitives.back().attributes =
@@ -206,6 +371,7 @@ SceneViewData makeSceneView(const gltf::Scene& scene) {
 }
 
 void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
+    data.origin = originOf(placedThings(scene, data));
     for (std::size_t i = 0; i < data.instances.size(); ++i) {
         const gltf::Node& node = scene.nodes[data.sources[i].node];
         InstanceView& instance = data.instances[i];
@@ -214,15 +380,18 @@ void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
         // Only the sign of its transform's determinant counts, because it decides which side of a triangle is
         // the front (section 3.7.4). If it is negative, the instance mirrors X, and so do its joints before
         // that.
+        const Place& mesh = data.meshOrigins[instance.mesh];
         const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
         instance.objectToWorld =
-            skinned ? InstanceView{}.objectToWorld : toRows(worldOf(scene, node, data.sources[i].placement));
+            skinned ? InstanceView{}.objectToWorld
+                    : toRows(rebased(worldOf(scene, node, data.sources[i].placement), mesh, data.origin));
         data.joints[i].clear();
         if (skinned) {
             instance.objectToWorld[0] = mirror;
             for (const gltf::Matrix4& joint :
                  jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])) {
-                std::array<float, 12>& rows = data.joints[i].emplace_back(toRows(joint));
+                std::array<float, 12>& rows =
+                    data.joints[i].emplace_back(toRows(rebased(joint, mesh, data.origin)));
                 std::transform(rows.begin(), rows.begin() + 4, rows.begin(),
                                [&](float element) { return mirror * element; });
             }
@@ -233,7 +402,7 @@ void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
     }
     poseMaterials(scene, data);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        data.lights[i] = toView(scene.lights[i]);
+        data.lights[i] = toView(scene.lights[i], data.origin);
     }
 }
 

@@ -25,9 +25,10 @@ double handedness(const std::array<float, 12>& rows) {
     return glm::dot(glm::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
 }
 
-// Returns the positions of a primitive of an instance in world space.
-std::vector<glm::dvec3> worldPositions(const gltf::Scene& scene, const gltf::Node& node,
-                                       const InstanceView& instance, const gltf::Primitive& primitive) {
+// Returns the positions of a primitive of an instance relative to the scene's origin, as lights are.
+std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneViewData& view,
+                                        const gltf::Node& node, const InstanceView& instance,
+                                        const gltf::Primitive& primitive) {
     std::vector<glm::dvec3> positions;
     const bool skinned = !instance.joints.empty();
     if (compiler::isDeformed(scene, node)) {
@@ -44,8 +45,9 @@ std::vector<glm::dvec3> worldPositions(const gltf::Scene& scene, const gltf::Nod
         }
     }
     // Skinned vertices are in the world already.
+    const glm::dvec3 from = base::toVector(skinned ? view.origin : view.meshOrigins[instance.mesh]);
     for (glm::dvec3& position : positions) {
-        position = skinned ? position : base::transformed(instance.objectToWorld, position);
+        position = skinned ? position - from : base::transformed(instance.objectToWorld, position - from);
     }
     return positions;
 }
@@ -67,7 +69,7 @@ void visitTriangles(const gltf::Scene& scene, const SceneViewData& view,
         const gltf::Node& node = scene.nodes[view.sources[i].node];
         const bool mirrored = handedness(instance.objectToWorld) < 0.0;
         for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            const std::vector<glm::dvec3> positions = worldPositions(scene, node, instance, primitive);
+            const std::vector<glm::dvec3> positions = placedPositions(scene, view, node, instance, primitive);
             for (std::size_t first = 0; first + 2 < primitive.indices.size(); first += 3) {
                 Corners corners{positions[primitive.indices[first]], positions[primitive.indices[first + 1]],
                                 positions[primitive.indices[first + 2]]};
@@ -169,7 +171,7 @@ double illuminanceAt(const LightView& light, const SurfacePoint& point) {
     if (light.type == LightView::Type::Directional) {
         return intensity * std::max(-glm::dot(way, normal), 0.0);
     }
-    constexpr double kLeastSquaredDistance = 1e-6;
+    constexpr double kLeastSquaredDistance = 1e-20;  // as in shaders/light/punctual.glsl
     const glm::dvec3 toLight = base::toVector(light.position) - base::toVector(point.position);
     const double squared = glm::dot(toLight, toLight);
     if (!(squared > 0.0)) {

@@ -12,7 +12,7 @@ namespace glint::view {
 namespace {
 
 constexpr double kMostPitch = 0.4999 * std::numbers::pi;  // straight up and down have no right side
-constexpr double kLeastDistance = 1e-4;                   // metres
+constexpr double kLeastDistance = 1e-12;                  // metres; keeps the target apart from the camera
 
 glm::dvec3 directionOf(double yaw, double pitch) {
     return {-std::sin(yaw) * std::cos(pitch), std::sin(pitch), -std::cos(yaw) * std::cos(pitch)};
@@ -28,7 +28,7 @@ void CameraControl::start(const CameraView& view, std::string name, double dista
     start_ = view;
     name_ = std::move(name);
     moved_ = false;
-    position_ = base::toArray(base::toVector(view.position));
+    position_ = view.position;
     const glm::dvec3 forward = base::toVector(view.forward);
     yaw_ = std::atan2(-forward.x, -forward.z);
     pitch_ = std::clamp(std::asin(std::clamp(forward.y, -1.0, 1.0)), -kMostPitch, kMostPitch);
@@ -92,15 +92,12 @@ CameraView CameraControl::view(double aspect) const {
 }
 
 scene_view::PlacedCamera CameraControl::placed() const {
-    // A user reads and copies these numbers, so they are no longer than floats need.
-    const auto rounded = [](const glm::dvec3& place) {
-        std::array<double, 3> result{};
-        for (glm::length_t i = 0; i < 3; ++i) {
-            const double unit = std::exp2(std::floor(std::log2(std::max(std::abs(place[i]), 1e-3))) - 20.0);
-            const double scale = std::pow(10.0, -std::floor(std::log10(unit)));
-            result[static_cast<std::size_t>(i)] = std::round(place[i] * scale) / scale;
-        }
-        return result;
+    // A user reads and copies these numbers, so they are no longer than the view needs: a millionth of the
+    // target's distance.
+    const double unit = std::exp2(std::floor(std::log2(distance_)) - 20.0);
+    const double scale = std::pow(10.0, -std::floor(std::log10(unit)));
+    const auto rounded = [&](const glm::dvec3& place) {
+        return base::toArray(glm::round(place * scale) / scale);
     };
     const glm::dvec3 position = base::toVector(position_);
     return {rounded(position), rounded(position + distance_ * directionOf(yaw_, pitch_)), degrees_};

@@ -92,19 +92,22 @@ public:
     static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
                                                        const EngineSceneView& scene);
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
-    // yet. The GpuScene must outlive it, and update() is GpuScene's. The host binds
-    // GpuScene::descriptorSet(). Error "scene-edit-share": the scene can be edited.
+    // yet. The GpuScene must outlive it, and update() is GpuScene's. Rays are relative to its
+    // SceneView::origin. The host binds GpuScene::descriptorSet(). Error "scene-edit-share": the scene can be
+    // edited.
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;
     EngineScene& operator=(const EngineScene&) = delete;
 
     // Records new transforms, as many as at creation, and new lights, at most as many. Motion is then
-    // measured from the previous transforms. The values are stored in the command buffer, so they need not be
-    // kept and any number of frames may be in flight. Errors: "engine-scene" (also for a shared scene),
-    // "scene-light".
+    // measured from the previous transforms. All places are relative to an origin of the engine's choice,
+    // which may follow its camera: `originMoved` says in metres how far it has moved since the previous
+    // transforms, which then count from the new one. The values are stored in the command buffer, so they
+    // need not be kept and any number of frames may be in flight. Errors: "engine-scene" (also for a shared
+    // scene), "scene-light".
     Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
-                  std::span<const LightView> lights);
+                  std::span<const LightView> lights, const std::array<double, 3>& originMoved = {});
 
     // The address of the material records, with the host's numbers of textures and samplers:
     // glintHostMaterials() of the library.

@@ -81,6 +81,9 @@ struct LayerInfo {
     LayerMean mean{};
     // Its value is computed from its own last value, too, where a picture is a mean.
     bool continues = false;
+    // It is a place: relative to SceneView::origin in the image, and in the world where the host reads it
+    // (Renderer::readLayer()).
+    bool isPlace = false;
     // It is for people who look for a problem. Words for several layers at once leave it out.
     bool isDiagnostic = false;
     // Another layer of the same subject that it is computed from; empty if there is none.

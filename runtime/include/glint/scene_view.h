@@ -1,5 +1,10 @@
 // A scene as the runtime takes it. Its spans refer to the caller's memory; upload reads them and does not
 // keep them.
+//
+// A scene has an origin: the point of the world from which places in single precision are counted. Transforms
+// of instances, joints and lights are relative to it, and all that shaders compute is, too. So a scene a
+// million metres away is as exact as one that is close. A camera has its place in the world, in double
+// precision. The difference of the two is all that a frame needs.
 #pragma once
 
 #include <glint/names.h>
@@ -160,8 +165,8 @@ constexpr std::span<const Named<OpacityUse>> namesOf(OpacityUse /*type*/) {
 
 struct SceneView {
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
-    std::span<const InstanceView> instances;
-    std::span<const ImageView> images;  // indexed by the package's TextureEntry::image
+    std::span<const InstanceView> instances;    // relative to `origin`, as `lights` are
+    std::span<const ImageView> images;          // indexed by the package's TextureEntry::image
     std::span<const LightView> lights;
     std::uint32_t packageScene = 0;  // index of the scene in the package
     // Whether GpuScene::update() will move the scene. The resources for it are only made if so.
@@ -189,6 +194,9 @@ struct SceneView {
     // images that SceneEditor gets.
     bool streamsTextures = false;
     std::uint32_t firstTexels = 64;
+    // The place in the world, in metres, where the scene's own coordinates are 0. It should be close to what
+    // is seen.
+    std::array<double, 3> origin{};
 };
 
 // A new pose of a scene. Instances, lights and materials have the same number and order as at upload. Each
@@ -205,6 +213,9 @@ struct MotionView {
     std::span<const LightView> lights;
     Builds builds = Builds::ByRule;
     std::span<const MaterialView> materials{};  // the materials of the upload, in their order
+    // As SceneView::origin, of these instances and lights. It may be another one in each pose. Instances that
+    // stay where they are in the world then have other transforms, so the top level is built anew.
+    std::array<double, 3> origin{};
 };
 inline constexpr Named<MotionView::Builds> kBuildsNames[] = {
     {MotionView::Builds::ByRule, "auto", "they are refitted, and rebuilt by rule"},
@@ -215,9 +226,10 @@ constexpr std::span<const Named<MotionView::Builds>> namesOf(MotionView::Builds 
     return kBuildsNames;
 }
 
-// The camera of a frame, in world space, right-handed.
+// The camera of a frame, in world space, right-handed. Its place is in the world's own coordinates, whichever
+// origin the scene has.
 struct CameraView {
-    std::array<float, 3> position{};
+    std::array<double, 3> position{};
     std::array<float, 3> forward{0, 0, -1};  // unit
     std::array<float, 3> up{0, 1, 0};        // unit, orthogonal to forward
     bool orthographic = false;

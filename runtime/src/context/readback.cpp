@@ -98,6 +98,19 @@ LayerValues toValues(std::span<const std::uint8_t> bytes, const package::LayerFo
     return values;
 }
 
+// Turns places that are relative to a scene's origin into places in the world. A pixel without a surface has
+// 0 and keeps it.
+void moveToWorld(const std::array<double, 3>& origin, LayerValues& values) {
+    for (std::size_t at = 0; at + 2 < values.reals.size(); at += values.components) {
+        const std::span<float, 3> place(values.reals.data() + at, 3);
+        if (std::ranges::all_of(place, [](float value) { return value == 0.0F; })) {
+            continue;
+        }
+        std::ranges::transform(place, origin, place.begin(),
+                               [](float value, double from) { return static_cast<float>(from + value); });
+    }
+}
+
 // The geometry of a pixel's surface, gpu::kNoSurface where there is none, and its triangle.
 using SurfaceIdentity = std::array<std::uint32_t, 2>;
 
@@ -189,7 +202,12 @@ Result<LayerValues> Renderer::readLayer(std::string_view name) {
     if (!bytes) {
         return bytes.error();
     }
-    return toValues(*bytes, format, {state_->size.width, state_->size.height, format.components, {}, {}});
+    LayerValues values =
+        toValues(*bytes, format, {state_->size.width, state_->size.height, format.components, {}, {}});
+    if (found->info->isPlace) {
+        moveToWorld(state_->scene.origin, values);
+    }
+    return values;
 }
 
 Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {

@@ -18,8 +18,8 @@ constexpr double kLightPi = std::numbers::pi;
 constexpr std::size_t kLightBins = 12;
 // Trees of fewer lights are built by one thread, because a thread costs more than it saves.
 constexpr std::size_t kLightsOfThread = 8192;
-// Keeps sums of importances finite on the device, where distances are at least 1 mm.
-constexpr double kMaxIntensity = 1e24;
+// Keeps sums of importances finite on the device, where squared distances are at least 1e-20 m².
+constexpr double kMaxIntensity = 1e16;
 // The bounds are rounded to float. A range grows by this factor, so that they stay bounds.
 constexpr double kReachSlack = 1.0 + 1e-5;
 

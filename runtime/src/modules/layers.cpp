@@ -32,6 +32,7 @@ constexpr LayerInfo kRows[] = {
      .subject = Subject::Surface,
      .format = Format::Float4,
      .channels = "XYZ",
+     .isPlace = true,
      .function = "primaryPosition",
      .absent = "vec4(0.0)"},
     {.number = 3,

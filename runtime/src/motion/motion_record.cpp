@@ -276,6 +276,7 @@ Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const Moti
     if (Status s = takeMaterials(view.materials, state.materialLayout, state.changing); !s) {
         return s;
     }
+    state.origin = view.origin;
     const bool changed = place(state, view.instances);
     std::vector<bool> deformed =
         motion.deformer ? motion.deformer->setPose(view.instances) : std::vector<bool>(view.instances.size());

@@ -40,6 +40,21 @@ bool isFinite(const glm::vec3& v) {
     return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v));
 }
 
+// The unit of the lengths that packed records keep as codes: see FrameConstants::lengthUnit. A pixel is about
+// a thousandth of its distance wide, and a scene seldom extends over more than a million times the distance
+// of the near plane. So for near planes from 1/1024 m to 64 m a metre serves. Others have a power of two that
+// keeps the narrowest cone at the near plane, or a scene that reaches as far beyond it.
+float lengthUnitOf(const CameraView& camera) {
+    constexpr float kLeastNear = 0x1p-10F;
+    constexpr float kMostNear = 0x1p6F;
+    if (!(camera.near > 0.0F) || (camera.near >= kLeastNear && camera.near <= kMostNear)) {
+        return 1.0F;
+    }
+    const float relative = camera.near / (camera.near < kLeastNear ? kLeastNear : kMostNear);
+    // Beyond these bounds a unit, or its inverse, would leave the range of floats with the codes.
+    return std::exp2(std::clamp(std::floor(std::log2(relative)), -80.0F, 80.0F));
+}
+
 // Returns the row of clip z, given the row of the distance along the view. z / w is 1 at the near plane and 0
 // at the far one.
 glm::vec4 depthRow(const CameraView& camera, const glm::vec4& distance) {
@@ -60,7 +75,8 @@ Status checkCamera(const CameraView& camera) {
     const char* hint = "see CameraView for what its members must be";
     const glm::vec3 forward = toVector(camera.forward);
     const glm::vec3 up = toVector(camera.up);
-    if (!isFinite(toVector(camera.position)) || !isFinite(forward) || !isFinite(up) ||
+    const auto isPlace = [](double value) { return std::isfinite(value); };
+    if (!std::ranges::all_of(camera.position, isPlace) || !isFinite(forward) || !isFinite(up) ||
         !std::isfinite(camera.halfWidth) || !std::isfinite(camera.halfHeight) ||
         !std::isfinite(camera.near) || !std::isfinite(camera.far)) {
         return makeError("camera", "", "the camera has a value that is not finite", hint);
@@ -114,9 +130,10 @@ float sampleConeScale(std::uint32_t averagedSamples) {
     return 1.0F / std::sqrt(static_cast<float>(std::max(averagedSamples, 1U)));
 }
 
-void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,
-                gpu::FrameConstants& constants) {
-    const glm::vec3 position = toVector(camera.position);
+void fillCamera(const CameraView& camera, const std::array<double, 3>& origin, std::uint32_t width,
+                std::uint32_t height, gpu::vec2 jitter, gpu::FrameConstants& constants) {
+    const glm::vec3 position(camera.position[0] - origin[0], camera.position[1] - origin[1],
+                             camera.position[2] - origin[2]);
     const glm::vec3 forward = toVector(camera.forward);
     const glm::vec3 up = toVector(camera.up);
     const glm::vec3 right = glm::cross(forward, up);
@@ -131,6 +148,8 @@ void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t hei
     constants.pixelSpread = camera.orthographic ? 0.0F : pixel;
     constants.pixelWidth = camera.orthographic ? pixel : 0.0F;
     constants.jitter = jitter;
+    constants.lengthUnit = lengthUnitOf(camera);
+    constants.perLengthUnit = 1.0F / constants.lengthUnit;
 
     const glm::vec4 distance = rowAlong(forward, position, 1.0F);
     const glm::vec4 w = camera.orthographic ? glm::vec4(0.0F, 0.0F, 0.0F, 1.0F) : distance;

@@ -6,6 +6,7 @@
 #include <glint/result.h>
 #include <glint/scene_view.h>
 
+#include <array>
 #include <cstdint>
 
 namespace glint {
@@ -24,10 +25,11 @@ gpu::vec2 sampleJitter(std::uint32_t sampleIndex, std::uint32_t seed = 0);
 // that is a bias of -0.5 log2(n). A number of 0 counts as 1.
 float sampleConeScale(std::uint32_t averagedSamples);
 
-// Fills worldToClip and the fields from position to pixelWidth, for an image of width x height pixels. The
+// Fills worldToClip, the fields from position to pixelWidth and the unit of lengths, for an image of width x
+// height pixels. The constants are relative to the scene's `origin` (SceneView::origin). The
 // ray of pixel (x, y) goes through the point p = (2 (x + 0.5 + jitter.x) / width - 1, 1 - 2 (y + 0.5 +
 // jitter.y) / height) of the view. Points that worldToClip takes to that pixel's centre lie on this ray.
-void fillCamera(const CameraView& camera, std::uint32_t width, std::uint32_t height, gpu::vec2 jitter,
-                gpu::FrameConstants& constants);
+void fillCamera(const CameraView& camera, const std::array<double, 3>& origin, std::uint32_t width,
+                std::uint32_t height, gpu::vec2 jitter, gpu::FrameConstants& constants);
 
 }  // namespace glint

@@ -87,7 +87,7 @@ Outside outsideOf(const FrameOptions& frame) {
 
 gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptions& options) {
     gpu::FrameConstants constants{};
-    fillCamera(options.camera, state.size.width, state.size.height,
+    fillCamera(options.camera, state.scene.origin, state.size.width, state.size.height,
                sampleJitter(options.sampleIndex, options.seed), constants);
     const float coneScale = sampleConeScale(options.averagedSamples);
     constants.pixelSpread *= coneScale;

@@ -428,6 +428,7 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
         return s.error();
     }
     auto state = std::make_unique<GpuScene::State>(contextState);
+    state->origin = scene.origin;
     state->upload = std::make_unique<SceneUpload>(contextState, mostStaged);
     SceneUpload& upload = *state->upload;
     upload.frame = frame;

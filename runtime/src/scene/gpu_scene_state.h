@@ -18,6 +18,7 @@
 #include <glint/scene_edit.h>
 #include <glint/texture_stream.h>
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -44,6 +45,7 @@ struct GpuScene::State {
     std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
     ScenePackage package;                    // that the scene is drawn with
+    std::array<double, 3> origin{};          // SceneView::origin, or that of the last MotionView
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives

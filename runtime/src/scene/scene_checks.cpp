@@ -293,7 +293,18 @@ Status checkScene(const Package& package, const PackageScene& known, const Scene
     if (Status status = checkDeformation(scene); !status) {
         return status;
     }
+    if (Status status = checkOrigin(scene.origin); !status) {
+        return status;
+    }
     return checkLights(scene.lights);
+}
+
+Status checkOrigin(const std::array<double, 3>& origin) {
+    if (!std::ranges::all_of(origin, [](double value) { return std::isfinite(value); })) {
+        return makeError("scene-origin", "", "the scene's origin is not finite",
+                         "give a place in metres, or leave it at 0");
+    }
+    return okStatus();
 }
 
 }  // namespace glint

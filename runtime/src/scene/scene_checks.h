@@ -7,6 +7,7 @@
 #include <glint/result.h>
 #include <glint/scene_view.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,7 +50,7 @@ struct MotionShape {
     std::span<const std::uint32_t> lightTypes;
 };
 
-// Pure. Errors: "scene-motion", "scene-light".
+// Pure. Errors: "scene-motion", "scene-light", "scene-origin".
 Status checkMotion(const MotionView& motion, const MotionShape& shape);
 
 // Checks the size, the format, the levels and the number of bytes of an image that is read as colour in sRGB
@@ -59,6 +60,9 @@ Status checkImage(const ImageView& image, bool srgb, const std::string& where, c
 // Checks the indices of a primitive, and that its attributes are as many as its positions. Errors:
 // "scene-attribute", "scene-index".
 Status checkGeometry(const PrimitiveView& view, const std::string& where);
+
+// Checks that SceneView::origin is finite. Error "scene-origin".
+Status checkOrigin(const std::array<double, 3>& origin);
 
 // Checks that every light is finite and of a known type. Error "scene-light".
 Status checkLights(std::span<const LightView> lights);

@@ -155,6 +155,9 @@ Status checkMotion(const MotionView& motion, const MotionShape& shape) {
                              "the light has another type than at upload", kGiveAll);
         }
     }
+    if (Status s = checkOrigin(motion.origin); !s) {
+        return s;
+    }
     return checkLights(motion.lights);
 }
 

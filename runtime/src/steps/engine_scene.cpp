@@ -108,6 +108,16 @@ Result<std::vector<gpu::InstanceRecord>> makeInstances(std::span<const Rows> ins
     return records;
 }
 
+// Returns transforms relative to an origin that has moved.
+std::vector<Rows> movedBack(std::vector<Rows> instances, const std::array<double, 3>& originMoved) {
+    for (Rows& rows : instances) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            rows[4 * axis + 3] = static_cast<float>(rows[4 * axis + 3] - originMoved[axis]);
+        }
+    }
+    return instances;
+}
+
 Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> lights) {
     if (Status status = checkLights(lights); !status) {
         return status.error();
@@ -243,7 +253,7 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
     if (Status status = findShaderIds(*geometries, scene.hitRecords, state->shaderIds); !status) {
         return status.error();
     }
-    state->instanceCount = instances->size();
+    state->placed.assign(scene.instances.begin(), scene.instances.end());
     state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights->size());
     state->recordsBy = scene.recordsBy;
     state->upload = std::make_unique<StagedCopies>(context.state());
@@ -298,15 +308,15 @@ EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)
 EngineScene::~EngineScene() = default;
 
 Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
-                           std::span<const LightView> lights) {
+                           std::span<const LightView> lights, const std::array<double, 3>& originMoved) {
     if (state_->shared) {
         return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
     }
-    if (instances.size() != state_->instanceCount || lights.size() > state_->lightCapacity) {
+    if (instances.size() != state_->placed.size() || lights.size() > state_->lightCapacity) {
         return makeError("engine-scene", "",
                          "there are " + std::to_string(instances.size()) + " instances and " +
                              std::to_string(lights.size()) + " lights, at creation there were " +
-                             std::to_string(state_->instanceCount) + " and " +
+                             std::to_string(state_->placed.size()) + " and " +
                              std::to_string(state_->lightCapacity),
                          "give as many instances, and no more lights");
     }
@@ -318,14 +328,22 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     if (!lightRecords) {
         return lightRecords.error();
     }
+    const bool staysPut = originMoved == std::array<double, 3>{};
+    Result<std::vector<gpu::InstanceRecord>> previous =
+        staysPut ? std::vector<gpu::InstanceRecord>() : makeInstances(movedBack(state_->placed, originMoved));
+    if (!previous) {
+        return previous.error();
+    }
+    state_->placed.assign(instances.begin(), instances.end());
     const Context::State& context = state_->context;
     recordDependency(context, commands, kAllToAll);
-    if (state_->instanceCount > 0) {
-        const VkBufferCopy whole{0, 0, state_->instanceCount * sizeof(gpu::InstanceRecord)};
+    if (staysPut && !instances.empty()) {
+        const VkBufferCopy whole{0, 0, instances.size() * sizeof(gpu::InstanceRecord)};
         context.vk.CmdCopyBuffer(commands, state_->instances.handle.get(),
                                  state_->previousInstances.handle.get(), 1, &whole);
         recordDependency(context, commands, kAllToAll);
     }
+    recordContents(*state_, commands, *previous, state_->previousInstances);
     recordContents(*state_, commands, *records, state_->instances);
     recordContents(*state_, commands, *lightRecords, state_->lights);
     recordDependency(context, commands, kAllToAll);

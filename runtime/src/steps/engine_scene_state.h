@@ -7,6 +7,7 @@
 
 #include <glint/engine_scene.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -37,7 +38,7 @@ struct EngineScene::State {
     };
     Addresses addresses;
     bool shared = false;
-    std::size_t instanceCount = 0;
+    std::vector<std::array<float, 12>> placed;  // the transforms of the instances
     std::uint32_t lightCount = 0;
     std::uint32_t lightCapacity = 0;
     RecordsBy recordsBy = RecordsBy::CustomIndex;

@@ -161,6 +161,7 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.effects = state.size.effects.all;
     constants.lightCount = state.scene.lightCount;
     constants.maxSampleRadiance = std::numeric_limits<float>::infinity();
+    constants.lengthUnit = constants.perLengthUnit = 1.0F;
     fillOutside(outsideOf(batch), constants);
     constants.geometries = state.scene.addresses.geometries;
     constants.instances = state.scene.addresses.instances;

@@ -223,7 +223,8 @@ std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
 LinearImage Device::picture(const Vec3& center, const Vec3& direction, float halfWidth, FrameOptions frame,
                             std::uint32_t samples) {
     const glm::dmat3 camera = oracle::frameAbout(direction);
-    frame.camera.position = toFloats(center + 2.0 * camera[2]);
+    const Vec3 eye = center + 2.0 * camera[2];
+    frame.camera.position = {eye.x, eye.y, eye.z};
     frame.camera.forward = toFloats(-camera[2]);
     frame.camera.up = toFloats(camera[1]);
     frame.camera.orthographic = true;

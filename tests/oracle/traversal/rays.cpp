@@ -1,5 +1,7 @@
 #include "oracle/traversal/rays.h"
 
+#include "base/vectors.h"
+
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
 #else
@@ -98,6 +100,7 @@ std::vector<Ray> cameraRays(const CameraView& camera, std::uint32_t width, std::
         }
     }
     std::ranges::shuffle(tiles, std::mt19937_64(1));
+    const Float3 position = base::toFloat3(base::toVector(camera.position));
     std::vector<Ray> rays;
     for (const auto& [left, top] : tiles) {
         for (std::uint32_t i = 0; i < kTile; ++i) {
@@ -108,9 +111,9 @@ std::vector<Ray> cameraRays(const CameraView& camera, std::uint32_t width, std::
             const Float3 across =
                 plus(plus({}, x * camera.halfWidth, right), y * camera.halfHeight, camera.up);
             if (camera.orthographic) {
-                rays.push_back({plus(camera.position, 1.0F, across), camera.forward});
+                rays.push_back({plus(position, 1.0F, across), camera.forward});
             } else {
-                rays.push_back({camera.position, unit(plus(camera.forward, 1.0F, across))});
+                rays.push_back({position, unit(plus(camera.forward, 1.0F, across))});
             }
         }
     }

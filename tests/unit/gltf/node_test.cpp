@@ -180,7 +180,7 @@ TEST(GltfLights, ArePlaced) {
     EXPECT_EQ(light.range, 7.0F);
     EXPECT_EQ(light.innerConeAngle, 0.25F);
     EXPECT_EQ(light.outerConeAngle, 0.5F);
-    EXPECT_EQ(light.position, (gltf::Float3{1, 2, 3}));
+    EXPECT_EQ(light.position, (std::array<double, 3>{1, 2, 3}));
     // A quarter turn about Y takes -Z to -X.
     EXPECT_NEAR(light.direction[0], -1.0F, 1e-6F);
     EXPECT_NEAR(light.direction[1], 0.0F, 1e-6F);

@@ -122,7 +122,7 @@ TEST(CameraTest, RasterAndRaysAgree) {
         camera.orthographic = orthographic;
         for (const std::uint32_t sample : {0U, 1U, 7U}) {
             gpu::FrameConstants c{};
-            fillCamera(camera, kWidth, kHeight, sampleJitter(sample), c);
+            fillCamera(camera, {}, kWidth, kHeight, sampleJitter(sample), c);
             const double x = 5;
             const double y = 11;
             const double px = (x + 0.5 + c.jitter.x) / kWidth * 2 - 1;
@@ -145,12 +145,44 @@ TEST(CameraTest, RasterAndRaysAgree) {
     }
 }
 
+// Only the place relative to the scene's origin matters, and the difference is taken in double precision.
+TEST(CameraTest, IsRelativeToTheOrigin) {
+    CameraView camera;
+    camera.position = {1e9 + 0.125, -2.0, 3e9};
+    gpu::FrameConstants c{};
+    fillCamera(camera, {1e9, 0.0, 3e9 - 1.5}, 8, 8, {0, 0}, c);
+    EXPECT_EQ(c.cameraPosition.x, 0.125F);
+    EXPECT_EQ(c.cameraPosition.y, -2.0F);
+    EXPECT_EQ(c.cameraPosition.z, 1.5F);
+    EXPECT_TRUE(checkOrigin({1e9, 0.0, 0.0}).ok());
+    EXPECT_EQ(checkOrigin({0.0, std::nan(""), 0.0}).error().id, "scene-origin");
+}
+
+// Codes of lengths count in metres, except in scenes that are far smaller or larger.
+TEST(CameraTest, UnitOfLengthsFollowsTheNearPlane) {
+    const auto unitOf = [](float near) {
+        CameraView camera;
+        camera.near = near;
+        gpu::FrameConstants c{};
+        fillCamera(camera, {}, 8, 8, {0, 0}, c);
+        EXPECT_EQ(c.lengthUnit * c.perLengthUnit, 1.0F);
+        return c.lengthUnit;
+    };
+    for (const float near : {0x1p-10F, 0.01F, 1.0F, 64.0F}) {
+        EXPECT_EQ(unitOf(near), 1.0F) << near;
+    }
+    EXPECT_EQ(unitOf(0x1p-20F), 0x1p-10F);
+    EXPECT_EQ(unitOf(0x1p16F), 0x1p10F);
+    EXPECT_EQ(unitOf(1e-38F), 0x1p-80F);
+    EXPECT_EQ(unitOf(1e38F), 0x1p80F);
+}
+
 TEST(CameraTest, FiniteFarPlaneIsDepthZero) {
     CameraView camera;
     camera.near = 0.5F;
     camera.far = 20.0F;
     gpu::FrameConstants c{};
-    fillCamera(camera, 8, 8, {0, 0}, c);
+    fillCamera(camera, {}, 8, 8, {0, 0}, c);
     const auto depth = [&](double d) {
         return dot(c.worldToClip[2], {0, 0, -d}) / dot(c.worldToClip[3], {0, 0, -d});
     };

@@ -144,7 +144,7 @@ TEST(SceneCamera, KeepsTheVerticalFieldOfView) {
     const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 0, 2.0);
     ASSERT_TRUE(camera) << toString(camera.error());
     expectFrame(*camera);
-    EXPECT_EQ(camera->position, (gltf::Float3{1, 2, 3}));
+    EXPECT_EQ(camera->position, (std::array<double, 3>{1, 2, 3}));
     EXPECT_NEAR(camera->forward[0], -1.0F, 1e-6F);
     EXPECT_NEAR(camera->up[1], 1.0F, 1e-6F);
     EXPECT_NEAR(camera->halfHeight, std::tan(0.5), 1e-6);

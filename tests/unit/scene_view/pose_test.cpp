@@ -107,16 +107,16 @@ TEST(Pose, CamerasAndLightsFollowTheirNodes) {
     scene.nodes[0].rest.scale = {2, 2, 2};
     applyPose(restPose(scene), scene);
     expectNear(scene.cameras[0].world, {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 4, 0, 1});
-    EXPECT_EQ(scene.lights[1].position, (gltf::Float3{1, 4, 0}));
+    EXPECT_EQ(scene.lights[1].position, (std::array<double, 3>{1, 4, 0}));
     EXPECT_NEAR(scene.lights[1].direction[0], -1.0F, 1e-6F);
-    EXPECT_EQ(scene.lights[0].position, gltf::Float3{});
+    EXPECT_EQ(scene.lights[0].position, (std::array<double, 3>{}));
     // Even if scaled to nothing, they keep their direction.
     scene.nodes[0].rest.scale = {0, 0, 0};
     scene.nodes[0].rest.translation = {3, 0, 0};
     applyPose(restPose(scene), scene);
     expectNear(scene.cameras[0].world, {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 3, 0, 0, 1});
     EXPECT_NEAR(scene.lights[1].direction[0], -1.0F, 1e-6F);
-    EXPECT_EQ(scene.lights[1].position, (gltf::Float3{3, 0, 0}));
+    EXPECT_EQ(scene.lights[1].position, (std::array<double, 3>{3, 0, 0}));
 }
 
 TEST(Pose, JointsTakeTheMeshFromItsBindPose) {

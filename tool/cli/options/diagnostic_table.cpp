@@ -312,6 +312,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"scene-node-child", kWarning, "A scene lists a node that is a child of another node."},
     {"scene-node-repeated", kWarning, "A scene lists a node twice."},
     {"scene-order", kError, "The runtime was given primitives that are not sorted."},
+    {"scene-origin", kError, "The runtime was given an origin of a scene that is not finite."},
     {"scene-package", kError,
      "The runtime was given a scene that is not in the package, or can't go on with it when the package is "
      "replaced."},

@@ -25,15 +25,17 @@ constexpr LightProperty kLightValues[] = {
     {"spot/outerConeAngle", 1, 0.0, std::numbers::pi / 2, [](Light& light) { return &light.outerConeAngle; }},
 };
 
-// The importer refuses lenses beyond these bounds, and an animation stops at them.
-constexpr double kLeastLens = 1e-4;
+// The importer refuses lenses beyond these bounds, and an animation stops at them. A length may be small,
+// because scenes may be.
+constexpr double kLeastLens = 1e-4;  // radians
+constexpr double kLeastLength = 1e-12;
 constexpr CameraProperty kCameras[] = {
     {"perspective/yfov", 1, kLeastLens, std::numbers::pi - kLeastLens, [](Camera& c) { return &c.yfov; }},
-    {"perspective/znear", 1, kLeastLens, kMax, [](Camera& c) { return &c.znear; }},
-    {"perspective/zfar", 1, kLeastLens, kMax, [](Camera& c) { return &c.zfar; }},
-    {"orthographic/xmag", 1, kLeastLens, kMax, [](Camera& c) { return &c.xmag; },
+    {"perspective/znear", 1, kLeastLength, kMax, [](Camera& c) { return &c.znear; }},
+    {"perspective/zfar", 1, kLeastLength, kMax, [](Camera& c) { return &c.zfar; }},
+    {"orthographic/xmag", 1, kLeastLength, kMax, [](Camera& c) { return &c.xmag; },
      [](double v) { return std::abs(v); }},
-    {"orthographic/ymag", 1, kLeastLens, kMax, [](Camera& c) { return &c.ymag; },
+    {"orthographic/ymag", 1, kLeastLength, kMax, [](Camera& c) { return &c.ymag; },
      [](double v) { return std::abs(v); }},
     {"orthographic/znear", 1, 0.0, kMax, [](Camera& c) { return &c.znear; }},
     {"orthographic/zfar", 1, 0.0, kMax, [](Camera& c) { return &c.zfar; }},
@@ -206,7 +208,7 @@ void settleCamera(Camera& camera) {
     // This leaves a little depth, because 0 would mean an infinite distance.
     constexpr double kLeastDepth = 1.001;
     if (camera.zfar > 0.0 || camera.orthographic) {
-        camera.zfar = std::max({camera.zfar, kLeastDepth * camera.znear, camera.znear + kLeastLens});
+        camera.zfar = std::max({camera.zfar, kLeastDepth * camera.znear, camera.znear + kLeastLength});
     }
 }
 

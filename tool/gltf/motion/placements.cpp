@@ -154,8 +154,7 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
                 readChannel(document, fmt::format("{}/color/{}", pointer, i), (*color)[i].get<double>());
         }
     }
-    light.position = {static_cast<float>(world[12]), static_cast<float>(world[13]),
-                      static_cast<float>(world[14])};
+    light.position = {world[12], world[13], world[14]};
     if (light.type != LightType::Point) {
         const auto axis = normalized({-world[8], -world[9], -world[10]});
         if (!axis) {

@@ -14,15 +14,8 @@
 
 namespace glint::scene_view {
 
-// An axis-aligned box in world space. It is empty if any min is above its max.
-struct Bounds {
-    std::array<double, 3> min{};
-    std::array<double, 3> max{};
-    bool empty() const;
-};
-
-// Returns the union of the transformed boxes of all instances, which may be larger than the geometry.
-// Instances whose box is not finite are left out.
+// Returns the union of the transformed boxes of all instances in the world, which may be larger than the
+// geometry. Instances whose box is not finite are left out.
 Bounds worldBounds(const SceneViewData& scene);
 
 // The same at the pose of `scene`, from which `view` was made. For meshes that follow joints or morph targets

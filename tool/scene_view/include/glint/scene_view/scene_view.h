@@ -22,6 +22,13 @@ namespace glint::scene_view {
 
 struct TextureSet;  // glint/scene_view/textures.h
 
+// An axis-aligned box. It is empty if any min is above its max.
+struct Bounds {
+    std::array<double, 3> min{};
+    std::array<double, 3> max{};
+    bool empty() const;
+};
+
 // The arrays behind a SceneView. Spans point into the Scene, which must outlive it and must not change.
 struct SceneViewData {
     std::vector<PrimitiveView> primitives;  // sorted by (mesh, primitive)
@@ -35,6 +42,14 @@ struct SceneViewData {
     OpacityUse opacity = OpacityUse::Proved;
     VertexForm vertices = VertexForm::Compact;
     std::vector<MaterialView> materials;  // those that animations change
+    // What places are relative to. A file has them in single precision for vertices and in double precision
+    // for nodes. They are added in double precision and then rebased: those of vertices by mesh, those of the
+    // world by pose. Both origins are 0 where everything is close enough to 0. poseSceneView() is the border;
+    // cameras and bounds stay in the world.
+    std::array<double, 3> origin{};                    // SceneView::origin, in the world
+    std::vector<std::array<double, 3>> meshOrigins;    // by mesh number, in the mesh's space in the file
+    std::vector<std::vector<gltf::Float3>> positions;  // of primitives whose mesh has an origin
+    std::vector<Bounds> meshBoxes;                     // by mesh number, in the mesh's space in the file
     // By instance: what places it.
     struct Source {
         std::size_t node = 0;       // index into Scene::nodes
@@ -68,8 +83,8 @@ struct SceneViewData {
 // Returns every mesh that a node places, with the numbers of mesh and primitive that the Scene has.
 // Primitives without a triangle are left out, and so are instances of meshes that have no other, and nodes
 // that are never shown. Positions are in metres, lights in lux (directional) and candela (point and spot).
-// Copies no vertices and no pixels: `scene` must outlive the result. Its images must have been decoded, or
-// loadTextures() must read them, or the runtime refuses them.
+// Copies no pixels, and positions only of meshes that are far from their own origin: `scene` must outlive the
+// result. Its images must have been decoded, or loadTextures() must read them, or the runtime refuses them.
 SceneViewData makeSceneView(const gltf::Scene& scene);
 
 // Returns the layout of the package's material records. `model` is that of the materials which it was
@@ -80,8 +95,8 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
 // animations change needs this before it is uploaded.
 void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data);
 
-// Takes the pose of `scene`, from which `data` was made: instances, joints, weights, materials and lights.
-// Lights that were added after those of the scene stay.
+// Takes the pose of `scene`, from which `data` was made: its origin, instances, joints, weights, materials
+// and lights. Lights that were added after those of the scene stay; they must be directional.
 void poseSceneView(const gltf::Scene& scene, SceneViewData& data);
 
 // Returns three rows of four of a column-major matrix.
