@@ -271,6 +271,7 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         return camera.error();
     }
     report.camera = camera->name;
+    report.sceneInFile = gltf::sceneInFile(scene);
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const base::Clock::time_point begin = base::Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
@@ -318,13 +319,8 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
                                   "has no VK_KHR_pipeline_executable_properties: there are no statistics",
                                   "leave out --pipeline-statistics, or use another device"});
     }
-    const FrameSetup setup{arguments,
-                           options,
-                           environment->get(),
-                           *movement,
-                           camera->view,
-                           aspect,
-                           reference ? &*reference : nullptr};
+    const FrameSetup setup{console,   arguments, options, environment->get(),
+                           *movement, *camera,   aspect,  reference ? &*reference : nullptr};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         if (Status valid = measure::checkValidation(console, **context); !valid) {

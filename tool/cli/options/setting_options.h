@@ -24,7 +24,7 @@ void checkProfile(const CLI::App& command, const compiler::Settings& settings);
 void addProfileInput(CLI::App& command, compiler::Settings& settings);
 // Adds --calibration: the device file by which --strategy auto chooses.
 void addCalibration(CLI::App& command, compiler::Settings& settings);
-// Adds --variant NAME, --strict-paths and --materials DIR.
+// Adds --scene NAME|INDEX, --variant NAME, --strict-paths and --materials DIR.
 void addReadingOptions(CLI::App& command, compiler::Settings& settings);
 
 // What a command needs of images.
