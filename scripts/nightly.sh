@@ -17,11 +17,11 @@ Sets up, builds, and runs all parts, or those that are named:
             other tests of pictures with each strategy and each tracer, where scripts/test.sh
             gives each strategy one tracer; test_strategies_agree with every merge policy for
             every scene; test_half and test_library with the gallery; convergence with every kind
-            of light; a scene at every decade of place and scale; the orderings with more numbers of
-            buckets and other subgroup sizes; twice to three times as many materials in
-            test_furnace and test_sampling; a fault at every call that writes; the runtime as a
-            subdirectory of another project, built and run. All with lavapipe's LLVM passes, which
-            scripts/test.sh leaves out
+             of light; a scene at every decade of place and scale; the orderings with more numbers of
+             buckets and other subgroup sizes; 10,000 random scenes, others each day, with every
+             strategy; twice to three times as many materials in test_furnace and test_sampling; a
+             fault at every call that writes; the runtime as a subdirectory of another project, built
+             and run. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -67,10 +67,10 @@ for part in "${parts[@]}"; do
         sweep)
             whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
                 test_opacity test_ordering test_furnace test_sampling test_cli_robustness test_paths test_convergence
-                test_effects test_shadow_through test_packs test_sky_light test_sized_lights)
+                test_effects test_shadow_through test_packs test_sky_light test_sized_lights test_random_scenes)
             build "${whole[@]}" glint
             for program in "${whole[@]}"; do
-                GLINT_NIGHTLY=1 "build/release/tests/$program"
+                GLINT_NIGHTLY=1 GLINT_RANDOM_FIRST="$(date +%Y%m%d)0000" "build/release/tests/$program"
             done
             GLINT_NIGHTLY=1 ctest --preset release -R '^Install\.' --output-on-failure
             for bits in 128 512; do

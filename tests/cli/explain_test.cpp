@@ -87,6 +87,66 @@ TEST_F(Explain, AnUnknownVariantFails) {
     EXPECT_FALSE(std::filesystem::exists(path("picture.png")));
 }
 
+class ScenesOfAFile : public Explain {
+protected:
+    // The scene has a second one, "Wall only", and a third without nodes.
+    void SetUp() override {
+        Explain::SetUp();
+        nlohmann::json file = nlohmann::json::parse(readText(scene_));
+        file["scenes"].push_back({{"name", "Wall only"}, {"nodes", {1}}});
+        file["scenes"].push_back(nlohmann::json::object());
+        writeText(scene_, file.dump());
+    }
+};
+
+TEST_F(ScenesOfAFile, AreListedAndChosen) {
+    const nlohmann::json usual = run({"explain", scene_, "--json"}).json();
+    EXPECT_EQ(usual.at("scenesInFile"), nlohmann::json({nullptr, "Wall only", nullptr}));
+    EXPECT_EQ(usual.at("sceneInFile").at("index"), 0);
+    EXPECT_TRUE(usual.at("sceneInFile").at("name").is_null());
+    for (const char* const chosen : {"1", "Wall only"}) {
+        const nlohmann::json wall = run({"explain", scene_, "--scene", chosen, "--json"}).json();
+        EXPECT_EQ(wall.at("sceneInFile"), nlohmann::json({{"index", 1}, {"name", "Wall only"}}));
+    }
+    const Outcome text = run({"explain", scene_, "--scene", "1"});
+    EXPECT_NE(text.out.find("0, 1 \"Wall only\", 2"), std::string::npos) << text.out;
+    const nlohmann::json compiled =
+        run({"compile", scene_, "--dry-run", "--scene", "Wall only", "--json"}).json();
+    EXPECT_EQ(compiled.at("scenes")[0].at("sceneInFile").at("index"), 1);
+}
+
+TEST_F(ScenesOfAFile, AnUnknownOneFailsAndAnEmptyOneIsWarnedOf) {
+    for (const std::vector<std::string>& line : {std::vector<std::string>{"explain", scene_},
+                                                 {"compile", scene_, "-o", "package"},
+                                                 {"render", scene_, "-o", "picture.png"},
+                                                 {"bench", scene_, "-o", "bench"}}) {
+        std::vector<std::string> arguments = line;
+        arguments.insert(arguments.end(), {"--scene", "Wall onyl"});
+        const Outcome outcome = run(arguments);
+        EXPECT_EQ(outcome.exit, 1) << line[0];
+        EXPECT_NE(outcome.err.find("(it has 0, 1 \"Wall only\", 2); did you mean Wall only?"),
+                  std::string::npos)
+            << outcome.err;
+    }
+    const Outcome empty = run({"compile", scene_, "--dry-run", "--scene", "2"});
+    EXPECT_EQ(empty.exit, 0) << empty.err;
+    EXPECT_NE(empty.err.find("it has no nodes; choose the scene 0 by --scene 0 [nothing-drawn]"),
+              std::string::npos)
+        << empty.err;
+}
+
+TEST_F(Explain, ATextureWithoutItsUvsIsNamed) {
+    nlohmann::json file = nlohmann::json::parse(readText(scene_));
+    file["images"] = nlohmann::json::array({{{"uri", "none.png"}}});
+    file["textures"] = nlohmann::json::array({{{"source", 0}}});
+    file["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    writeText(scene_, file.dump());
+    const Outcome outcome = run({"explain", scene_, "--material", "Floor", "--trust-textures", "off"});
+    EXPECT_NE(outcome.out.find("baseColorTexture: the primitive has no TEXCOORD_0"), std::string::npos)
+        << outcome.out << outcome.err;
+    EXPECT_NE(outcome.err.find("[input-missing]"), std::string::npos) << outcome.err;
+}
+
 TEST_F(Explain, HitLobesTellHitsFromPrimarySurfaces) {
     writeTinyScene(path(""), {.variants = true});
     const auto floorKey = [&](const char* lobes) {

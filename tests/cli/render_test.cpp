@@ -317,6 +317,19 @@ TEST_F(LampScene, ASequenceDoesNotFlicker) {
     EXPECT_EQ(first->pixels[0], second->pixels[0]) << "the sky stays";
 }
 
+TEST_F(RenderCommand, APictureWithoutASurfaceIsWarnedOf) {
+    const Outcome seen = render("seen.exr");
+    EXPECT_EQ(seen.err.find("[nothing-seen]"), std::string::npos) << seen.err;
+    const Outcome behind = render("behind.exr", {"--camera", "0,1,9/0,1,10"});
+    EXPECT_EQ(behind.exit, 0) << behind.err;
+    EXPECT_NE(behind.err.find("2 instances are behind the camera (/nodes/0, /nodes/1); use --camera auto"),
+              std::string::npos)
+        << behind.err;
+    // Only the picture shows that this is less than a pixel.
+    const Outcome far = render("far.exr", {"--camera", "0,1e7,1/0,0,0"});
+    EXPECT_NE(far.err.find("smaller than a pixel"), std::string::npos) << far.err;
+}
+
 TEST_F(RenderCommand, ReflectionsCanBeTurnedOff) {
     const Outcome off = render("a.png", {"--effects", "shadow", "--json"});
     ASSERT_EQ(off.exit, 0) << off.err;

@@ -86,6 +86,15 @@ base::Json choiceToJson(const std::optional<compiler::StrategyAdvice>& advice) {
     return advice ? strategyChoiceToJson(*advice) : base::Json(nullptr);
 }
 
+base::Json scenesToJson(const gltf::SceneList& scenes) {
+    base::Json list = base::Json::array();
+    for (const gltf::Scene& scene : scenes.scenes()) {
+        list.push_back(base::Json{{"file", scene.path},
+                                  {"sceneInFile", compiler::sceneInFileToJson(gltf::sceneInFile(scene))}});
+    }
+    return list;
+}
+
 base::Json toJson(const Outcome& outcome) {
     const compiler::CompiledPackage* package = outcome.package;
     const auto orNull = [&](auto value) { return package ? base::Json(value()) : base::Json(nullptr); };
@@ -101,6 +110,7 @@ base::Json toJson(const Outcome& outcome) {
             {"milliseconds", nullptr},
             {"modules", nullptr},
             {"upToDate", nullptr},
+            {"scenes", scenesToJson(outcome.scenes)},
             {"variant", base::textOrNull(outcome.scenes.variant())},
             {"strategyChoice", choiceToJson(outcome.arguments.settings.compile.strategyChoice)},
             {"shaders", shadersToJson(outcome)},

@@ -52,6 +52,27 @@ std::string toText(const PlannedScenes& planned, int material, Detail detail) {
     return text + (rows.empty() ? "  no primitive uses it: no key, no shader\n" : formatFields(rows, detail));
 }
 
+// Returns an empty text unless the file has several scenes.
+std::string scenesText(const gltf::Scene& scene) {
+    if (scene.scenesInFile.size() < 2) {
+        return {};
+    }
+    std::vector<std::string> labels;
+    for (std::size_t i = 0; i < scene.scenesInFile.size(); ++i) {
+        labels.push_back(sceneLabel(scene, i));
+    }
+    return formatFields({{"scenes of the file", base::join(labels)},
+                         {"this one", labels[static_cast<std::size_t>(scene.sceneInFile)] + " (--scene)"}});
+}
+
+base::Json scenesInFileToJson(const gltf::Scene& scene) {
+    base::Json names = base::Json::array();
+    for (const std::string& name : scene.scenesInFile) {
+        names.push_back(base::textOrNull(name));
+    }
+    return names;
+}
+
 // Returns an empty text if the scene has no variants.
 std::string variantsText(const gltf::Scene& scene) {
     if (scene.variants.empty()) {
@@ -183,6 +204,8 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     }
     if (console.isJson()) {
         base::Json result{{"scene", arguments.scene},
+                          {"sceneInFile", compiler::sceneInFileToJson(gltf::sceneInFile(*scene))},
+                          {"scenesInFile", scenesInFileToJson(*scene)},
                           {"merge", nameOf(planned.options.merge)},
                           {"alpha", nameOf(planned.options.keys.alpha)},
                           {"hitLobes", featuresToJson(*planned.plan.model, planned.options.keys.keptLobes)},
@@ -203,6 +226,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         console.result(result);
         return kExitDone;
     }
+    console.print(scenesText(*scene));
     console.print(variantsText(*scene));
     if (arguments.material.empty()) {
         console.print(effectsText(effects));

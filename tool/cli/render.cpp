@@ -291,6 +291,7 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         report.sun = scene_view::sunLight();
         report.sunAutomatic = arguments.sun == compiler::Sun::Auto;
     }
+    report.sceneInFile = gltf::sceneInFile(scene);
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const base::Clock::time_point begin = base::Clock::now();
     const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
@@ -342,11 +343,12 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
                                   "has no VK_KHR_pipeline_executable_properties: there are no statistics",
                                   "leave out --pipeline-statistics, or use another device"});
     }
-    const FrameSetup setup{arguments,
+    const FrameSetup setup{console,
+                           arguments,
                            options,
                            environment->get(),
                            *movement,
-                           camera->view,
+                           *camera,
                            aspect,
                            reference ? &*reference : nullptr,
                            console.countTo("rendering sample")};

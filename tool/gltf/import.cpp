@@ -3,6 +3,7 @@
 #include "gltf/derived_tangents.h"
 #include "gltf/document/document.h"
 #include "gltf/expected_hits.h"
+#include "gltf/losses.h"
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
 #include "gltf/motion/animations.h"
@@ -13,6 +14,8 @@
 #include "gltf/texture_content.h"
 #include "gltf/trusted_textures.h"
 #include "gltf/variants.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
@@ -66,6 +69,8 @@ Status fillScene(Document& document, Scene& scene) {
         scene.defaultMaterial = static_cast<int>(scene.materials.size());
         scene.materials.emplace_back(*document.options().materialModel).name = "default";
     }
+    warnOfNothingDrawn(document, scene);
+    warnOfMissingInputs(document, scene);
     scene.trustsTextures = document.options().trustTextures;
     if (scene.trustsTextures) {
         if (Status status = readTextureContent(document.options(), scene); !status) {
@@ -108,6 +113,16 @@ Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions
     }
 }
 
+std::string sceneLabel(const Scene& scene, std::size_t number) {
+    const std::string& name = scene.scenesInFile[number];
+    return name.empty() ? std::to_string(number) : fmt::format("{} \"{}\"", number, name);
+}
+
+SceneInFile sceneInFile(const Scene& scene) {
+    const int index = scene.sceneInFile;
+    return {index, index < 0 ? "" : scene.scenesInFile[static_cast<std::size_t>(index)]};
+}
+
 namespace {
 
 // Returns a bit for each of the model's attributes that the primitive has.
@@ -128,24 +143,28 @@ std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
 
 }  // namespace
 
+materials::PrimitiveInputs inputsOf(const Scene& scene, std::size_t mesh, std::size_t index) {
+    const Primitive& primitive = scene.meshes[mesh].primitives[index];
+    materials::PrimitiveInputs input;
+    input.mesh = static_cast<int>(mesh);
+    input.primitive = static_cast<int>(index);
+    input.material = primitive.material;
+    input.hasNormals = !primitive.normals.empty();
+    input.hasTangents = !primitive.tangents.empty();
+    input.hasTexCoords0 = !primitive.texCoords0.empty();
+    input.hasTexCoords1 = !primitive.texCoords1.empty();
+    input.colors = primitive.colorContent;
+    input.attributes = attributesOf(scene, primitive);
+    input.seen = primitive.seen;
+    input.derivesTangents = primitive.derivesTangents;
+    return input;
+}
+
 std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene) {
     std::vector<materials::PrimitiveInputs> inputs;
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         for (std::size_t i = 0; i < scene.meshes[mesh].primitives.size(); ++i) {
-            const Primitive& primitive = scene.meshes[mesh].primitives[i];
-            materials::PrimitiveInputs input;
-            input.mesh = static_cast<int>(mesh);
-            input.primitive = static_cast<int>(i);
-            input.material = primitive.material;
-            input.hasNormals = !primitive.normals.empty();
-            input.hasTangents = !primitive.tangents.empty();
-            input.hasTexCoords0 = !primitive.texCoords0.empty();
-            input.hasTexCoords1 = !primitive.texCoords1.empty();
-            input.colors = primitive.colorContent;
-            input.attributes = attributesOf(scene, primitive);
-            input.seen = primitive.seen;
-            input.derivesTangents = primitive.derivesTangents;
-            inputs.push_back(input);
+            inputs.push_back(inputsOf(scene, mesh, i));
         }
     }
     expectHits(scene, inputs);

@@ -37,6 +37,9 @@ struct ImportOptions {
     // systems give each action a folder of links. Set this for scenes by strangers: nothing outside the
     // folder is then read.
     bool strictPaths = false;
+    // The scene of the file that is read: its number, from 0, or its name. An empty text selects the file's
+    // default, which is its first scene if it names none, and all nodes if it has no scenes.
+    std::string scene{};
     // The name of the variant (KHR_materials_variants) whose materials are used. An empty name selects the
     // default materials.
     std::string variant{};
@@ -47,12 +50,25 @@ struct ImportOptions {
 
 // Reads `path` (.gltf or .glb), its buffers and its images. It refuses a URI that is absolute or leads above
 // the scene's folder. On success, Scene::warnings lists everything that was skipped. The error is
-// "variant-unknown" if the file has no such variant. Each error names the file and, if possible, the JSON
-// pointer of the cause.
+// "scene-unknown" or "variant-unknown" if the file has no such scene or variant. Each error names the file
+// and, if possible, the JSON pointer of the cause.
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options = {});
+
+// Returns how messages name one of the file's scenes: `1 "Room"`, or `1` if it has no name.
+std::string sceneLabel(const Scene& scene, std::size_t number);
 
 // Returns the materials as planning sees them. A material that animations change stands for all its values.
 std::vector<materials::Material> planningMaterials(const Scene& scene);
+
+// The scene of a file that was read.
+struct SceneInFile {
+    int index = -1;      // -1: the file has no scenes
+    std::string name{};  // empty: it has none
+};
+SceneInFile sceneInFile(const Scene& scene);
+
+// Returns a primitive as planning sees it, without its expected hits.
+materials::PrimitiveInputs inputsOf(const Scene& scene, std::size_t mesh, std::size_t index);
 
 // Returns the primitives of all meshes as planning sees them, mesh by mesh.
 std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene);

@@ -94,13 +94,14 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
             document.warn("buffer-external", primitive.pointer,
                           fmt::format("is left out: {} {}", drawn.error().where, drawn.error().message),
                           drawn.error().hint);
-            continue;
-        }
-        if (!drawn) {
+        } else if (!drawn) {
             return drawn.error();
         }
-        if (*drawn) {
+        if (drawn && *drawn) {
             mesh.primitives.push_back(std::move(primitive));
+        } else {
+            // The last warning says why.
+            mesh.leftOut.push_back(primitive.pointer + ": " + document.warnings().back().message);
         }
     }
     return mesh;

@@ -55,6 +55,8 @@ struct Mesh {
     std::string name;
     std::vector<Primitive> primitives;
     std::vector<double> weights{};  // of the morph targets, one for each, for nodes that give none
+    // The file's primitives without a triangle, and why: "/meshes/0/primitives/1: has no triangle".
+    std::vector<std::string> leftOut{};
 };
 
 // The transform is the product T * R * S.
@@ -73,7 +75,8 @@ struct Instancing {
     std::vector<Float3> scales;
 };
 
-// A node of the default scene. Parents come before their children. Transforms are those of the rest pose
+// A node of the scene. An ancestor that the scene itself does not have has a transform and nothing else.
+// Parents come before their children. Transforms are those of the rest pose
 // until applyPose() (motion/pose.h) changes the scene's pose.
 struct Node {
     std::string name;
@@ -223,6 +226,10 @@ struct AnimatedMaterial {
 
 struct Scene {
     std::string path;  // the .gltf or .glb
+    // The names of the file's scenes, empty where one has none, and the number of the one that was read. -1:
+    // the file has no scenes, and all its nodes were read.
+    std::vector<std::string> scenesInFile;
+    int sceneInFile = -1;
     std::vector<materials::Material> materials;
     int defaultMaterial = -1;  // index of the default material, which is appended; -1 if none needs it
     std::vector<Mesh> meshes;

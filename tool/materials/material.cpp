@@ -1,5 +1,7 @@
 #include "materials/material.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 
@@ -119,6 +121,80 @@ bool isReadable(const Material& material, const PrimitiveInputs& primitive, int 
     const MaterialTexture& slot = model.textures[static_cast<std::size_t>(texture)];
     return info.texture >= 0 && (model.features[static_cast<std::size_t>(slot.feature)].hasOwnCoordinates ||
                                  primitive.hasTexCoords(info.texCoord));
+}
+
+PrimitiveInputs withEveryAttribute(PrimitiveInputs primitive) {
+    primitive.hasNormals = primitive.hasTangents = primitive.hasTexCoords0 = primitive.hasTexCoords1 = true;
+    primitive.attributes = ~std::uint64_t{0};
+    return primitive;
+}
+
+std::string missingAttribute(const Material& material, const PrimitiveInputs& primitive,
+                             const Feature& feature) {
+    const MaterialModel& model = material.model();
+    const auto index = static_cast<int>(&feature - model.features.data());
+    for (std::size_t i = 0; i < model.attributes.size(); ++i) {
+        const VertexAttribute& attribute = model.attributes[i];
+        if (attribute.feature == index && !attribute.fallback && (primitive.attributes >> i & 1U) == 0) {
+            return fmt::format("the primitive has no {}", attribute.gltf);
+        }
+    }
+    const bool hasUvs = feature.texture >= 0 && !feature.hasOwnCoordinates;
+    const int set = hasUvs ? material.textures[static_cast<std::size_t>(feature.texture)].texCoord : 0;
+    if (set > 1) {
+        return fmt::format("it reads TEXCOORD_{}; Glint reads sets 0 and 1", set);
+    }
+    for (const int needed : {feature.needsTexCoord, hasUvs ? set : -1}) {
+        if (needed >= 0 && !primitive.hasTexCoords(needed)) {
+            return fmt::format("the primitive has no TEXCOORD_{}", needed);
+        }
+    }
+    return {};
+}
+
+std::string lostInput(const Material& material, const PrimitiveInputs& primitive, const Feature& feature) {
+    const MaterialModel& model = material.model();
+    const auto isAsked = [&](const Feature& one) {
+        return one.texture >= 0
+                   ? material.textures[static_cast<std::size_t>(one.texture)].texture >= 0
+                   : one.object >= 0 && material.given[static_cast<std::size_t>(one.object)] != 0;
+    };
+    if (!isAsked(feature) || (feature.texture >= 0 && material.readsOf(feature.texture).channels == 0)) {
+        return {};
+    }
+    FeatureMask asked = 0;
+    for (const Feature& one : model.features) {
+        asked |= isAsked(one) ? one.mask() : 0;
+    }
+    for (const Exclusion& exclusion : model.exclusions) {
+        const Feature& by = model.features[static_cast<std::size_t>(exclusion.by)];
+        if ((asked & by.mask()) != 0 && (exclusion.excluded & feature.mask()) != 0) {
+            return {};
+        }
+    }
+    const PrimitiveInputs whole = withEveryAttribute(primitive);
+    const KeyOptions options{.alpha = package::AlphaPolicy::Stochastic};
+    const MaterialFacts here(material, primitive, options, asked);
+    const MaterialFacts there(material, whole, options, asked);
+    const auto isNeutral = [&](const Feature& one, const MaterialFacts& facts) {
+        return std::ranges::find_if(one.neutral, [&](const NeutralReason& reason) {
+            const auto has = [&](int index) {
+                return (asked & model.features[static_cast<std::size_t>(index)].mask()) != 0;
+            };
+            return (reason.onlyWith < 0 || has(reason.onlyWith)) &&
+                   (reason.onlyWithout < 0 || !has(reason.onlyWithout)) &&
+                   reason.when.holds(facts) == Certainty::True;
+        });
+    };
+    const Feature* const lobe =
+        feature.lobe < 0 ? nullptr : &model.features[static_cast<std::size_t>(feature.lobe)];
+    if (isNeutral(feature, there) != feature.neutral.end() ||
+        (lobe != nullptr && isNeutral(*lobe, there) != lobe->neutral.end())) {
+        return {};
+    }
+    std::string missing = missingAttribute(material, primitive, feature);
+    const auto reason = isNeutral(feature, here);
+    return missing.empty() && reason != feature.neutral.end() ? reason->because : missing;
 }
 
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture) {

@@ -201,6 +201,18 @@ struct KeyOptions {
 // Returns whether the slot has a texture whose UV set the primitive has and Glint reads.
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture);
 
+// Returns the primitive as if it had every attribute.
+PrimitiveInputs withEveryAttribute(PrimitiveInputs primitive);
+
+// Returns why the primitive can't have the feature, whatever the material's values are: it lacks an attribute
+// that the feature reads. Empty if it has them all.
+std::string missingAttribute(const Material& material, const PrimitiveInputs& primitive,
+                             const Feature& feature);
+
+// The same for a texture or a lobe that the file asks for, and that would change something on a primitive
+// with every attribute. Empty if nothing is lost.
+std::string lostInput(const Material& material, const PrimitiveInputs& primitive, const Feature& feature);
+
 // Returns what the primitive can see of the texture, whether or not it is readable.
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture);
 

@@ -173,6 +173,9 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     if (!camera) {
         return camera.error();
     }
+    if (const std::optional<Diagnostic> warning = scene_view::nothingSeen(scene, data, *camera)) {
+        observer.report(*warning);
+    }
     bed->camera_ = camera->view;
     bed->cameraName_ = camera->name;
     bed->sky_ = chooseSky(base, scene, data);

@@ -253,6 +253,7 @@ void describeScene(BenchBed& bed, BenchReport& report) {
     scene.instances = size.instances;
     scene.materials = bed.scene().materials.size();
     scene.lights = bed.lights();
+    scene.inFile = gltf::sceneInFile(bed.scene());
     scene.camera = bed.cameraName();
     scene.environment = render.environment;
     scene.width = render.renderer.width;

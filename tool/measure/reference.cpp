@@ -42,7 +42,8 @@ Result<std::string> keyOf(BenchBed& bed, const compiler::Configuration& configur
             packer.add(row.name).add(std::string_view(row.values.text(settings)));
         }
     }
-    packer.add(std::string_view(bed.scene().variant))
+    packer.add(static_cast<std::uint64_t>(bed.scene().sceneInFile))
+        .add(std::string_view(bed.scene().variant))
         .add(std::string_view(bed.cameraName()))
         .add(std::string_view(bed.context().deviceName()))
         .add(std::string_view(bed.context().driverName()));

@@ -1,4 +1,5 @@
 #include "base/text.h"
+#include "emit/package/json.h"
 #include "measure/commit.h"
 #include "measure/report_json.h"
 
@@ -294,6 +295,7 @@ base::Json toJson(const BenchReport& report) {
             {"scene",
              {{"file", scene.file},
               {"name", std::filesystem::path(scene.file).stem().string()},
+              {"sceneInFile", compiler::sceneInFileToJson(scene.inFile)},
               {"triangles", scene.triangles},
               {"materials", scene.materials},
               {"instances", scene.instances},

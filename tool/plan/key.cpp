@@ -30,6 +30,7 @@ public:
         : model_(material.model()),
           material_(material),
           primitive_(primitive),
+          options_(options),
           kept_(~model_.lobes | options.keptLobes | model_.baseModels()),
           facts_(material, primitive, options, key_),
           texels_(material, primitive, options, key_, materials::MaterialFacts::Textures::Texels),
@@ -59,9 +60,12 @@ private:
         const materials::TextureInfo* const info =
             feature.texture < 0 ? nullptr : &material_.textures[static_cast<std::size_t>(feature.texture)];
         if (info != nullptr && info->texture < 0) {
-            return {false, info->isFolded ? foldedReason(feature.texture) : ""};
+            const bool isBeyond = info->texCoord > 1;  // reading has left it out
+            return {false, info->isFolded ? foldedReason(feature.texture)
+                           : isBeyond     ? materials::missingAttribute(material_, primitive_, feature)
+                                          : ""};
         }
-        const std::optional<std::string> neutral = findNeutral(feature, info);
+        const std::optional<std::string> neutral = findNeutral(feature);
         const std::optional<std::string> excluded = findExclusion(feature);
         // The presence of an extension without reasons changes the shading by itself.
         const bool asksByValue = feature.object < 0 || !feature.neutral.empty();
@@ -92,16 +96,24 @@ private:
         return std::nullopt;
     }
 
-    std::optional<std::string> findNeutral(const materials::Feature& feature,
-                                           const materials::TextureInfo* info) const {
+    std::optional<std::string> findNeutral(const materials::Feature& feature) const {
         if (feature.lobe >= 0 && !has(feature.lobe)) {
             return fmt::format("the key has no {}",
                                model_.features[static_cast<std::size_t>(feature.lobe)].name);
         }
+        // A texture that the primitive can't read counts as 1, which is no reason of its own. Only those
+        // count that would hold on a primitive with what this one lacks.
+        std::string missing = materials::missingAttribute(material_, primitive_, feature);
+        std::optional<materials::PrimitiveInputs> whole;
+        std::optional<materials::MaterialFacts> ofWhole;
+        if (!missing.empty()) {
+            whole = materials::withEveryAttribute(primitive_);
+            ofWhole.emplace(material_, *whole, options_, key_, materials::MaterialFacts::Textures::Unknown);
+        }
         for (const materials::NeutralReason& reason : feature.neutral) {
             const bool counts = (reason.onlyWith < 0 || has(reason.onlyWith)) &&
                                 (reason.onlyWithout < 0 || !has(reason.onlyWithout));
-            if (!counts) {
+            if (!counts || (ofWhole && reason.when.holds(*ofWhole) != materials::Certainty::True)) {
                 continue;
             }
             if (reason.when.holds(blind_) == materials::Certainty::True) {
@@ -113,26 +125,7 @@ private:
                 return because(reason, HeldBy::All);
             }
         }
-        const auto index = static_cast<int>(&feature - model_.features.data());
-        for (std::size_t i = 0; i < model_.attributes.size(); ++i) {
-            const materials::VertexAttribute& attribute = model_.attributes[i];
-            if (attribute.feature == index && !attribute.fallback && (primitive_.attributes >> i & 1U) == 0) {
-                return fmt::format("the primitive has no {}", attribute.gltf);
-            }
-        }
-        if (feature.needsTexCoord >= 0 && !primitive_.hasTexCoords(feature.needsTexCoord)) {
-            return fmt::format("the primitive has no TEXCOORD_{}", feature.needsTexCoord);
-        }
-        if (info == nullptr || feature.hasOwnCoordinates) {
-            return std::nullopt;
-        }
-        if (info->texCoord > 1) {
-            return fmt::format("it reads TEXCOORD_{}; Glint reads sets 0 and 1", info->texCoord);
-        }
-        if (!primitive_.hasTexCoords(info->texCoord)) {
-            return fmt::format("the primitive has no TEXCOORD_{}", info->texCoord);
-        }
-        return std::nullopt;
+        return missing.empty() ? std::nullopt : std::optional(std::move(missing));
     }
 
     std::string because(const materials::NeutralReason& reason, HeldBy which) const {
@@ -150,6 +143,7 @@ private:
     const materials::MaterialModel& model_;
     const materials::Material& material_;
     const materials::PrimitiveInputs& primitive_;
+    const materials::KeyOptions& options_;
     materials::FeatureMask kept_;
     materials::FeatureMask key_ = 0;
     materials::MaterialFacts facts_;

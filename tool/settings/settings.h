@@ -59,6 +59,7 @@ struct Settings {
     std::string package;      // a folder; empty: one is compiled
     std::string profile;      // hit counts, for the merge policies profile and auto
     std::string calibration;  // a device file; empty: constants that are built in
+    std::string sceneInFile;  // ImportOptions::scene; empty: the file's default
     std::string variant;      // of KHR_materials_variants; empty: none
     bool strictPaths = false;
     std::vector<std::string> materials;  // folders of packs: material features of a user's own

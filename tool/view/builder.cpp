@@ -44,7 +44,8 @@ std::vector<std::string> possibleLayers(const compiler::Plan& plan, compiler::Co
 }  // namespace
 
 bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b) {
-    return a.variant == b.variant && std::ranges::equal(a.files, b.files, [](const auto& x, const auto& y) {
+    return a.sceneInFile == b.sceneInFile && a.variant == b.variant &&
+           std::ranges::equal(a.files, b.files, [](const auto& x, const auto& y) {
                return x.path == y.path && x.bytes == y.bytes && x.hash == y.hash;
            });
 }
@@ -167,8 +168,9 @@ Result<Build> Builder::build(const BuildOrder& order) {
 Status Builder::readScene(const BuildOrder& order, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
     const compiler::Settings& settings = order.settings;
-    const std::string key = fmt::format("{}|{}|{}|{}|{}", order.scene, settings.variant, settings.strictPaths,
-                                        settings.compile.trustTextures, fmt::join(settings.materials, "|"));
+    const std::string key =
+        fmt::format("{}|{}|{}|{}|{}|{}", order.scene, settings.sceneInFile, settings.variant,
+                    settings.strictPaths, settings.compile.trustTextures, fmt::join(settings.materials, "|"));
     if (!order.changed.empty() || key != sceneKey_) {
         say("reading " + order.scene);
         const Result<gltf::ImportOptions> import = request_.importOptions(settings);

@@ -33,6 +33,7 @@ std::vector<std::string> shotWords(const compiler::Settings& settings, const Sho
     const std::pair<std::string_view, const std::string&> files[] = {
         {"environment", settings.environment},
         {"package", settings.package},
+        {"scene", settings.sceneInFile},
         {"variant", settings.variant},
         {"profile", settings.profile},
         {"calibration", settings.calibration},

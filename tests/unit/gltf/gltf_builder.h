@@ -98,6 +98,9 @@ Result<gltf::Scene> import(const GltfBuilder& builder, const gltf::ImportOptions
 // A material whose base colour is the image of those bytes.
 GltfBuilder sceneWithImage(const base::Bytes& bytes, const std::string& mimeType = "image/png");
 
+// Returns all but those of pictures that lack something. Files that only show how they are read draw nothing,
+// or have no UVs.
+std::vector<Diagnostic> readingWarnings(const gltf::Scene& scene);
 // Warnings of that kind.
 std::size_t countWarnings(const gltf::Scene& scene, std::string_view id);
 // Returns the first warning of that kind; an empty one if there is none.

@@ -131,7 +131,7 @@ TEST(GltfVisibility, HidesANodeAndAllBelow) {
         Json::parse(R"({"children": [0], "extensions": {"KHR_node_visibility": {"visible": false}}})"));
     const Result<gltf::Scene> scene = import(builder);
     ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty());
+    EXPECT_TRUE(readingWarnings(*scene).empty());
     const gltf::Node& below = scene->nodes.at(1);
     EXPECT_TRUE(below.visible);
     EXPECT_FALSE(below.shown);

@@ -98,7 +98,7 @@ TEST(GltfMaterials, ReadsEveryValue) {
     EXPECT_EQ(transform.scale, (std::array{2.0F, 0.5F}));
     EXPECT_EQ(scene.textures.size(), 1U);
     EXPECT_EQ(scene.images.size(), 1U);
-    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_TRUE(readingWarnings(scene).empty());
 }
 
 TEST(GltfMaterials, ClampsFactorsWithAWarning) {

@@ -69,12 +69,93 @@ TEST(GltfNodes, TakesTheDefaultScene) {
     EXPECT_EQ(errorId(nodes + R"(, "scene": 1, "scenes": [{}])"), "index-range");
 }
 
+TEST(GltfNodes, TakesTheSceneThatIsAskedFor) {
+    const std::string members = R"("nodes": [{"name": "a"}, {"name": "b"}, {"name": "c"}, {"name": "d"}],
+        "scenes": [{"name": "First", "nodes": [0]}, {"nodes": [1]}, {"name": "Room", "nodes": [2]},
+                   {"name": "1", "nodes": [3]}])";
+    const auto read = [&](const std::string& scene, const std::string& more = "") {
+        return importText(R"({"asset": {"version": "2.0"}, )" + members + more + "}", {.scene = scene});
+    };
+    const auto drawn = [&](const std::string& scene, const std::string& more = "") {
+        const Result<gltf::Scene> result = read(scene, more);
+        return result ? result->nodes.at(0).name : toString(result.error());
+    };
+    EXPECT_EQ(drawn(""), "a");
+    EXPECT_EQ(drawn("", R"(, "scene": 2)"), "c");
+    EXPECT_EQ(drawn("0", R"(, "scene": 2)"), "a");
+    EXPECT_EQ(drawn("Room"), "c");
+    EXPECT_EQ(drawn("1"), "b");  // a number comes before a name
+    const Result<gltf::Scene> room = read("Room");
+    ASSERT_TRUE(room);
+    EXPECT_EQ(room->sceneInFile, 2);
+    EXPECT_EQ(room->scenesInFile, (std::vector<std::string>{"First", "", "Room", "1"}));
+    // Only a choice that the file leaves open is worth a note.
+    EXPECT_EQ(findWarning(*read(""), "scene-choice").message,
+              "the file names none of its 4 scenes as the default; scene 0 \"First\" is read");
+    EXPECT_EQ(countWarnings(*read("", R"(, "scene": 0)"), "scene-choice"), 0U);
+    EXPECT_EQ(countWarnings(*room, "scene-choice"), 0U);
+
+    for (const char* const wrong : {"4", "-1", "Roon", "2x", "18446744073709551616"}) {
+        const Result<gltf::Scene> refused = read(wrong);
+        ASSERT_FALSE(refused) << wrong;
+        EXPECT_EQ(refused.error().id, "scene-unknown");
+        EXPECT_NE(refused.error().message.find("it has 0 \"First\", 1, 2 \"Room\", 3 \"1\""),
+                  std::string::npos)
+            << refused.error().message;
+    }
+    EXPECT_NE(read("Roon").error().message.find("did you mean Room?"), std::string::npos);
+    const Result<gltf::Scene> none =
+        importText(R"({"asset": {"version": "2.0"}, "nodes": [{}]})", {.scene = "0"});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().id, "scene-unknown");
+}
+
 TEST(GltfNodes, DrawsEachNodeOnce) {
     const gltf::Scene scene = mustImport(R"("nodes": [{"children": [1]}, {}],
         "scenes": [{"nodes": [0, 1, 0]}])");
     EXPECT_EQ(scene.nodes.size(), 2U);
     EXPECT_EQ(countWarnings(scene, "scene-node-child"), 1U);
     EXPECT_EQ(countWarnings(scene, "scene-node-repeated"), 1U);
+    EXPECT_EQ(mustImport(R"("nodes": [{"children": [1]}, {"children": [2]}, {}],
+        "scenes": [{"nodes": [2, 1, 0]}])")
+                  .nodes.size(),
+              3U);
+}
+
+// A listed child keeps its global transform, and nothing else of the nodes above it is drawn.
+TEST(GltfNodes, PlaceListedChildrenByTheirAncestors) {
+    const gltf::Scene scene = mustImport(R"("nodes": [
+            {"name": "root", "translation": [1, 0, 0], "children": [1, 4], "mesh": 0, "camera": 0},
+            {"name": "middle", "scale": [2, 2, 2], "children": [2, 3]},
+            {"name": "drawn", "translation": [0, 1, 0], "children": [5], "mesh": 0},
+            {"name": "drawn, too", "mesh": 0},
+            {"name": "not listed", "mesh": 0},
+            {"name": "below", "mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"componentType": 5126, "count": 3, "type": "VEC3"}],
+        "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}],
+        "scenes": [{"nodes": [2, 3]}])");
+    std::vector<std::string> names;
+    for (const gltf::Node& node : scene.nodes) {
+        names.push_back(node.name);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"root", "middle", "drawn", "below", "drawn, too"}));
+    expectNear(scene.nodes.at(2).world, {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 2, 0, 1});
+    EXPECT_EQ(scene.nodes.at(0).mesh, -1);
+    EXPECT_EQ(scene.nodes.at(1).mesh, -1);
+    EXPECT_EQ(scene.nodes.at(2).mesh, 0);
+    EXPECT_EQ(scene.nodes.at(3).mesh, 0);
+    EXPECT_TRUE(scene.cameras.empty());
+    EXPECT_EQ(countWarnings(scene, "scene-node-child"), 2U);
+    EXPECT_EQ(findWarning(scene, "scene-node-child").message,
+              "names /nodes/2, a child of /nodes/1, which the scene does not have; it is drawn with the "
+              "transforms of the nodes above it");
+
+    // A hidden ancestor hides what is below it.
+    const gltf::Scene hidden = mustImport(R"("extensionsUsed": ["KHR_node_visibility"], "nodes": [
+            {"children": [1], "extensions": {"KHR_node_visibility": {"visible": false}}}, {}],
+        "scenes": [{"nodes": [1]}])");
+    EXPECT_FALSE(hidden.nodes.at(1).shown);
 }
 
 TEST(GltfNodes, RefusesGraphsThatAreNoForest) {

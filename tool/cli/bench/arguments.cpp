@@ -25,8 +25,8 @@ constexpr const char* kDenoise = "denoise";  // of --only; it is no setting
 // These options decide about the picture, but no bench sweeps them. A point's command includes those that
 // were given.
 bool isView(const CLI::Option& option) {
-    constexpr std::string_view kViews[] = {"--camera",    "--environment", "--variant", "--strict-paths",
-                                           "--materials", "--host",        "--device"};
+    constexpr std::string_view kViews[] = {"--camera",       "--environment", "--scene", "--variant",
+                                           "--strict-paths", "--materials",   "--host",  "--device"};
     const std::string name = option.get_name();
     return std::ranges::find(kViews, name) != std::end(kViews) ||
            std::ranges::any_of(compiler::settingsTable(), [&](const compiler::Descriptor& row) {

@@ -223,6 +223,9 @@ void addCalibration(CLI::App& command, compiler::Settings& settings) {
 }
 
 void addReadingOptions(CLI::App& command, compiler::Settings& settings) {
+    addText(command, "--scene", settings.sceneInFile, "NAME|INDEX",
+            "draw this one of the file's scenes; numbers count from 0\n(default: the file's own choice, or "
+            "else the first)");
     addText(command, "--variant", settings.variant, "NAME",
             "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
     addFlag(command, "--strict-paths", settings.strictPaths,
@@ -305,6 +308,7 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, Im
     options.trustTextures = settings.compile.trustTextures;
     options.memo = texels;
     options.memoScope = texels != nullptr ? compiler::programIdentity() : "";
+    options.scene = settings.sceneInFile;
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;
     options.jobs = settings.compile.jobs;

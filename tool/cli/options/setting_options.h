@@ -26,7 +26,7 @@ void checkProfile(const CLI::App& command, const compiler::Settings& settings);
 void addProfileInput(CLI::App& command, compiler::Settings& settings);
 // Adds --calibration: the device file by which --strategy auto chooses.
 void addCalibration(CLI::App& command, compiler::Settings& settings);
-// Adds --variant NAME, --strict-paths and --materials DIR.
+// Adds --scene NAME|INDEX, --variant NAME, --strict-paths and --materials DIR.
 void addReadingOptions(CLI::App& command, compiler::Settings& settings);
 
 // Returns the warning "setting-idle": `words` of the command line change nothing, for a reason.

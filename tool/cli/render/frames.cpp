@@ -10,6 +10,7 @@
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/pose.h>
 
+#include <algorithm>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -105,7 +106,12 @@ public:
 
     // `frame.seconds` is the time that materials follow.
     Result<LinearImage> render(FrameReport& frame) {
-        FrameOptions options = measure::frameOptions(setup_.arguments, camera_, sky_, setup_.environment);
+        // Reasons that are certain before the picture is made save the time that it takes.
+        if (!warned_) {
+            warn(scene_view::nothingSeen(scene_, data_, camera_));
+        }
+        FrameOptions options =
+            measure::frameOptions(setup_.arguments, camera_.view, sky_, setup_.environment);
         options.timing = Timing::Passes;
         options.time = static_cast<float>(frame.seconds);
         // Counting takes time that would be added to that of the passes, so it is on only if the counts are
@@ -132,6 +138,15 @@ public:
         }
         if (Status measured = measure(frame); !measured) {
             return measured.error();
+        }
+        if (!warned_) {
+            const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
+            if (!surfaces) {
+                return surfaces.error();
+            }
+            if (std::ranges::all_of(*surfaces, [](std::uint8_t isSurface) { return isSurface == 0; })) {
+                warn(scene_view::nothingSeen(scene_, data_, camera_, true));
+            }
         }
         return setup_.arguments.denoise ? denoised(*image, *renderer_) : std::move(image);
     }
@@ -190,8 +205,16 @@ private:
         if (!moved) {
             return moved.error();
         }
-        camera_ = moved->view;
+        camera_ = *moved;
         return okStatus();
+    }
+
+    // Once is enough for all pictures.
+    void warn(const std::optional<Diagnostic>& warning) {
+        if (warning) {
+            warned_ = true;
+            setup_.console.report(*warning);
+        }
     }
 
     Status addHits() {
@@ -239,13 +262,14 @@ private:
     gltf::Scene& scene_;
     scene_view::SceneViewData& data_;
     RenderReport& report_;
-    CameraView camera_;
+    scene_view::CameraChoice camera_;
     std::size_t samplesDone_ = 0;  // of all pictures
     scene_view::SkyChoice sky_;
     package::Effect onScreen_ = 0;  // for --coverage
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
-    bool begun_ = false;  // a sample is complete
+    bool begun_ = false;   // a sample is complete
+    bool warned_ = false;  // a picture shows nothing
 };
 
 // Writes the picture of a frame, or its view.

@@ -1,6 +1,7 @@
 // Renders the pictures of glint render: one picture, or a sequence in which the scene moves.
 #pragma once
 
+#include "cli/console.h"
 #include "cli/options/motion_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/report.h"
@@ -9,6 +10,7 @@
 #include <glint/context.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
+#include <glint/scene_view/camera.h>
 #include <glint/scene_view/scene_view.h>
 
 #include <functional>
@@ -17,11 +19,12 @@
 namespace glint::cli {
 
 struct FrameSetup {
+    const Console& console;
     const RenderArguments& arguments;
     RendererOptions renderer;
     const Environment* environment = nullptr;  // null: none
     const std::optional<Movement>& movement;   // nothing: the rest pose
-    CameraView camera;                         // of the first picture
+    scene_view::CameraChoice camera;           // of the first picture
     double aspect = 1.0;                       // width / height
     const LinearImage* reference = nullptr;    // that of --view-reference; null: none
     // Gets how many samples of all pictures are done, and how many there are.

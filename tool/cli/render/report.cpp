@@ -236,6 +236,7 @@ base::Json toJson(const RenderReport& report) {
             {"milliseconds", pass.milliseconds}});
     }
     return {{"scene", report.scene},
+            {"sceneInFile", compiler::sceneInFileToJson(report.sceneInFile)},
             {"image", report.image},
             {"device", report.device},
             {"driver", report.driver},

@@ -5,6 +5,7 @@
 #include "cli/report.h"
 #include "cli/table.h"
 #include "cli/traffic.h"
+#include "gltf/import.h"
 #include "plan/strategy_choice.h"
 
 #include <glint/environment.h>
@@ -55,6 +56,7 @@ TextureReport textureReport(std::span<const ImageView> images);
 
 struct RenderReport {
     std::string scene;
+    gltf::SceneInFile sceneInFile;
     std::string image;
     std::string device;
     std::string driver;

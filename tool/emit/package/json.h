@@ -1,6 +1,7 @@
 // JSON forms that several files share.
 #pragma once
 
+#include "gltf/import.h"
 #include "plan/effects.h"
 #include "plan/strategy_choice.h"
 
@@ -20,6 +21,15 @@ inline nlohmann::ordered_json countToJson(double count) {
     constexpr double kLargest = 9007199254740992.0;  // 2^53
     return count <= kLargest ? nlohmann::ordered_json(static_cast<std::uint64_t>(count))
                              : nlohmann::ordered_json(count);
+}
+
+// Says which of a file's scenes was read; null if the file has none.
+inline nlohmann::ordered_json sceneInFileToJson(const gltf::SceneInFile& scene) {
+    return scene.index < 0
+               ? nlohmann::ordered_json(nullptr)
+               : nlohmann::ordered_json{{"index", scene.index},
+                                        {"name", scene.name.empty() ? nlohmann::ordered_json(nullptr)
+                                                                    : nlohmann::ordered_json(scene.name)}};
 }
 
 // Rounds a share of hits to four decimals, which is more than its accuracy.

@@ -51,6 +51,7 @@ Status ObjectReader::texture(std::string_view member, TextureTable& textures,
                        fmt::format("uses UV set {}; Glint reads sets 0 and 1, and leaves the texture out",
                                    read.texCoord),
                        "move the coordinates to TEXCOORD_0 or TEXCOORD_1");
+        info.texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
     const Result<int> texture = textures.use((*json)["index"].get<int>());

@@ -1,10 +1,12 @@
 #include "gltf/motion/nodes.h"
 
+#include "base/suggest.h"
 #include "gltf/motion/transform.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -64,38 +66,146 @@ Status checkCycles(const Document& document, const std::vector<int>& parents) {
     return okStatus();
 }
 
-// Returns the nodes at which the default scene starts, in the file's order.
-std::vector<std::size_t> findRoots(Document& document, const std::vector<int>& parents) {
+Diagnostic unknownScene(const Document& document, const Scene& scene) {
+    const std::string& wanted = document.options().scene;
+    if (scene.scenesInFile.empty()) {
+        return document.error(
+            "scene-unknown", "",
+            fmt::format("has no scene \"{}\": it has no scenes, and all its nodes are drawn", wanted),
+            "leave --scene out");
+    }
+    std::vector<std::string> labels;
+    for (std::size_t i = 0; i < scene.scenesInFile.size(); ++i) {
+        labels.push_back(sceneLabel(scene, i));
+    }
+    return document.error("scene-unknown", "/scenes",
+                          fmt::format("has no scene \"{}\"{}{}", wanted, base::enumeration(labels),
+                                      base::suggestion(wanted, scene.scenesInFile)),
+                          "use --scene with a name, or a number from 0");
+}
+
+// Decides which of the file's scenes is read, and lists them all.
+Status chooseScene(Document& document, Scene& scene) {
     const Json& scenes = arrayMember(document.json(), "scenes");
-    std::vector<std::size_t> roots;
-    if (scenes.empty()) {
+    for (const Json& json : scenes) {
+        scene.scenesInFile.push_back(textMember(json, "name"));
+    }
+    const std::string& wanted = document.options().scene;
+    const auto count = static_cast<int>(scenes.size());
+    if (wanted.empty()) {
+        scene.sceneInFile = count > 0 ? integerMember(document.json(), "scene", 0) : -1;
+        if (count > 1 && find(document.json(), "scene") == nullptr) {
+            document.note("scene-choice", "/scenes",
+                          fmt::format("the file names none of its {} scenes as the default; scene {} is read",
+                                      count, sceneLabel(scene, 0)),
+                          "choose another by --scene");
+        }
+        return okStatus();
+    }
+    const char* const end = wanted.data() + wanted.size();
+    const auto parsed = std::from_chars(wanted.data(), end, scene.sceneInFile);
+    if (parsed.ec == std::errc() && parsed.ptr == end && scene.sceneInFile >= 0 &&
+        scene.sceneInFile < count) {
+        return okStatus();
+    }
+    const auto named = std::ranges::find(scene.scenesInFile, wanted);
+    if (named == scene.scenesInFile.end()) {
+        return unknownScene(document, scene);
+    }
+    scene.sceneInFile = static_cast<int>(named - scene.scenesInFile.begin());
+    return okStatus();
+}
+
+// How much of a node of the file the scene has.
+enum class Part : std::uint8_t {
+    None,
+    Transform,  // of an ancestor that the scene does not have: it only places what is below it
+    Whole
+};
+
+struct Extent {
+    std::vector<Part> parts;         // by number in the file
+    std::vector<std::size_t> roots;  // nodes without a parent, from which all parts are reached, in order
+};
+
+void takeTree(const Document& document, std::size_t top, std::vector<Part>& parts) {
+    std::vector<std::size_t> open{top};
+    while (!open.empty()) {
+        const std::size_t node = open.back();
+        open.pop_back();
+        if (parts[node] == Part::Whole) {
+            continue;  // and so is everything below it
+        }
+        parts[node] = Part::Whole;
+        for (const Json& child : arrayMember(document.json()["nodes"][node], "children")) {
+            open.push_back(child.get<std::size_t>());
+        }
+    }
+}
+
+// Warns of what a scene may not list, and returns the other nodes in the file's order.
+std::vector<std::size_t> listedNodes(Document& document, int scene, std::size_t count) {
+    std::vector<std::size_t> nodes;
+    std::vector<bool> known(count);
+    const Json& list = arrayMember(document.json()["scenes"][static_cast<std::size_t>(scene)], "nodes");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const auto node = list[i].get<std::size_t>();
+        if (known[node]) {
+            document.warn("scene-node-repeated", fmt::format("/scenes/{}/nodes/{}", scene, i),
+                          "names a node that the scene has already", kExportNodes);
+            continue;
+        }
+        known[node] = true;
+        nodes.push_back(node);
+    }
+    return nodes;
+}
+
+// Takes along the nodes above a listed one, up to those that were taken before.
+void takeAncestors(std::size_t node, const std::vector<int>& parents, Extent& extent) {
+    std::size_t top = node;
+    bool isNew = true;
+    while (isNew && parents[top] >= 0) {
+        top = static_cast<std::size_t>(parents[top]);
+        isNew = extent.parts[top] == Part::None;
+        extent.parts[top] = isNew ? Part::Transform : extent.parts[top];
+    }
+    if (isNew) {
+        extent.roots.push_back(top);
+    }
+}
+
+// A scene should list roots. A listed node that has a parent keeps the global transform that glTF gives it,
+// so the nodes above it are taken along for their transforms.
+Extent extentOf(Document& document, int scene, const std::vector<int>& parents) {
+    Extent extent{std::vector<Part>(parents.size(), Part::None), {}};
+    std::vector<std::size_t> listed;
+    if (scene < 0) {
         for (std::size_t i = 0; i < parents.size(); ++i) {
             if (parents[i] < 0) {
-                roots.push_back(i);
+                listed.push_back(i);
             }
         }
-        return roots;
+    } else {
+        listed = listedNodes(document, scene, parents.size());
     }
-    const std::uint64_t scene = sizeMember(document.json(), "scene");
-    const Json& nodes = arrayMember(scenes[scene], "nodes");
-    std::vector<bool> listed(parents.size());
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto node = nodes[i].get<std::size_t>();
-        const std::string pointer = fmt::format("/scenes/{}/nodes/{}", scene, i);
-        if (listed[node]) {
-            document.warn("scene-node-repeated", pointer, "names a node that the scene has already",
-                          kExportNodes);
-        } else if (parents[node] >= 0) {
+    for (const std::size_t node : listed) {
+        takeTree(document, node, extent.parts);
+    }
+    for (const std::size_t node : listed) {
+        const int parent = parents[node];
+        if (parent >= 0) {
+            const bool isBelow = extent.parts[static_cast<std::size_t>(parent)] == Part::Whole;
             document.warn(
-                "scene-node-child", pointer,
-                fmt::format("names a child of /nodes/{}; it is drawn only below that", parents[node]),
-                kExportNodes);
-        } else {
-            roots.push_back(node);
+                "scene-node-child", fmt::format("/scenes/{}/nodes", scene),
+                fmt::format("names /nodes/{}, a child of /nodes/{}, which the scene {}", node, parent,
+                            isBelow ? "has, too; it is drawn once"
+                                    : "does not have; it is drawn with the transforms of the nodes above it"),
+                "list the root of the tree");
         }
-        listed[node] = true;
+        takeAncestors(node, parents, extent);
     }
-    return roots;
+    return extent;
 }
 
 std::array<double, 4> readRotation(Document& document, const std::vector<double>& values,
@@ -177,12 +287,11 @@ Status placeLight(Document& document, int light, Node& node, Scene& scene) {
     return okStatus();
 }
 
-Status appendNode(Document& document, std::size_t index, int parent, Scene& scene) {
+Status appendNode(Document& document, std::size_t index, Part part, int parent, Scene& scene) {
     const Json& json = document.json()["nodes"][index];
     Node node;
     node.name = textMember(json, "name");
     node.parent = parent;
-    node.mesh = indexMember(json, "mesh");
     node.source = static_cast<int>(index);
     const Matrix4 above = parent < 0 ? identity() : scene.nodes[static_cast<std::size_t>(parent)].world;
     node.world = multiply(above, readTransform(document, index, node));
@@ -193,6 +302,11 @@ Status appendNode(Document& document, std::size_t index, int parent, Scene& scen
     if (const Json* const visibility = findExtension(json, "KHR_node_visibility")) {
         node.visible = boolMember(*visibility, "visible", true);
     }
+    if (part == Part::Transform) {
+        scene.nodes.push_back(std::move(node));
+        return okStatus();
+    }
+    node.mesh = indexMember(json, "mesh");
     if (const int camera = indexMember(json, "camera"); camera >= 0) {
         if (Status status = placeCamera(document, camera, node, scene); !status) {
             return status;
@@ -217,26 +331,33 @@ Status importNodes(Document& document, Scene& scene) {
     if (Status status = checkCycles(document, *parents); !status) {
         return status;
     }
+    if (Status status = chooseScene(document, scene); !status) {
+        return status;
+    }
+    const Extent extent = extentOf(document, scene.sceneInFile, *parents);
     // Nodes are visited depth first, and children in the file's order. The last one on the stack is next.
     struct Pending {
         std::size_t node;
         int parent;  // index into scene.nodes
     };
     std::vector<Pending> pending;
-    const std::vector<std::size_t> roots = findRoots(document, *parents);
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+    for (auto root = extent.roots.rbegin(); root != extent.roots.rend(); ++root) {
         pending.push_back({*root, -1});
     }
     while (!pending.empty()) {
         const Pending next = pending.back();
         pending.pop_back();
         const int parent = static_cast<int>(scene.nodes.size());
-        if (Status status = appendNode(document, next.node, next.parent, scene); !status) {
+        if (Status status = appendNode(document, next.node, extent.parts[next.node], next.parent, scene);
+            !status) {
             return status;
         }
         const Json& children = arrayMember(document.json()["nodes"][next.node], "children");
         for (std::size_t i = children.size(); i-- > 0;) {
-            pending.push_back({children[i].get<std::size_t>(), parent});
+            const auto child = children[i].get<std::size_t>();
+            if (extent.parts[child] != Part::None) {
+                pending.push_back({child, parent});
+            }
         }
     }
     return okStatus();

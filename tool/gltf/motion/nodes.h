@@ -1,4 +1,4 @@
-// Imports the node hierarchy of the default scene, and the cameras and lights that it places.
+// Imports the node hierarchy of one of the file's scenes, and the cameras and lights that it places.
 #pragma once
 
 #include "gltf/document/document.h"
@@ -8,8 +8,8 @@
 
 namespace glint::gltf {
 
-// Fills nodes, cameras and lights of the scene. Errors: "node-cycle", "node-parents" (a node with two
-// parents), "node-transform", "camera-range".
+// Chooses the scene by ImportOptions::scene, and fills its nodes, cameras and lights. Errors: "node-cycle",
+// "node-parents" (a node with two parents), "node-transform", "camera-range", "scene-unknown".
 Status importNodes(Document& document, Scene& scene);
 
 // These import a camera or light of the file and place it. They are part of importNodes().

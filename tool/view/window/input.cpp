@@ -60,6 +60,7 @@ void Window::openFile(const std::string& file) {
                 opening_->wanted.push_back(one->wanted);
                 one->wanted.camera.clear();
                 one->wanted.package.clear();
+                one->wanted.sceneInFile.clear();
                 one->wanted.variant.clear();
             }
         }

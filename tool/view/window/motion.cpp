@@ -53,6 +53,10 @@ void Window::startCamera() {
         cameraIsNew_ = true;
         return;
     }
+    if (const std::optional<Diagnostic> warning =
+            scene_view::nothingSeen(one.picture.scene(), one.picture.data(), *choice)) {
+        report(*warning);
+    }
     if (orbitDistance_ <= 0.0) {
         orbitDistance_ = distanceToMiddle(choice->view);
     }

@@ -1,6 +1,8 @@
 // The results of a bench, and the files that show them.
 #pragma once
 
+#include "gltf/import.h"
+
 #include <glint/measure/machine.h>
 #include <glint/measure/point.h>
 #include <glint/measure/settings.h>
@@ -98,6 +100,7 @@ ErrorParts partsOfError(std::span<const BenchPoint> points, std::span<const Sett
 
 struct BenchScene {
     std::string file;
+    gltf::SceneInFile inFile{};
     std::uint64_t triangles = 0;
     std::uint32_t instances = 0;
     std::size_t materials = 0;

@@ -65,4 +65,11 @@ Result<CameraChoice> chooseCamera(const gltf::Scene& scene, const SceneViewData&
 Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& framed,
                                         const std::string& wanted, double aspect);
 
+// Returns the warning "nothing-seen" if no triangle can be in a picture of this camera at the pose of
+// `scene`: all are outside of the frustum, hidden, without an area, or one-sided and turned away. It stops at
+// the first triangle that may be seen. `isCertain`: the picture has no surface, and the warning looks for the
+// reasons. Returns nothing for a scene without instances, of which importScene() warns.
+std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewData& view,
+                                      const CameraChoice& camera, bool isCertain = false);
+
 }  // namespace glint::scene_view

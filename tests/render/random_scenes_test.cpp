@@ -1,0 +1,347 @@
+// Random scenes: no number is wrong, no picture is empty in silence, and neither the strategy, nor how the
+// file writes the scene, nor where the scene is, changes the picture. By day there are 200 scenes, at night
+// 10,000. GLINT_RANDOM_SCENE=SEED checks one alone, with all strategies; GLINT_RANDOM_FIRST=SEED starts
+// elsewhere.
+#include "gltf/import.h"
+#include "render/edited_scene.h"
+#include "render/random_scene.h"
+#include "support/nightly.h"
+#include "unit/gltf/gltf_builder.h"
+
+#include <glint/scene_view/camera.h>
+#include <glint/strategies.h>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+constexpr std::uint32_t kSide = 16;  // pixels
+// By day one of so many scenes is drawn with all strategies.
+constexpr std::uint64_t kAllStrategiesEach = 8;
+
+std::optional<std::uint64_t> numberIn(const char* variable) {
+    const char* const text = std::getenv(variable);
+    return text == nullptr ? std::nullopt : std::optional<std::uint64_t>(std::strtoull(text, nullptr, 10));
+}
+
+struct Picture {
+    LinearImage image;
+    scene_view::CameraChoice camera;
+    bool hasSurface = false;
+    bool ok() const {
+        return !image.pixels.empty();
+    }
+};
+
+// A package for all random scenes, and renderers that draw one after the other, so that no pipeline is made
+// twice.
+class Stage {
+public:
+    Stage() : scene_(read(everyRandomMaterial())) {
+        compiler::CompileSettings settings;
+        settings.strategies = package::allStrategies();
+        settings.tracers = sharedContext().handles().tracers;
+        settings.plan.merge = compiler::MergePolicy::Family;
+        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+        settings.effects = {false, compiler::builtinEffects({"shadow", "reflection", "refraction"})};
+        settings.emissiveLights = compiler::EmissiveLights::Off;
+        loaded_ = std::make_unique<LoadedScene>(scene_, settings);
+        if (!loaded_->ok()) {
+            return;
+        }
+        layout_ = scene_view::recordLayoutOf(package(), scene_.materials.front().model());
+        data_ = scene_view::makeSceneView(scene_);
+        SceneView view = data_.view();
+        view.editable = true;
+        view.vertices = VertexForm::Full;
+        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package(), view);
+        if (!uploaded) {
+            ADD_FAILURE() << toString(uploaded.error());
+            return;
+        }
+        gpuScene_ = std::move(*uploaded);
+        textures_ = scene_view::uploadedTextures(editor(), package().scene(0), scene_);
+        for (std::uint32_t i = 0; i < data_.instances.size(); ++i) {
+            instances_.push_back(editor().instance(i));
+            meshes_.push_back(editor().mesh(data_.instances[i].mesh));
+        }
+        lights_.push_back(editor().light(0));
+        frames_ = std::make_unique<TwoFrames>(sharedContext());
+        for (const package::Strategy strategy : package::strategies()) {
+            RendererOptions options;
+            options.strategy = strategy;
+            options.width = options.height = kSide;
+            Result<std::unique_ptr<Renderer>> made =
+                Renderer::create(sharedContext(), package(), *gpuScene_, options);
+            if (!made) {
+                ADD_FAILURE() << toString(made.error());
+                return;
+            }
+            renderers_.push_back(std::move(*made));
+        }
+        ok_ = true;
+    }
+    bool ok() const {
+        return ok_;
+    }
+
+    // Reads a file as the command does. The scene is empty if that fails.
+    static gltf::Scene read(const std::string& file) {
+        gltf::ImportOptions options;
+        options.decodeImages = true;
+        Result<gltf::Scene> scene = test::importText(file, options);
+        if (!scene) {
+            ADD_FAILURE() << toString(scene.error());
+            return {};
+        }
+        return std::move(*scene);
+    }
+
+    // Puts a scene into the place of the last one, and draws it with the first `count` strategies. All
+    // pictures must be the same; the first is returned. Fails the test where nothing is seen in silence.
+    // `given` takes the place of the scene's own camera.
+    Picture draw(const std::string& file, std::size_t count,
+                 const std::optional<scene_view::CameraChoice>& given = std::nullopt) {
+        const gltf::Scene scene = read(file);
+        if (scene.materials.size() != scene_.materials.size()) {
+            return {};
+        }
+        const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+        const Result<scene_view::CameraChoice> camera =
+            given ? Result<scene_view::CameraChoice>(*given) : scene_view::chooseCamera(scene, data, "", 1.0);
+        if (!camera) {
+            ADD_FAILURE() << toString(camera.error());
+            return {};
+        }
+        clear();
+        fill(scene, data);
+        submit();
+        FrameOptions frame;
+        frame.camera = camera->view;
+        Picture first;
+        first.camera = *camera;
+        for (std::size_t i = 0; i < count; ++i) {
+            Result<LinearImage> image = renderers_[i]->render(frame);
+            if (!image) {
+                ADD_FAILURE() << toString(image.error());
+                return {};
+            }
+            const std::string name(package::nameOf(package::strategies()[i]));
+            if (i > 0) {
+                expectSameImage(*image, first.image, name);
+                continue;
+            }
+            first.image = std::move(*image);
+            expectFinite(first.image);
+            const Result<std::vector<std::uint8_t>> surfaces = renderers_[i]->readSurfaces();
+            EXPECT_TRUE(surfaces);
+            first.hasSurface = surfaces && std::ranges::find(*surfaces, 1) != surfaces->end();
+        }
+        expectNotSilent(scene, data, *camera, first.hasSurface);
+        expectNoValidationMessages();
+        return first;
+    }
+
+private:
+    const Package& package() const {
+        return loaded_->package();
+    }
+    SceneEditor& editor() {
+        return *gpuScene_->editor();
+    }
+    static void expect(const Status& status) {
+        EXPECT_TRUE(status) << (status ? "" : toString(status.error()));
+    }
+
+    void clear() {
+        for (const InstanceHandle instance : instances_) {
+            expect(editor().removeInstance(instance));
+        }
+        for (const MeshHandle mesh : meshes_) {
+            expect(editor().removeMesh(mesh));
+        }
+        for (const LightHandle light : lights_) {
+            expect(editor().removeLight(light));
+        }
+        instances_.clear();
+        meshes_.clear();
+        lights_.clear();
+    }
+
+    void fill(const gltf::Scene& scene, const scene_view::SceneViewData& data) {
+        std::vector<MaterialHandle> materials;
+        for (std::uint32_t i = 0; i < scene.materials.size(); ++i) {
+            materials.push_back(editor().material(i));
+            const scene_view::MaterialSourceData source =
+                scene_view::makeMaterialSource(package(), layout_, scene, scene.materials[i], textures_);
+            const Result<EditReport> set = editor().setMaterial(materials[i], source.view());
+            EXPECT_TRUE(set) << (set ? "" : toString(set.error()));
+        }
+        std::vector<MeshHandle> byNumber(scene.meshes.size());
+        for (std::size_t i = 0; i < data.primitives.size();) {
+            const std::uint32_t mesh = data.primitives[i].mesh;
+            std::vector<EditedPrimitive> primitives;
+            for (; i < data.primitives.size() && data.primitives[i].mesh == mesh; ++i) {
+                const gltf::Primitive& primitive =
+                    scene.meshes[mesh].primitives[data.primitives[i].primitive];
+                primitives.push_back(
+                    {data.primitives[i], materials[static_cast<std::size_t>(primitive.material)]});
+            }
+            const Result<AddedMesh> added = editor().addMesh(primitives);
+            ASSERT_TRUE(added) << toString(added.error());
+            byNumber[mesh] = added->mesh;
+            meshes_.push_back(added->mesh);
+        }
+        for (const InstanceView& view : data.instances) {
+            const Result<AddedInstance> added =
+                editor().addInstance({byNumber[view.mesh], view.objectToWorld, view.visible});
+            ASSERT_TRUE(added) << toString(added.error());
+            instances_.push_back(added->instance);
+        }
+        std::vector<LightView> lights = data.lights;
+        if (lights.empty()) {
+            lights.push_back(scene_view::sunLight());
+        }
+        for (const LightView& light : lights) {
+            const Result<LightHandle> added = editor().addLight(light);
+            ASSERT_TRUE(added) << toString(added.error());
+            lights_.push_back(*added);
+        }
+    }
+
+    // Submits the edits.
+    void submit() {
+        const VkCommandBuffer commands = frames_->begin();
+        editor().complete(frames_->completed());
+        expect(editor().record(commands, frames_->frame()));
+        frames_->submit();
+        frames_->drain();
+        editor().complete(frames_->completed());
+    }
+
+    static void expectFinite(const LinearImage& image) {
+        const auto isFinite = [](const std::array<float, 4>& pixel) {
+            return std::ranges::all_of(pixel, [](float value) { return std::isfinite(value); });
+        };
+        EXPECT_TRUE(std::ranges::all_of(image.pixels, isFinite)) << "the picture has NaN or infinity";
+    }
+
+    // A picture without a surface has a warning, and one that is sure of it before it is made is right.
+    static void expectNotSilent(const gltf::Scene& scene, const scene_view::SceneViewData& data,
+                                const scene_view::CameraChoice& camera, bool hasSurface) {
+        const bool isEmpty = test::countWarnings(scene, "nothing-drawn") > 0;
+        EXPECT_EQ(isEmpty, data.instances.empty());
+        const std::optional<Diagnostic> early = scene_view::nothingSeen(scene, data, camera);
+        if (hasSurface) {
+            EXPECT_FALSE(isEmpty) << "the scene has a surface";
+            EXPECT_FALSE(early) << toString(*early);
+        } else {
+            EXPECT_TRUE(isEmpty || scene_view::nothingSeen(scene, data, camera, true))
+                << "nothing is seen, and nothing says so";
+        }
+    }
+
+    const gltf::Scene scene_;  // of the package
+    std::unique_ptr<LoadedScene> loaded_;
+    compiler::MaterialLayout layout_;
+    scene_view::SceneViewData data_;
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::vector<scene_view::EditedTextures> textures_;
+    std::unique_ptr<TwoFrames> frames_;
+    std::vector<std::unique_ptr<Renderer>> renderers_;
+    std::vector<MeshHandle> meshes_;
+    std::vector<InstanceHandle> instances_;
+    std::vector<LightHandle> lights_;
+    bool ok_ = false;
+};
+
+// Vertices of the two round differently. So a pixel at an edge may see another surface, in the picture or in
+// a reflection, and all others agree.
+void expectSimilar(const Picture& picture, const Picture& reference, const std::string& what) {
+    constexpr double kMost = 2e-3;
+    constexpr std::size_t kMostEdges = kSide * kSide / 16;
+    ASSERT_TRUE(picture.ok() && reference.ok()) << what;
+    std::size_t edges = 0;
+    for (std::size_t i = 0; i < picture.image.pixels.size(); ++i) {
+        bool differs = false;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const double value = reference.image.pixels[i][channel];
+            differs = differs || !(std::abs(picture.image.pixels[i][channel] - value) <=
+                                   kMost * std::max(1.0, std::abs(value)));
+        }
+        edges += differs ? 1 : 0;
+    }
+    EXPECT_LE(edges, kMostEdges) << what << ": pixels differ from those of the tree at the origin";
+}
+
+// Keeps the files of a scene that failed.
+void keep(const RandomScene& scene, std::uint64_t seed) {
+    const std::filesystem::path folder = std::filesystem::path(GLINT_BINARY_DIR) / "random_scenes";
+    std::filesystem::create_directories(folder);
+    const std::pair<const char*, std::string> files[] = {
+        {"tree", scene.file({}, SceneForm::Tree)},
+        {"baked", scene.file({}, SceneForm::Baked)},
+        {"moved", scene.file(scene.place(), SceneForm::Tree)}};
+    for (const auto& [name, text] : files) {
+        EXPECT_TRUE(base::writeFile(folder / fmt::format("{}-{}.gltf", seed, name), text));
+    }
+    ADD_FAILURE() << fmt::format(
+        "scene {0} failed; its files are {1}/{0}-*.gltf; alone: GLINT_RANDOM_SCENE={0} test_random_scenes",
+        seed, folder.string());
+}
+
+TEST(RandomScenes, LookTheSameInEveryWay) {
+    Stage stage;
+    ASSERT_TRUE(stage.ok());
+    const std::optional<std::uint64_t> only = numberIn("GLINT_RANDOM_SCENE");
+    const std::uint64_t first = only ? *only : numberIn("GLINT_RANDOM_FIRST").value_or(1);
+    const std::uint64_t count = only ? 1 : test::nightly() ? 10000 : 200;
+    constexpr int kMostFailures = 10;
+    int failures = 0;
+    std::uint64_t empty = 0;
+    for (std::uint64_t seed = first; seed < first + count && failures < kMostFailures; ++seed) {
+        const RandomScene scene(seed);
+        const ScenePlace& place = scene.place();
+        const auto trace = [&](const char* form) {
+            return fmt::format("scene {}, {}: scale {:g}, offset {:g} {:g} {:g}", seed, form, place.scale,
+                               place.offset[0], place.offset[1], place.offset[2]);
+        };
+        const int before =
+            ::testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count();
+        const bool all = only || test::nightly() || seed % kAllStrategiesEach == 0;
+        const std::size_t strategies = all ? package::strategies().size() : 1;
+        {
+            SCOPED_TRACE(trace("tree"));
+            const Picture tree = stage.draw(scene.file({}, SceneForm::Tree), strategies);
+            empty += tree.hasSurface ? 0 : 1;
+            SCOPED_TRACE(trace("baked or moved"));
+            // A camera that frames everything sees boxes, which are smaller there.
+            expectSimilar(stage.draw(scene.file({}, SceneForm::Baked), 1, tree.camera), tree, "baked");
+            expectSimilar(stage.draw(scene.file(place, SceneForm::Tree), strategies), tree, "moved");
+        }
+        const int after =
+            ::testing::UnitTest::GetInstance()->current_test_info()->result()->total_part_count();
+        if (after > before) {
+            keep(scene, seed);
+            ++failures;
+        }
+    }
+    // Some cameras look away. If most did, the pictures would show little.
+    EXPECT_LT(empty, std::max<std::uint64_t>(count / 4, 2));
+}
+
+}  // namespace

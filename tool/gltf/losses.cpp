@@ -1,0 +1,159 @@
+#include "gltf/losses.h"
+
+#include "gltf/import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace glint::gltf {
+
+namespace {
+
+const Mesh& meshOf(const Scene& scene, const Node& node) {
+    return scene.meshes[static_cast<std::size_t>(node.mesh)];
+}
+
+// Lists the first few primitives without triangles, with their reasons.
+std::string leftOutText(const Scene& scene) {
+    constexpr std::size_t kShown = 3;
+    std::string text;
+    std::size_t count = 0;
+    for (const Mesh& mesh : scene.meshes) {
+        for (const std::string& reason : mesh.leftOut) {
+            text += ++count > kShown ? "" : (count > 1 ? "; " : "") + reason;
+        }
+    }
+    return count > kShown ? fmt::format("{}; and {} more", text, count - kShown) : text;
+}
+
+// Returns an empty text if a node draws a triangle.
+std::string whyNothingIsDrawn(const Scene& scene) {
+    bool hasMesh = false;
+    bool isShown = false;
+    bool isPlaced = false;
+    for (const Node& node : scene.nodes) {
+        const bool has = node.mesh >= 0;
+        const bool shows = has && node.canShow;
+        const bool places = shows && (node.instancing < 0 ||
+                                      scene.instancings[static_cast<std::size_t>(node.instancing)].count > 0);
+        if (places && !meshOf(scene, node).primitives.empty()) {
+            return {};
+        }
+        hasMesh = hasMesh || has;
+        isShown = isShown || shows;
+        isPlaced = isPlaced || places;
+    }
+    if (scene.nodes.empty()) {
+        return "it has no nodes";
+    }
+    if (!hasMesh) {
+        return fmt::format("none of its {} nodes has a mesh", scene.nodes.size());
+    }
+    if (!isShown) {
+        return "each node with a mesh is hidden at all times (KHR_node_visibility)";
+    }
+    return isPlaced ? "no primitive has a triangle: " + leftOutText(scene) : "its nodes have no instances";
+}
+
+// Returns whether a scene of the file has a node with a mesh.
+bool hasMeshes(const Document& document, std::size_t scene) {
+    const Json& nodes = arrayMember(document.json(), "nodes");
+    std::vector<bool> known(nodes.size());
+    std::vector<std::size_t> open;
+    for (const Json& node : arrayMember(document.json()["scenes"][scene], "nodes")) {
+        open.push_back(node.get<std::size_t>());
+    }
+    while (!open.empty()) {
+        const std::size_t node = open.back();
+        open.pop_back();
+        if (known[node]) {
+            continue;
+        }
+        known[node] = true;
+        if (indexMember(nodes[node], "mesh") >= 0) {
+            return true;
+        }
+        for (const Json& child : arrayMember(nodes[node], "children")) {
+            open.push_back(child.get<std::size_t>());
+        }
+    }
+    return false;
+}
+
+// One texture or lobe of a material that primitives lack the input of.
+struct Loss {
+    std::string reason;
+    std::string primitive;  // the first
+    std::size_t count = 0;
+};
+
+}  // namespace
+
+void warnOfNothingDrawn(Document& document, const Scene& scene) {
+    const std::string why = whyNothingIsDrawn(scene);
+    if (why.empty()) {
+        return;
+    }
+    std::string hint = "export the scene again, with triangles that a node draws";
+    for (std::size_t i = scene.scenesInFile.size(); i-- > 0;) {
+        if (static_cast<int>(i) != scene.sceneInFile && hasMeshes(document, i)) {
+            hint = fmt::format("choose the scene {} by --scene {}", sceneLabel(scene, i), i);
+        }
+    }
+    document.warn("nothing-drawn", scene.sceneInFile < 0 ? "" : fmt::format("/scenes/{}", scene.sceneInFile),
+                  "a picture shows no surface: " + why, hint);
+}
+
+void warnOfMissingInputs(Document& document, const Scene& scene) {
+    std::vector<bool> drawn(scene.meshes.size());
+    for (const Node& node : scene.nodes) {
+        if (node.mesh >= 0 && node.canShow) {
+            drawn[static_cast<std::size_t>(node.mesh)] = true;
+        }
+    }
+    std::map<std::pair<int, std::size_t>, Loss> losses;  // by material and feature
+    // Primitives of one material with the same attributes lack the same.
+    using Attributes = std::tuple<int, bool, bool, bool, bool, std::uint64_t>;
+    std::map<Attributes, std::vector<std::pair<std::size_t, std::string>>> known;
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        for (std::size_t i = 0; drawn[mesh] && i < scene.meshes[mesh].primitives.size(); ++i) {
+            const materials::PrimitiveInputs inputs = inputsOf(scene, mesh, i);
+            const materials::Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
+            const auto [found, isNew] =
+                known.try_emplace({inputs.material, inputs.hasNormals, inputs.hasTangents,
+                                   inputs.hasTexCoords0, inputs.hasTexCoords1, inputs.attributes});
+            const std::vector<materials::Feature>& features = material.model().features;
+            for (std::size_t feature = 0; isNew && feature < features.size(); ++feature) {
+                std::string reason = materials::lostInput(material, inputs, features[feature]);
+                if (!reason.empty()) {
+                    found->second.emplace_back(feature, std::move(reason));
+                }
+            }
+            for (const auto& [feature, reason] : found->second) {
+                Loss& loss = losses[{inputs.material, feature}];
+                if (loss.count++ == 0) {
+                    loss.reason = reason;
+                    loss.primitive = scene.meshes[mesh].primitives[i].pointer;
+                }
+            }
+        }
+    }
+    for (const auto& [place, loss] : losses) {
+        const auto& [material, feature] = place;
+        const std::string more = loss.count > 1 ? fmt::format(" and {} more", loss.count - 1) : "";
+        document.warn(
+            "input-missing", fmt::format("/materials/{}", material),
+            fmt::format("{} is left out on {}{}: {}",
+                        scene.materials[static_cast<std::size_t>(material)].model().features[feature].name,
+                        loss.primitive, more, loss.reason),
+            "give the mesh what it lacks, or let the material read what the mesh has");
+    }
+}
+
+}  // namespace glint::gltf
