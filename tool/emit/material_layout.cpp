@@ -39,19 +39,13 @@ std::string textureConstant(std::string_view name) {
     return text;
 }
 
-// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
-// points down; the extension's GLSL listing turns the other way, its text and test models this one
-// (KhronosGroup/glTF issue 1563).
 gpu::TextureRecord transformed(const materials::TextureTransform& transform) {
-    const double sine = std::sin(static_cast<double>(transform.rotation));
-    const double cosine = std::cos(static_cast<double>(transform.rotation));
-    const double scaleU = transform.scale[0];
-    const double scaleV = transform.scale[1];
+    const materials::TransformRows rows = rowsOf(transform);
     gpu::TextureRecord record{};
-    record.rowU = {static_cast<float>(cosine * scaleU), static_cast<float>(sine * scaleV),
-                   transform.offset[0]};
-    record.rowV = {static_cast<float>(-sine * scaleU), static_cast<float>(cosine * scaleV),
-                   transform.offset[1]};
+    for (int i = 0; i < 3; ++i) {
+        record.rowU[i] = static_cast<float>(rows[0][static_cast<std::size_t>(i)]);
+        record.rowV[i] = static_cast<float>(rows[1][static_cast<std::size_t>(i)]);
+    }
     return record;
 }
 
@@ -83,6 +77,16 @@ std::string literalOf(const std::string& type, std::span<const float> values) {
 
 }  // namespace
 
+// Whether a frame may be that of the coordinates of normalTexture though no key reads that texture.
+bool takesFrameOf(const materials::MaterialModel& model, int texture, materials::FeatureMask used) {
+    const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
+    const bool matters = (used & sets) == sets || (used & model.mask("turnedFrames")) != 0;
+    return matters && model.textures[static_cast<std::size_t>(texture)].name == "normalTexture" &&
+           std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
+               return feature.needsTangents && feature.texture < 0 && (feature.mask() & used) != 0;
+           });
+}
+
 int MaterialLayout::slotOf(int texture) const {
     const auto found = std::ranges::find(textures, texture);
     return found == textures.end() ? -1 : static_cast<int>(found - textures.begin());
@@ -91,6 +95,7 @@ int MaterialLayout::slotOf(int texture) const {
 MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used) {
     MaterialLayout layout;
     layout.model = &model;
+    layout.turnsFrames = (used & model.mask("turnedFrames")) != 0;
     const auto append = [&layout](RecordField field) {
         field.offset = layout.bytes;
         layout.bytes += kFloatBytes * static_cast<std::uint32_t>(field.channels);
@@ -111,7 +116,8 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materia
         }
     }
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        if (isUsed(model, model.textures[i].feature, used)) {
+        if (isUsed(model, model.textures[i].feature, used) ||
+            takesFrameOf(model, static_cast<int>(i), used)) {
             layout.textures.push_back(static_cast<int>(i));
         }
     }
@@ -153,7 +159,7 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
         const materials::TextureInfo& info =
             material.textures[static_cast<std::size_t>(layout.textures[slot])];
-        if (info.texture >= 0) {
+        if (info.texture >= 0 || layout.turnsFrames) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + slot * sizeof texture], &texture, sizeof texture);
         }
