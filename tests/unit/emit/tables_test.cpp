@@ -113,6 +113,27 @@ TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
     EXPECT_LT(plain.bytes, 64U);
 }
 
+// A frame may be that of the normal texture's coordinates though no key reads the texture. A material without
+// one has the coordinates as they are.
+TEST(MaterialLayout, HasTheTransformsOfFrames) {
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    const int normal = model.findTexture("normalTexture");
+    const materials::FeatureMask grooves = model.mask("anisotropy") | model.mask("texCoord0");
+    EXPECT_EQ(compiler::makeMaterialLayout(model, grooves).slotOf(normal), -1);
+    EXPECT_EQ(compiler::makeMaterialLayout(model, grooves | model.mask("texCoord1")).slotOf(normal), 0);
+    EXPECT_EQ(compiler::makeMaterialLayout(model, model.mask("turnedFrames")).slotOf(normal), -1);
+    const compiler::MaterialLayout layout =
+        compiler::makeMaterialLayout(model, grooves | model.mask("turnedFrames"));
+    ASSERT_EQ(layout.slotOf(normal), 0);
+    const std::vector<std::uint8_t> record = makeMaterialRecord(materials::Material(), layout);
+    gpu::TextureRecord texture{};
+    std::memcpy(&texture, &record[layout.textureOffset], sizeof texture);
+    EXPECT_EQ(texture.rowU[0], 1.0F);
+    EXPECT_EQ(texture.rowU[1], 0.0F);
+    EXPECT_EQ(texture.rowV[0], 0.0F);
+    EXPECT_EQ(texture.rowV[1], 1.0F);
+}
+
 TEST(MaterialTables, ListEachImageOncePerColourSpace) {
     const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     ASSERT_EQ(tables.textures.size(), 3U);
