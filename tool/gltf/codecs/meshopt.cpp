@@ -116,7 +116,7 @@ Result<Layout> readLayout(const Document& document, const Json& extension, const
 }
 
 // The library's error codes.
-enum DecodeResult : int { kDecoded = 0, kUnknownHeader = -1, kEndsEarly = -2, kDamaged = -3 };
+enum DecodeResult : int { kDecoded = 0, kUnknownHeader = -1, kEndsEarly = -2, kBadData = -3 };
 
 // The attribute codec, versions 0 and 1: KHR_meshopt_compression, appendix A, "Mode 0". Glint has a decoder
 // of its own, because the library knows version 1 from 0.23 on only, and distributions have older ones.
@@ -143,7 +143,7 @@ public:
         std::ranges::copy(tail.first(layout_.stride), last_.begin());
         modes_ = tail.subspan(layout_.stride);
         if (!std::ranges::all_of(modes_, [](std::uint8_t mode) { return mode < 2 || (mode & 15U) == 2; })) {
-            return kDamaged;
+            return kBadData;
         }
         rest_ = packed.subspan(1, packed.size() - 1 - padded);
         const std::size_t mostInBlock =
@@ -153,7 +153,7 @@ public:
                 return kEndsEarly;
             }
         }
-        return rest_.empty() ? kDecoded : kDamaged;
+        return rest_.empty() ? kDecoded : kBadData;
     }
 
 private:
