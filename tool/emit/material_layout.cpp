@@ -40,12 +40,13 @@ std::string textureConstant(std::string_view name) {
 }
 
 gpu::TextureRecord transformed(const materials::TextureTransform& transform) {
+    const auto rowOf = [](const std::array<double, 3>& row) {
+        return gpu::vec3{static_cast<float>(row[0]), static_cast<float>(row[1]), static_cast<float>(row[2])};
+    };
     const materials::TransformRows rows = rowsOf(transform);
     gpu::TextureRecord record{};
-    for (int i = 0; i < 3; ++i) {
-        record.rowU[i] = static_cast<float>(rows[0][static_cast<std::size_t>(i)]);
-        record.rowV[i] = static_cast<float>(rows[1][static_cast<std::size_t>(i)]);
-    }
+    record.rowU = rowOf(rows[0]);
+    record.rowV = rowOf(rows[1]);
     return record;
 }
 

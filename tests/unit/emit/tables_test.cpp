@@ -128,10 +128,10 @@ TEST(MaterialLayout, HasTheTransformsOfFrames) {
     const std::vector<std::uint8_t> record = makeMaterialRecord(materials::Material(), layout);
     gpu::TextureRecord texture{};
     std::memcpy(&texture, &record[layout.textureOffset], sizeof texture);
-    EXPECT_EQ(texture.rowU[0], 1.0F);
-    EXPECT_EQ(texture.rowU[1], 0.0F);
-    EXPECT_EQ(texture.rowV[0], 0.0F);
-    EXPECT_EQ(texture.rowV[1], 1.0F);
+    EXPECT_EQ(texture.rowU.x, 1.0F);
+    EXPECT_EQ(texture.rowU.y, 0.0F);
+    EXPECT_EQ(texture.rowV.x, 0.0F);
+    EXPECT_EQ(texture.rowV.y, 1.0F);
 }
 
 TEST(MaterialTables, ListEachImageOncePerColourSpace) {
