@@ -263,7 +263,8 @@ TEST(GltfMeshopt, DecodesColors) {
                                                                           {"type", "VEC4"},
                                                                           {"normalized", true}});
         std::vector<std::array<int, 4>> colors;
-        for (const gltf::Float4& color : onlyPrimitive(import(builder)).colors) {
+        const Result<gltf::Scene> scene = import(builder);
+        for (const gltf::Float4& color : onlyPrimitive(scene).colors) {
             std::array<int, 4>& whole = colors.emplace_back();
             for (std::size_t i = 0; i < 4; ++i) {
                 whole[i] =
