@@ -12,6 +12,8 @@ namespace glint::compiler {
 namespace {
 
 constexpr std::uint32_t kFloatBytes = 4;
+// Frames of features without a texture are those of its coordinates.
+constexpr std::string_view kFrameTexture = "normalTexture";
 
 bool isUsed(const materials::MaterialModel& model, int feature, materials::FeatureMask used) {
     return feature < 0 || (model.features[static_cast<std::size_t>(feature)].mask() & used) != 0;
@@ -78,11 +80,11 @@ std::string literalOf(const std::string& type, std::span<const float> values) {
 
 }  // namespace
 
-// Whether a frame may be that of the coordinates of normalTexture though no key reads that texture.
+// Whether a frame may be that of a texture's coordinates though no key reads the texture.
 bool takesFrameOf(const materials::MaterialModel& model, int texture, materials::FeatureMask used) {
     const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
     const bool matters = (used & sets) == sets || (used & model.mask("turnedFrames")) != 0;
-    return matters && model.textures[static_cast<std::size_t>(texture)].name == "normalTexture" &&
+    return matters && model.textures[static_cast<std::size_t>(texture)].name == kFrameTexture &&
            std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
                return feature.needsTangents && feature.texture < 0 && (feature.mask() & used) != 0;
            });
@@ -158,9 +160,10 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
         }
     }
     for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
-        const materials::TextureInfo& info =
-            material.textures[static_cast<std::size_t>(layout.textures[slot])];
-        if (info.texture >= 0 || layout.turnsFrames) {
+        const auto index = static_cast<std::size_t>(layout.textures[slot]);
+        const materials::TextureInfo& info = material.textures[index];
+        if (info.texture >= 0 ||
+            (layout.turnsFrames && layout.model->textures[index].name == kFrameTexture)) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + slot * sizeof texture], &texture, sizeof texture);
         }

@@ -27,7 +27,8 @@ struct MaterialLayout {
     std::vector<int> textures;  // index into MaterialModel::textures for each texture of a record
     std::uint32_t textureOffset = 0;
     std::uint32_t bytes = 0;
-    bool turnsFrames = false;  // Some key has turnedFrames. Then empty textures have the identity transform.
+    bool turnsFrames =
+        false;  // Some key has turnedFrames. Then an empty normalTexture has the identity transform.
 
     // Returns the place of a texture in the record, or -1.
     int slotOf(int texture) const;
