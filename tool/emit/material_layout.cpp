@@ -78,8 +78,6 @@ std::string literalOf(const std::string& type, std::span<const float> values) {
     return text + (type == "float" ? "" : ")");
 }
 
-}  // namespace
-
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
 bool takesFrameOf(const materials::MaterialModel& model, int texture, materials::FeatureMask used) {
     const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
@@ -89,6 +87,8 @@ bool takesFrameOf(const materials::MaterialModel& model, int texture, materials:
                return feature.needsTangents && feature.texture < 0 && (feature.mask() & used) != 0;
            });
 }
+
+}  // namespace
 
 int MaterialLayout::slotOf(int texture) const {
     const auto found = std::ranges::find(textures, texture);
