@@ -26,7 +26,7 @@ struct Reader {
     const PrimitiveSource& source;
     Primitive& primitive;
     std::vector<std::string>& unlikeCounts;  // accessors with other counts than the Draco data
-    const DracoMesh* draco = nullptr;  // null for a primitive that is not compressed
+    const DracoMesh* draco = nullptr;        // null for a primitive that is not compressed
     const Json* dracoAttributes = nullptr;
     std::vector<std::string> missing{};  // attributes that the Draco data lack
 
