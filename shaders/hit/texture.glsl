@@ -9,14 +9,20 @@ bool readsSecondSet(Hit hit, uint slot, Features features) {
            (!hasInput(features, GLINT_TEX_COORD_0) || GLINT_TEXTURE(GLINT_MATERIAL(hit), slot).texCoord == 1u);
 }
 
+// Returns how the coordinates that a texture is read at change along both edges of the triangle, where those of the UV
+// set change by uvEdges.
+vec4 transformedEdges(TextureRecord record, vec4 uvEdges) {
+    return vec4(dot(record.rowU.xy, uvEdges.xy), dot(record.rowV.xy, uvEdges.xy), dot(record.rowU.xy, uvEdges.zw),
+                dot(record.rowV.xy, uvEdges.zw));
+}
+
 // Returns the value of a texture slot at coordinates of the caller's own. uvEdges has their change along both edges of
 // the triangle, (Δu, Δv) each. Texture and coordinates are read in 32 bits, whatever the precision of the result.
 GLINT_RELAXED vec4 sampleSlotAt(Hit hit, uint slot, Features features, vec2 uv, vec4 uvEdges) {
     TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(hit), slot);
     if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {
         uv = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
-        uvEdges = vec4(dot(record.rowU.xy, uvEdges.xy), dot(record.rowV.xy, uvEdges.xy),
-                       dot(record.rowU.xy, uvEdges.zw), dot(record.rowV.xy, uvEdges.zw));
+        uvEdges = transformedEdges(record, uvEdges);
     }
     if (GLINT_TEXTURE_LOD_CONES == 0) {
         vec4 finest = hostFinestTexture(record, uv);
@@ -35,13 +41,16 @@ GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
                         second ? hit.uvEdges[1] : hit.uvEdges[0]);
 }
 
-// Returns tangent and bitangent at the hit, from the TANGENT attribute or from the derivatives of position by the UV
-// set that `slot` reads. The bitangent points up in the image, against V, as in glTF 2.0, section 3.7.2.1.
+// Returns tangent and bitangent at the hit, from the TANGENT attribute or from the derivatives of position by the
+// coordinates that `slot` is read at. The bitangent points up in the image, against V, as in glTF 2.0, section 3.7.2.1.
 void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out vec3 bitangent) {
     vec3 along = hit.tangent.xyz;
     float handedness = hit.tangent.w;
     if (!hasInput(features, GLINT_TANGENTS)) {
         vec4 uv = readsSecondSet(hit, slot, features) ? hit.uvEdges[1] : hit.uvEdges[0];
+        if (hasInput(features, GLINT_TURNED_FRAMES)) {
+            uv = transformedEdges(GLINT_TEXTURE(GLINT_MATERIAL(hit), slot), uv);
+        }
         float determinant = uv.x * uv.w - uv.y * uv.z;
         along = (hit.edges[0] * uv.w - hit.edges[1] * uv.y) * sign(determinant);
         vec3 alongV = (hit.edges[1] * uv.x - hit.edges[0] * uv.z) * sign(determinant);

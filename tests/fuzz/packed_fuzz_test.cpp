@@ -59,6 +59,7 @@ TEST(PackedFuzz, DamagedDataIsRefusedOrRead) {
         {"Draco, sequential", dracoScene(DracoMethod::Sequential)},
         {"Draco, edgebreaker", dracoScene(DracoMethod::Edgebreaker)},
         {"meshopt", meshoptScene()},
+        {"meshopt, version 1", meshoptV1Scene()},
         {"WebP", webpScene()},
         {"PNG of 16 bits", widePngScene()}};
     std::printf("seed %u\n", kSeed);

@@ -198,6 +198,93 @@ TEST_P(Pixels, SplittingAMeshChangesNothing) {
     EXPECT_EQ(whole.pixels, split.pixels);
 }
 
+// How a texture's coordinates are turned: by the transform of the material, by the UVs of the vertices, or
+// not.
+enum class Turned : std::uint8_t { ByTransform, ByVertices, Not };
+
+// Tiles whose frames come from UVs: a column for each turn, and a row for each reader of a frame. The mirror
+// below them shows the same tiles again, so that hits of rays are compared, too.
+gltf::Scene framesScene(Turned turned) {
+    constexpr struct {
+        float rotation;
+        gltf::Float2 scale;
+        int set;
+    } kTurns[] = {{1.5707963F, {1, 1}, 0},
+                  {3.1415927F, {1, 1}, 1},
+                  {0, {-1, 1}, 0},
+                  {0, {1, -1}, 1},
+                  {0.6F, {2, -0.5F}, 0}};
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    const int tilted = addTexture(scene, 1, 1, {200, 150, 228, 255});
+    const int grooves = addTexture(scene, 1, 1, {230, 200, 230, 255});
+    for (int row = 0; row < 4; ++row) {
+        for (int column = 0; column < 5; ++column) {
+            const auto& turn = kTurns[column];
+            materials::Material material;
+            material["roughnessFactor"] = 0.5F;
+            material["metallicFactor"] = row < 2 ? 0.0F : 1.0F;
+            material.give(row == 1 ? "KHR_materials_clearcoat" : "KHR_materials_anisotropy");
+            material["clearcoatFactor"] = row == 1 ? 1.0F : 0.0F;
+            material["clearcoatRoughnessFactor"] = 0.4F;
+            material["anisotropyStrength"] = row < 2 ? 0.0F : 0.8F;
+            material["anisotropyRotation"] = 0.5F;
+            // The last row's grooves have no texture. Their frame is that of the normal texture.
+            const char* const slots[] = {"normalTexture", "clearcoatNormalTexture", "anisotropyTexture",
+                                         "normalTexture"};
+            materials::TextureInfo& info = material.texture(slots[row]);
+            info.texture = row == 2 ? grooves : tilted;
+            info.texCoord = turn.set;
+            if (turned == Turned::ByTransform) {
+                info.transform = {{0.25F, 0.5F}, turn.rotation, turn.scale};
+                info.hasTransform = true;
+            }
+            gltf::Primitive tile =
+                makeQuad(addMaterial(scene, material),
+                         {-2.0F + 0.8F * static_cast<float>(column), 0.5F * static_cast<float>(row), -2},
+                         {0.8F, 0, 0}, {0, 0.5F, 0});
+            tile.texCoords1 = tile.texCoords0;
+            for (gltf::Float2& uv : turn.set == 0 ? tile.texCoords0 : tile.texCoords1) {
+                const float u = turn.scale[0] * uv[0];
+                const float v = turn.scale[1] * uv[1];
+                if (turned == Turned::ByVertices) {
+                    uv = {std::cos(turn.rotation) * u + std::sin(turn.rotation) * v,
+                          std::cos(turn.rotation) * v - std::sin(turn.rotation) * u};
+                }
+            }
+            const int mesh = addMesh(scene, std::move(tile));
+            addInstance(scene, mesh);
+            gltf::Matrix4 behind = scaling(-3.0, -3.0, -1.0);
+            addInstance(scene, mesh, behind);
+        }
+    }
+    materials::Material mirror = mirrorMaterial();
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, mirror), {-2, -2, -2}, {4, 0, 0}, {0, 2, 0})));
+    addDirectionalLight(scene, {0.5F, -0.4F, -0.75F}, 3.0F);
+    addDirectionalLight(scene, {0.4F, 0.5F, 0.75F}, 3.0F);
+    return scene;
+}
+
+TEST(TangentFrames, TurnWithTheTransformsOfTextures) {
+    compiler::CompileSettings settings;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.strategies = package::kStrategyUber | package::kStrategyVisibility;
+    const gltf::Scene scene = framesScene(Turned::ByTransform);
+    const RenderSetup setup = darkSetup(scene, 40);
+    const LoadedScene transformed(scene, settings);
+    settings.strategies = package::kStrategyUber;
+    const LoadedScene turned(framesScene(Turned::ByVertices), settings);
+    ASSERT_TRUE(transformed.ok() && turned.ok());
+    const LinearImage expected = turned.render(package::kStrategyUber, setup);
+    for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
+        expectSameImage(transformed.render(strategy, setup), expected,
+                        "transforms as if the vertices had them");
+    }
+    EXPECT_GT(at(expected, 20, 17)[0], 0.0F);
+    EXPECT_GT(at(expected, 20, 22)[0], 0.0F);
+}
+
 TEST_P(Pixels, SamplesAverageAndSeedsRepeat) {
     gltf::Scene scene = emptyScene();
     addCamera(scene);

@@ -12,6 +12,8 @@ namespace glint::compiler {
 namespace {
 
 constexpr std::uint32_t kFloatBytes = 4;
+// Frames of features without a texture are those of its coordinates.
+constexpr std::string_view kFrameTexture = "normalTexture";
 
 bool isUsed(const materials::MaterialModel& model, int feature, materials::FeatureMask used) {
     return feature < 0 || (model.features[static_cast<std::size_t>(feature)].mask() & used) != 0;
@@ -39,19 +41,14 @@ std::string textureConstant(std::string_view name) {
     return text;
 }
 
-// Rows of translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
-// points down; the extension's GLSL listing turns the other way, its text and test models this one
-// (KhronosGroup/glTF issue 1563).
 gpu::TextureRecord transformed(const materials::TextureTransform& transform) {
-    const double sine = std::sin(static_cast<double>(transform.rotation));
-    const double cosine = std::cos(static_cast<double>(transform.rotation));
-    const double scaleU = transform.scale[0];
-    const double scaleV = transform.scale[1];
+    const auto rowOf = [](const std::array<double, 3>& row) {
+        return gpu::vec3{static_cast<float>(row[0]), static_cast<float>(row[1]), static_cast<float>(row[2])};
+    };
+    const materials::TransformRows rows = rowsOf(transform);
     gpu::TextureRecord record{};
-    record.rowU = {static_cast<float>(cosine * scaleU), static_cast<float>(sine * scaleV),
-                   transform.offset[0]};
-    record.rowV = {static_cast<float>(-sine * scaleU), static_cast<float>(cosine * scaleV),
-                   transform.offset[1]};
+    record.rowU = rowOf(rows[0]);
+    record.rowV = rowOf(rows[1]);
     return record;
 }
 
@@ -81,6 +78,16 @@ std::string literalOf(const std::string& type, std::span<const float> values) {
     return text + (type == "float" ? "" : ")");
 }
 
+// Whether a frame may be that of a texture's coordinates though no key reads the texture.
+bool takesFrameOf(const materials::MaterialModel& model, int texture, materials::FeatureMask used) {
+    const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
+    const bool matters = (used & sets) == sets || (used & model.mask("turnedFrames")) != 0;
+    return matters && model.textures[static_cast<std::size_t>(texture)].name == kFrameTexture &&
+           std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
+               return feature.needsTangents && feature.texture < 0 && (feature.mask() & used) != 0;
+           });
+}
+
 }  // namespace
 
 int MaterialLayout::slotOf(int texture) const {
@@ -91,6 +98,7 @@ int MaterialLayout::slotOf(int texture) const {
 MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used) {
     MaterialLayout layout;
     layout.model = &model;
+    layout.turnsFrames = (used & model.mask("turnedFrames")) != 0;
     const auto append = [&layout](RecordField field) {
         field.offset = layout.bytes;
         layout.bytes += kFloatBytes * static_cast<std::uint32_t>(field.channels);
@@ -111,7 +119,8 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materia
         }
     }
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        if (isUsed(model, model.textures[i].feature, used)) {
+        if (isUsed(model, model.textures[i].feature, used) ||
+            takesFrameOf(model, static_cast<int>(i), used)) {
             layout.textures.push_back(static_cast<int>(i));
         }
     }
@@ -151,9 +160,10 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
         }
     }
     for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
-        const materials::TextureInfo& info =
-            material.textures[static_cast<std::size_t>(layout.textures[slot])];
-        if (info.texture >= 0) {
+        const auto index = static_cast<std::size_t>(layout.textures[slot]);
+        const materials::TextureInfo& info = material.textures[index];
+        if (info.texture >= 0 ||
+            (layout.turnsFrames && layout.model->textures[index].name == kFrameTexture)) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + slot * sizeof texture], &texture, sizeof texture);
         }

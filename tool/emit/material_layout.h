@@ -27,6 +27,7 @@ struct MaterialLayout {
     std::vector<int> textures;  // index into MaterialModel::textures for each texture of a record
     std::uint32_t textureOffset = 0;
     std::uint32_t bytes = 0;
+    bool turnsFrames = false;  // Some key has turnedFrames.
 
     // Returns the place of a texture in the record, or -1.
     int slotOf(int texture) const;

@@ -25,8 +25,10 @@ constexpr const char* kExportMesh = "export the mesh again";
 struct Reader {
     const PrimitiveSource& source;
     Primitive& primitive;
-    const DracoMesh* draco = nullptr;  // null for a primitive that is not compressed
+    std::vector<std::string>& unlikeCounts;  // accessors with other counts than the Draco data
+    const DracoMesh* draco = nullptr;        // null for a primitive that is not compressed
     const Json* dracoAttributes = nullptr;
+    std::vector<std::string> missing{};  // attributes that the Draco data lack
 
     Document& document() const {
         return source.document;
@@ -40,10 +42,41 @@ std::string dracoPointer(const Reader& reader) {
     return fmt::format("{}/extensions/{}", reader.primitive.pointer, kDraco);
 }
 
-// In a compressed primitive, an accessor with neither compressed data nor a buffer view would read as zeros.
-bool isBare(const Document& document, int accessor) {
-    return accessor >= 0 &&
-           find(document.json()["accessors"][static_cast<std::size_t>(accessor)], "bufferView") == nullptr;
+// Returns the identifier that the attribute has in the Draco data, or nothing if it is read from its
+// accessor.
+std::optional<std::uint32_t> packedId(const Reader& reader, const char* attribute) {
+    const Json* const id = reader.draco == nullptr ? nullptr : find(*reader.dracoAttributes, attribute);
+    return id == nullptr ? std::nullopt : std::optional(id->get<std::uint32_t>());
+}
+
+void noteUnlikeCount(const Reader& reader, const char* what, std::size_t count, std::size_t packed) {
+    if (count != packed) {
+        reader.unlikeCounts.push_back(fmt::format("{} {} instead of {}", what, count, packed));
+    }
+}
+
+// Returns the accessor of an attribute that the primitive has, or -1.
+int readableAccessor(const Reader& reader, const std::string& attribute) {
+    return std::ranges::find(reader.missing, attribute) == reader.missing.end()
+               ? attributeAccessor(reader.source, attribute.c_str())
+               : -1;
+}
+
+// Lists attributes that the Draco data should have and lack. Without POSITION there is nothing to draw, so
+// its lack is an error where it is read.
+void findMissing(Reader& reader) {
+    const Json& listed = reader.source.json["attributes"];
+    for (const auto& [attribute, id] : reader.dracoAttributes->items()) {
+        if (attribute != "POSITION" && find(listed, attribute) != nullptr &&
+            !reader.draco->has(id.get<std::uint32_t>())) {
+            reader.missing.push_back(attribute);
+            reader.document().warn(
+                "draco-attribute", fmt::format("{}/attributes/{}", dracoPointer(reader), attribute),
+                fmt::format("is {}, but the Draco data has no such attribute; it is left out",
+                            id.get<std::uint32_t>()),
+                kExportMesh);
+        }
+    }
 }
 
 // Reads the attribute's elements from the Draco data.
@@ -58,6 +91,7 @@ Result<FloatElements> readPacked(const Reader& reader, const char* attribute, in
         !status) {
         return status.error();
     }
+    noteUnlikeCount(reader, attribute, document.accessor(accessor).count, reader.draco->pointCount());
     const Result<base::Bytes> bytes = reader.draco->attribute(
         document, id, *format, fmt::format("{}/attributes/{}", dracoPointer(reader), attribute));
     if (!bytes) {
@@ -68,14 +102,8 @@ Result<FloatElements> readPacked(const Reader& reader, const char* attribute, in
 
 Result<FloatElements> readElements(const Reader& reader, const char* attribute, int accessor,
                                    Integers integers) {
-    if (reader.draco != nullptr) {
-        if (const Json* id = find(*reader.dracoAttributes, attribute)) {
-            return readPacked(reader, attribute, accessor, id->get<std::uint32_t>(), integers);
-        }
-        if (isBare(reader.document(), accessor)) {
-            return reader.document().error("attribute-data", reader.pointer(attribute),
-                                           "is neither in the Draco data nor in a buffer view", kExportMesh);
-        }
+    if (const std::optional<std::uint32_t> id = packedId(reader, attribute)) {
+        return readPacked(reader, attribute, accessor, *id, integers);
     }
     return readFloats(reader.document(), accessor, integers);
 }
@@ -85,7 +113,7 @@ Result<FloatElements> readElements(const Reader& reader, const char* attribute, 
 template <std::size_t N>
 Status readAttribute(const Reader& reader, const char* attribute, std::size_t fewest, Integers integers,
                      std::vector<std::array<float, N>>& values) {
-    const int accessor = attributeAccessor(reader.source, attribute);
+    const int accessor = readableAccessor(reader, attribute);
     if (accessor < 0) {
         return okStatus();
     }
@@ -94,7 +122,7 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
     const std::size_t expected = reader.draco != nullptr ? reader.draco->pointCount()
                                  : isPosition            ? document.accessor(accessor).count
                                                          : reader.primitive.positions.size();
-    if (document.accessor(accessor).count != expected) {
+    if (document.accessor(accessor).count != expected && !packedId(reader, attribute)) {
         return document.error("attribute-count", reader.pointer(attribute),
                               fmt::format("has {} elements, {} has {}", document.accessor(accessor).count,
                                           reader.draco != nullptr ? "the Draco data" : "POSITION", expected),
@@ -118,7 +146,7 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
 }
 
 Status readColors(const Reader& reader) {
-    const int accessor = attributeAccessor(reader.source, "COLOR_0");
+    const int accessor = readableAccessor(reader, "COLOR_0");
     if (accessor < 0) {
         return okStatus();
     }
@@ -142,9 +170,12 @@ Status readInfluences(const Reader& reader) {
     for (int set = 0; set < kInfluenceSets; ++set) {
         const std::string joints = fmt::format("JOINTS_{}", set);
         const std::string weights = fmt::format("WEIGHTS_{}", set);
-        const int jointAccessor = attributeAccessor(reader.source, joints.c_str());
-        const int weightAccessor = attributeAccessor(reader.source, weights.c_str());
-        if (jointAccessor < 0 && weightAccessor < 0) {
+        const int jointAccessor = readableAccessor(reader, joints);
+        const int weightAccessor = readableAccessor(reader, weights);
+        const auto isMissing = [&](const std::string& name) {
+            return std::ranges::find(reader.missing, name) != reader.missing.end();
+        };
+        if ((jointAccessor < 0 && weightAccessor < 0) || isMissing(joints) || isMissing(weights)) {
             break;
         }
         if (jointAccessor < 0 || weightAccessor < 0) {
@@ -180,7 +211,7 @@ Status readInfluences(const Reader& reader) {
 Status readDeclared(const Reader& reader) {
     const Document& document = reader.document();
     for (const materials::VertexAttribute& declared : document.options().materialModel->attributes) {
-        const int accessor = attributeAccessor(reader.source, declared.gltf.c_str());
+        const int accessor = readableAccessor(reader, declared.gltf);
         const bool known = std::ranges::find(reader.primitive.attributes, declared.gltf,
                                              &VertexValues::name) != reader.primitive.attributes.end();
         if (accessor < 0 || known) {
@@ -234,7 +265,7 @@ Status readAttributes(const Reader& reader) {
     if (Status s = readDeclared(reader); !s) {
         return s;
     }
-    if (primitive.normals.empty() && attributeAccessor(reader.source, "TANGENT") >= 0) {
+    if (primitive.normals.empty() && readableAccessor(reader, "TANGENT") >= 0) {
         reader.document().warn("tangent-without-normal", reader.pointer("TANGENT"),
                                "tangents without normals are ignored, as glTF says");
         return okStatus();
@@ -256,31 +287,45 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
         return indices.error();
     }
     const std::string pointer = reader.primitive.pointer + "/indices";
+    constexpr const char* kExportWithoutRestart = "glTF has no primitive restart: export the mesh again";
+    bool hasRestart = false;
     for (std::size_t i = 0; i < indices->values.size(); ++i) {
         const std::uint32_t index = indices->values[i];
-        if (index == indices->restart) {
+        const bool isRestart = index == indices->restart;
+        if (index >= vertices && isRestart) {
             return document.error("primitive-restart", pointer,
                                   fmt::format("index {} is the primitive restart value {}", i, index),
-                                  "glTF has no primitive restart: export the mesh again");
+                                  kExportWithoutRestart);
         }
         if (index >= vertices) {
             return document.error(
                 "index-range", pointer,
                 fmt::format("index {} is {}, but there are {} vertices", i, index, vertices), kExportMesh);
         }
+        hasRestart = hasRestart || isRestart;
+    }
+    if (hasRestart) {
+        document.warn(
+            "primitive-restart", pointer,
+            fmt::format("has the primitive restart value {}, which is taken for the vertex of that number",
+                        indices->restart),
+            kExportWithoutRestart);
     }
     return std::move(indices->values);
 }
 
-// Draco drops degenerate triangles. Not every exporter corrects the accessor afterwards.
-void compareIndexCount(const Reader& reader, bool isList) {
-    const int accessor = indexMember(reader.source.json, "indices");
-    const std::size_t packed = reader.draco->indices().size();
-    if (isList && accessor >= 0 && reader.document().accessor(accessor).count != packed) {
+// Draco merges points and drops degenerate triangles. Not every exporter corrects the accessors afterwards.
+void warnOfUnlikeCounts(const Reader& reader) {
+    const int indices = indexMember(reader.source.json, "indices");
+    if (indices >= 0 && modeOf(reader.source) == static_cast<int>(PrimitiveMode::Triangles)) {
+        noteUnlikeCount(reader, "indices", reader.document().accessor(indices).count,
+                        reader.draco->indices().size());
+    }
+    if (!reader.unlikeCounts.empty()) {
         reader.document().warn(
-            "draco-count", reader.primitive.pointer + "/indices",
-            fmt::format("has {} elements, the Draco data {}; those of the Draco data are used",
-                        reader.document().accessor(accessor).count, packed),
+            "draco-count", reader.primitive.pointer,
+            fmt::format("its accessors have other counts than the Draco data, whose counts are used: {}",
+                        fmt::join(reader.unlikeCounts, ", ")),
             kExportMesh);
     }
 }
@@ -297,7 +342,8 @@ int attributeAccessor(const PrimitiveSource& source, const char* attribute) {
 
 Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
                                                 bool& isList) {
-    Reader reader{source, primitive};
+    std::vector<std::string> unlikeCounts;
+    Reader reader{source, primitive, unlikeCounts};
     std::optional<DracoMesh> draco;
     if (const Json* extension = findExtension(source.json, kDraco)) {
         Result<DracoMesh> mesh = DracoMesh::decode(source.document, *extension, dracoPointer(reader));
@@ -307,6 +353,7 @@ Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, P
         draco = std::move(*mesh);
         reader.draco = &*draco;
         reader.dracoAttributes = find(*extension, "attributes");
+        findMissing(reader);
     }
     if (Status status = readAttributes(reader); !status) {
         return status.error();
@@ -314,7 +361,7 @@ Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, P
     if (!draco) {
         return readOrder(reader);
     }
-    compareIndexCount(reader, modeOf(source) == static_cast<int>(PrimitiveMode::Triangles));
+    warnOfUnlikeCounts(reader);
     isList = true;
     return draco->indices();
 }

@@ -42,6 +42,7 @@ constexpr struct {
     {"", "givesTransforms", Fact::GivesTransforms, false},
     {"needed", "tangents", Fact::NeedsTangents, false},
     {"derived", "tangents", Fact::DerivesTangents, false},
+    {"turned", "tangents", Fact::TurnsTangents, false},
     {"", "changesOpacity", Fact::ChangesOpacity, false},
 };
 

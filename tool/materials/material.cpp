@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace glint::materials {
 
@@ -11,6 +12,15 @@ namespace {
 
 bool isMoved(const TextureInfo& info) {
     return info.moves || info.transform != TextureTransform{};
+}
+
+// Whether the directions of U and V differ from those of the UV set by more than single precision rounds. A
+// scale of 0 counts as one just above 0.
+bool turnsFrame(const TextureInfo& info) {
+    constexpr double kTolerance = 2.5e-7;
+    const TransformRows rows = rowsOf(info.transform);
+    return info.turns || rows[0][0] < 0.0 || rows[1][1] < 0.0 ||
+           std::abs(rows[1][0]) > kTolerance * std::abs(rows[1][1]);
 }
 
 bool sameTexture(const TextureInfo& a, const TextureInfo& b) {
@@ -25,6 +35,15 @@ const Parameter& parameterOf(const MaterialModel& model, std::string_view name) 
 }
 
 }  // namespace
+
+TransformRows rowsOf(const TextureTransform& transform) {
+    const double sine = std::sin(static_cast<double>(transform.rotation));
+    const double cosine = std::cos(static_cast<double>(transform.rotation));
+    const double scaleU = transform.scale[0];
+    const double scaleV = transform.scale[1];
+    return {{{cosine * scaleU, sine * scaleV, transform.offset[0]},
+             {-sine * scaleU, cosine * scaleV, transform.offset[1]}}};
+}
 
 Material::Material(const MaterialModel& model)
     : values(static_cast<std::size_t>(model.valueCount)),
@@ -269,11 +288,50 @@ bool MaterialFacts::hasTangents() const {
     return primitive_.hasTangents && primitive_.hasNormals && !primitive_.derivesTangents;
 }
 
-bool MaterialFacts::readsTexCoord(int set) const {
+// The frame of such a feature is that of the coordinates of normalTexture, even if this texture changes
+// nothing and is not in the key. Without a readable one, the frame is that of the first UV set that exists.
+bool MaterialFacts::takesPlainFrame(const Feature& feature) const {
     const MaterialModel& model = material_.model();
-    const auto inKey = [this](const Feature& feature) { return (key_ & feature.mask()) != 0; };
-    for (const Feature& feature : model.features) {
-        if (!inKey(feature)) {
+    const int index = static_cast<int>(&feature - model.features.data());
+    return feature.needsTangents && feature.texture < 0 &&
+           std::ranges::none_of(model.features, [&](const Feature& other) {
+               return other.texture >= 0 && other.needsTangents && isInKey(other) &&
+                      (other.lobe < 0 || other.lobe == index);
+           });
+}
+
+const TextureInfo* MaterialFacts::plainFrameTexture() const {
+    const int normal = material_.model().findTexture("normalTexture");
+    return normal >= 0 && isReadable(material_, primitive_, normal)
+               ? &material_.textures[static_cast<std::size_t>(normal)]
+               : nullptr;
+}
+
+bool MaterialFacts::turnsTangents() const {
+    const MaterialModel& model = material_.model();
+    return std::ranges::any_of(model.features, [&](const Feature& feature) {
+        if (!isInKey(feature)) {
+            return false;
+        }
+        if (feature.texture >= 0) {
+            // A lobe that needs a frame may take it from its own texture.
+            const bool framed =
+                feature.needsTangents ||
+                (feature.lobe >= 0 && model.features[static_cast<std::size_t>(feature.lobe)].needsTangents);
+            return framed && turnsFrame(material_.textures[static_cast<std::size_t>(feature.texture)]);
+        }
+        const TextureInfo* const plain = takesPlainFrame(feature) ? plainFrameTexture() : nullptr;
+        return plain != nullptr && turnsFrame(*plain);
+    });
+}
+
+bool MaterialFacts::isInKey(const Feature& feature) const {
+    return (key_ & feature.mask()) != 0;
+}
+
+bool MaterialFacts::readsTexCoord(int set) const {
+    for (const Feature& feature : material_.model().features) {
+        if (!isInKey(feature)) {
             continue;
         }
         if (feature.needsTexCoord == set) {
@@ -286,16 +344,11 @@ bool MaterialFacts::readsTexCoord(int set) const {
             }
             continue;
         }
-        // If the primitive has no tangents, the direction comes from texture coordinates: those of a texture
-        // that is read, or else the first set that exists.
-        const int lobe = static_cast<int>(&feature - model.features.data());
-        const bool derives = feature.needsTangents && !hasTangents() &&
-                             std::ranges::none_of(model.features, [&](const Feature& other) {
-                                 return other.texture >= 0 && other.needsTangents && inKey(other) &&
-                                        (other.lobe < 0 || other.lobe == lobe);
-                             });
-        if (derives && set == (primitive_.hasTexCoords0 ? 0 : 1)) {
-            return true;
+        if (takesPlainFrame(feature) && !hasTangents()) {
+            const TextureInfo* const plain = plainFrameTexture();
+            if (set == (plain != nullptr ? plain->texCoord : primitive_.hasTexCoords0 ? 0 : 1)) {
+                return true;
+            }
         }
     }
     return false;
@@ -343,6 +396,8 @@ Certainty MaterialFacts::fact(Fact fact) const {
             }));
         case Fact::DerivesTangents:
             return certain(primitive_.derivesTangents);
+        case Fact::TurnsTangents:
+            return certain(turnsTangents());
         case Fact::ChangesOpacity:
             return certain((key_ & model.opacityFeatures()) != 0);
         case Fact::Color:

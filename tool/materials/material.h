@@ -29,6 +29,14 @@ struct TextureTransform {
     bool operator==(const TextureTransform&) const = default;
 };
 
+// The rows that give u' and v' of (u, v, 1).
+using TransformRows = std::array<std::array<double, 3>, 2>;
+
+// Returns translation * rotation * scale. The rotation is counter-clockwise as seen on the image, where v
+// points down; the extension's GLSL listing turns the other way, its text and test models this one
+// (KhronosGroup/glTF issue 1563).
+TransformRows rowsOf(const TextureTransform& transform);
+
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // Where a number was found in an image. Level -1: nowhere.
@@ -57,6 +65,7 @@ struct TextureInfo {
     TextureTransform transform;
     bool hasTransform = false;  // The file gives KHR_texture_transform here, even if it is the identity.
     bool moves = false;         // An animation changes the transform.
+    bool turns = false;         // An animation changes its rotation, or makes its scale negative.
     TextureContent content{};   // of all texels
     // The texture was constant where the material shows it, and its product is in the parameters that it
     // scales. So the slot is empty.
@@ -235,6 +244,11 @@ private:
     Certainty fact(Fact fact) const;
     bool readsTexCoord(int set) const;
     bool hasTangents() const;
+    bool isInKey(const Feature& feature) const;
+    // Whether a feature without a texture needs a frame, and no texture of the key gives it one.
+    bool takesPlainFrame(const Feature& feature) const;
+    const TextureInfo* plainFrameTexture() const;  // null: the first UV set
+    bool turnsTangents() const;
 
     const Material& material_;
     const PrimitiveInputs& primitive_;

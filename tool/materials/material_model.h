@@ -242,6 +242,7 @@ enum class Fact : std::uint8_t {
     GivesTransforms,  // some texture has one
     NeedsTangents,    // a feature of the key reads tangents
     DerivesTangents,  // the primitive's tangents are those that shading derives
+    TurnsTangents,    // a frame that the key derives is of UVs that a transform turns or mirrors
     ChangesOpacity,   // a feature of the key has GLSL at the stage opacity
     Count
 };

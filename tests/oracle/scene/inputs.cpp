@@ -1,5 +1,6 @@
 #include "oracle/scene/inputs.h"
 
+#include <array>
 #include <string_view>
 
 namespace glint::oracle {
@@ -29,7 +30,7 @@ glm::dmat3 Inputs::tangentFrame(std::string_view slot) const {
     if (point_.tangent) {
         along = *point_.tangent;
     } else {
-        const auto& uv = point_.texCoordEdges[derivedSet(slot)];
+        const std::array<Vec2, 2> uv = derivedEdges(slot);
         const double area = uv[0].x * uv[1].y - uv[0].y * uv[1].x;
         along = (point_.edges[0] * uv[1].y - point_.edges[1] * uv[0].y) * glm::sign(area);
         const Vec3 down = (point_.edges[1] * uv[0].x - point_.edges[0] * uv[1].x) * glm::sign(area);
@@ -60,12 +61,18 @@ bool Inputs::passesAlphaMask() const {
     return baseColor().a >= material_["alphaCutoff"];
 }
 
-// Returns the slot's own set, or the first existing set if the slot has no texture.
-std::size_t Inputs::derivedSet(std::string_view slot) const {
-    if (reads(slot)) {
-        return static_cast<std::size_t>(material_.texture(slot).texCoord);
+// Returns how the coordinates that the slot is read at change along the edges. A slot without a texture has
+// those of the first existing set.
+std::array<Vec2, 2> Inputs::derivedEdges(std::string_view slot) const {
+    if (!reads(slot)) {
+        return point_.texCoordEdges[point_.texCoords[0] ? 0 : 1];
     }
-    return point_.texCoords[0] ? 0 : 1;
+    const materials::TextureInfo& info = material_.texture(slot);
+    std::array<Vec2, 2> edges = point_.texCoordEdges[static_cast<std::size_t>(info.texCoord)];
+    for (Vec2& edge : edges) {
+        edge = transformed(edge, info.transform);
+    }
+    return edges;
 }
 
 }  // namespace glint::oracle

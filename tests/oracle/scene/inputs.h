@@ -4,6 +4,7 @@
 #include "gltf/scene.h"
 #include "oracle/scene/texture.h"
 
+#include <array>
 #include <string_view>
 
 namespace glint::oracle {
@@ -18,7 +19,8 @@ public:
     bool reads(std::string_view slot) const;
     glm::dvec4 baseColor() const;
     // Returns the columns tangent, bitangent and normal. They come from TANGENT, or from the directions in
-    // which the UVs of the slot grow. The bitangent points up in the image (glTF 2.0, 3.7.2.1).
+    // which the coordinates that the slot is read at grow. The bitangent points up in the image
+    // (glTF 2.0, 3.7.2.1).
     glm::dmat3 tangentFrame(std::string_view slot) const;
     // Returns the normal of a normal texture, towards the front.
     Vec3 mappedNormal(std::string_view slot, double scale) const;
@@ -35,7 +37,7 @@ public:
     }
 
 private:
-    std::size_t derivedSet(std::string_view slot) const;
+    std::array<Vec2, 2> derivedEdges(std::string_view slot) const;
 
     const Textures& textures_;
     const SurfacePoint& point_;

@@ -92,12 +92,14 @@ std::optional<Vec2> textureCoordinates(const materials::TextureInfo& info, const
     if (!given) {
         return std::nullopt;
     }
-    const materials::TextureTransform& transform = info.transform;
+    return transformed(*given, info.transform) + Vec2(info.transform.offset[0], info.transform.offset[1]);
+}
+
+Vec2 transformed(const Vec2& direction, const materials::TextureTransform& transform) {
     const double cosine = std::cos(static_cast<double>(transform.rotation));
     const double sine = std::sin(static_cast<double>(transform.rotation));
-    const Vec2 scaled = *given * Vec2(transform.scale[0], transform.scale[1]);
-    return Vec2(cosine * scaled.x + sine * scaled.y + transform.offset[0],
-                cosine * scaled.y - sine * scaled.x + transform.offset[1]);
+    const Vec2 scaled = direction * Vec2(transform.scale[0], transform.scale[1]);
+    return {cosine * scaled.x + sine * scaled.y, cosine * scaled.y - sine * scaled.x};
 }
 
 SrgbTable exactSrgb() {

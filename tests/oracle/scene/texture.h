@@ -16,6 +16,9 @@ bool isSrgb(const materials::Material& material, std::string_view slot);
 // Returns the transformed UVs that a slot reads (KHR_texture_transform), or nothing if it has no texture or
 // the surface lacks that set.
 std::optional<Vec2> textureCoordinates(const materials::TextureInfo& info, const SurfacePoint& point);
+// Scales and turns a difference of UVs as a transform does. The turn is counter-clockwise as seen on the
+// image, where v points down.
+Vec2 transformed(const Vec2& direction, const materials::TextureTransform& transform);
 
 // The linear values of 8-bit sRGB texels.
 using SrgbTable = std::array<double, 256>;

@@ -113,6 +113,27 @@ TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
     EXPECT_LT(plain.bytes, 64U);
 }
 
+// A frame may be that of the normal texture's coordinates though no key reads the texture. A material without
+// one has the coordinates as they are.
+TEST(MaterialLayout, HasTheTransformsOfFrames) {
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    const int normal = model.findTexture("normalTexture");
+    const materials::FeatureMask grooves = model.mask("anisotropy") | model.mask("texCoord0");
+    EXPECT_EQ(compiler::makeMaterialLayout(model, grooves).slotOf(normal), -1);
+    EXPECT_EQ(compiler::makeMaterialLayout(model, grooves | model.mask("texCoord1")).slotOf(normal), 0);
+    EXPECT_EQ(compiler::makeMaterialLayout(model, model.mask("turnedFrames")).slotOf(normal), -1);
+    const compiler::MaterialLayout layout =
+        compiler::makeMaterialLayout(model, grooves | model.mask("turnedFrames"));
+    ASSERT_EQ(layout.slotOf(normal), 0);
+    const std::vector<std::uint8_t> record = makeMaterialRecord(materials::Material(), layout);
+    gpu::TextureRecord texture{};
+    std::memcpy(&texture, &record[layout.textureOffset], sizeof texture);
+    EXPECT_EQ(texture.rowU.x, 1.0F);
+    EXPECT_EQ(texture.rowU.y, 0.0F);
+    EXPECT_EQ(texture.rowV.x, 0.0F);
+    EXPECT_EQ(texture.rowV.y, 1.0F);
+}
+
 TEST(MaterialTables, ListEachImageOncePerColourSpace) {
     const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
     ASSERT_EQ(tables.textures.size(), 3U);
@@ -131,7 +152,9 @@ TEST(MaterialTables, ListEachImageOncePerColourSpace) {
 }
 
 TEST(MaterialTables, LeaveEmptySlotsZero) {
-    const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), wholeLayout());
+    compiler::MaterialLayout layout = wholeLayout();
+    layout.turnsFrames = false;
+    const compiler::MaterialTables tables = makeMaterialTables(makeSampleScene(), layout);
     using Words = std::array<std::uint32_t, sizeof(gpu::TextureRecord) / sizeof(std::uint32_t)>;
     for (const materials::MaterialTexture& texture : materials::builtinMaterialModel().textures) {
         EXPECT_EQ(std::bit_cast<Words>(Records(tables.materials).texture(0, texture.name)), Words{});

@@ -271,6 +271,23 @@ TEST(AnimationPlanning, KeepsWhatAnimationsCallFor) {
     }
 }
 
+// A frame turns if the transform of its texture may rotate or mirror the UVs at any time.
+TEST(AnimationPlanning, TurnsFramesWhereATransformMayTurnThem) {
+    const auto turns = [](const char* part, const std::vector<float>& values, int components) {
+        Pointed pointed;
+        pointed.drive<float>(
+            std::string("/materials/0/normalTexture/extensions/KHR_texture_transform/") + part, values,
+            components);
+        const materials::FeatureMask key = keyOf(pointed.import());
+        EXPECT_NE(key & bit("textureTransform"), 0U) << part;
+        return (key & bit("turnedFrames")) != 0;
+    };
+    EXPECT_TRUE(turns("rotation", {0, 1}, 1));
+    EXPECT_TRUE(turns("scale", {1, 1, -1, 1}, 2));
+    EXPECT_FALSE(turns("scale", {1, 1, 2, 3}, 2));
+    EXPECT_FALSE(turns("offset", {0, 0, -1, 1}, 2));
+}
+
 // A value that never changes is not animated.
 TEST(AnimationPlanning, ConstantKeyframesAreConstants) {
     Pointed pointed;

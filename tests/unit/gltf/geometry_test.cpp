@@ -87,6 +87,14 @@ TEST(GltfGeometry, RefusesBadIndices) {
     GltfBuilder restart;
     restart.addTriangle()["indices"] = restart.addAccessor<std::uint8_t>({0, 1, 255}, 1);
     expectError(import(restart), "primitive-restart", "/meshes/0/primitives/0/indices");
+    // There is a vertex of that number.
+    std::vector<float> positions(std::size_t{3} * 256);
+    positions[3] = positions[3 * 255 + 1] = 1.0F;
+    Json& first = restart.root["meshes"][0]["primitives"][0];
+    first["attributes"]["POSITION"] = restart.addAccessor<float>(positions, 3);
+    const Result<gltf::Scene> drawn = import(restart);
+    EXPECT_EQ(onlyPrimitive(drawn).indices, (std::vector<std::uint32_t>{0, 1, 255}));
+    EXPECT_NE(findWarning(*drawn, "primitive-restart").message.find("255"), std::string::npos);
     GltfBuilder floats;
     Json& withFloats = floats.addTriangle();
     withFloats["indices"] = floats.addAccessor<float>({0, 1, 2}, 1);

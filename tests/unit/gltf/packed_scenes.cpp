@@ -1,9 +1,15 @@
 #include "unit/gltf/packed_scenes.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 #include <memory>
 #include <meshoptimizer.h>
+#include <span>
 #include <utility>
 #include <webp/encode.h>
 
@@ -136,6 +142,153 @@ base::Bytes packVertices(const void* vertices, std::size_t count, std::size_t st
     base::Bytes packed(meshopt_encodeVertexBufferBound(count, stride));
     packed.resize(meshopt_encodeVertexBuffer(packed.data(), packed.size(), vertices, count, stride));
     return packed;
+}
+
+namespace {
+
+// The deltas of one channel of four bytes, by byte.
+using DeltaPlanes = std::array<base::Bytes, 4>;
+
+// KHR_meshopt_compression: modes 0 and 1 are differences of bytes and of words, with the sign in the lowest
+// bit; mode 2 is an exclusive or, turned to the left.
+DeltaPlanes deltasOf(const std::uint8_t* vertices, std::size_t count, std::size_t stride, unsigned mode,
+                     std::uint32_t& last) {
+    DeltaPlanes planes;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, vertices + i * stride, sizeof value);
+        std::uint32_t delta = std::rotl(value ^ last, static_cast<int>(mode >> 4U));
+        const unsigned bits = mode == 0 ? 8 : 16;
+        if (mode < 2) {
+            delta = 0;
+            for (unsigned shift = 0; shift < 32; shift += bits) {
+                const std::uint32_t mask = (1U << bits) - 1;
+                const std::uint32_t difference = ((value >> shift) - (last >> shift)) & mask;
+                const bool negative = (difference >> (bits - 1)) != 0;
+                delta |= ((negative ? ~(difference << 1U) : difference << 1U) & mask) << shift;
+            }
+        }
+        for (unsigned k = 0; k < 4; ++k) {
+            planes[k].push_back(static_cast<std::uint8_t>(delta >> (8 * k)));
+        }
+        last = value;
+    }
+    return planes;
+}
+
+void appendGroup(const base::Bytes& plane, std::size_t first, unsigned width, base::Bytes& packed) {
+    base::Bytes codes(2 * std::size_t{width});
+    base::Bytes whole;
+    const unsigned sentinel = (1U << width) - 1;
+    for (std::size_t i = 0; i < 16 && width > 0; ++i) {
+        const unsigned delta = first + i < plane.size() ? plane[first + i] : 0;
+        const bool fits = width == 8 || delta < sentinel;
+        const std::size_t bit = i * width;
+        const std::size_t shift = width == 1 ? bit % 8 : 8 - width - bit % 8;
+        codes[bit / 8] = static_cast<std::uint8_t>(codes[bit / 8] | (fits ? delta : sentinel) << shift);
+        if (!fits) {
+            whole.push_back(static_cast<std::uint8_t>(delta));
+        }
+    }
+    packed.insert(packed.end(), codes.begin(), codes.end());
+    packed.insert(packed.end(), whole.begin(), whole.end());
+}
+
+// Appends a byte of all elements of a block. Returns its control mode.
+unsigned appendPlane(const base::Bytes& plane, std::size_t number, base::Bytes& packed) {
+    const auto isZero = [](std::uint8_t delta) { return delta == 0; };
+    if (std::ranges::all_of(plane, isZero)) {
+        return 2;
+    }
+    if (number % 3 == 2) {
+        packed.insert(packed.end(), plane.begin(), plane.end());
+        return 3;
+    }
+    const unsigned control = number % 3 == 0 ? 0 : 1;
+    const std::array<unsigned, 4> widths =
+        control == 0 ? std::array{0U, 1U, 2U, 4U} : std::array{1U, 2U, 4U, 8U};
+    const std::size_t groups = (plane.size() + 15) / 16;
+    const std::size_t headers = packed.size();
+    packed.resize(headers + (groups + 3) / 4);
+    for (std::size_t i = 0; i < groups; ++i) {
+        const auto group = std::span(plane).subspan(16 * i, std::min<std::size_t>(16, plane.size() - 16 * i));
+        std::size_t choice = (i + number) % 4;
+        choice += widths[choice] == 0 && !std::ranges::all_of(group, isZero) ? 1 : 0;
+        std::uint8_t& header = packed[headers + i / 4];
+        header = static_cast<std::uint8_t>(header | choice << (2 * (i % 4)));
+        appendGroup(plane, 16 * i, widths[choice], packed);
+    }
+    return control;
+}
+
+}  // namespace
+
+base::Bytes packVerticesV1(const void* vertices, std::size_t count, std::size_t stride) {
+    const auto* const bytes = static_cast<const std::uint8_t*>(vertices);
+    const std::size_t channels = stride / 4;
+    const std::size_t mostInBlock = std::min<std::size_t>((8192 / stride) & ~std::size_t{15}, 256);
+    const auto modeOf = [](std::size_t channel) {
+        return static_cast<std::uint8_t>(channel % 3 < 2 ? channel % 3 : 2 | (3 + channel) % 16 << 4U);
+    };
+    base::Bytes packed{0xA1};
+    std::vector<std::uint32_t> last(channels);
+    std::memcpy(last.data(), vertices, stride);
+    for (std::size_t first = 0; first < count; first += mostInBlock) {
+        const std::size_t controls = packed.size();
+        packed.resize(controls + channels);
+        for (std::size_t channel = 0; channel < channels; ++channel) {
+            const DeltaPlanes planes =
+                deltasOf(bytes + first * stride + 4 * channel, std::min(mostInBlock, count - first), stride,
+                         modeOf(channel), last[channel]);
+            for (std::size_t k = 0; k < 4; ++k) {
+                const unsigned control = appendPlane(planes[k], channel + k, packed);
+                packed[controls + channel] =
+                    static_cast<std::uint8_t>(packed[controls + channel] | control << (2 * k));
+            }
+        }
+    }
+    const std::size_t tail = stride + channels;
+    packed.resize(packed.size() + (tail < 24 ? 24 - tail : 0));
+    packed.insert(packed.end(), bytes, bytes + stride);
+    for (std::size_t channel = 0; channel < channels; ++channel) {
+        packed.push_back(modeOf(channel));
+    }
+    return packed;
+}
+
+std::vector<MeshoptVertex> meshoptVertices() {
+    constexpr std::size_t kCount = 300;
+    std::vector<MeshoptVertex> vertices;
+    std::uint32_t noise = 1;
+    for (std::size_t i = 0; i < kCount; ++i) {
+        noise = noise * 1664525U + 1013904223U;
+        const auto step = static_cast<float>(i);
+        vertices.push_back({{step * 0.25F, static_cast<float>(noise >> 8U) * 1e-6F, i < 280 ? 1.5F : 2.5F},
+                            {step / kCount, std::sqrt(step)},
+                            {static_cast<float>(i / 40), -step}});
+    }
+    return vertices;
+}
+
+GltfBuilder meshoptV1Scene() {
+    const std::vector<MeshoptVertex> vertices = meshoptVertices();
+    const std::size_t count = vertices.size();
+    const std::size_t stride = sizeof(MeshoptVertex);
+    GltfBuilder builder;
+    addFallbackBuffer(builder, count * stride);
+    const int view =
+        addPackedView(builder, packVerticesV1(vertices.data(), count, stride), count, stride, "ATTRIBUTES");
+    Json primitive;
+    const auto add = [&](const char* attribute, const char* type, std::size_t offset) {
+        Json accessor = vertexAccessor(view, 5126, count, type, false);
+        accessor["byteOffset"] = offset;
+        primitive["attributes"][attribute] = builder.append("accessors", std::move(accessor));
+    };
+    add("POSITION", "VEC3", offsetof(MeshoptVertex, position));
+    add("TEXCOORD_0", "VEC2", offsetof(MeshoptVertex, texCoord0));
+    add("TEXCOORD_1", "VEC2", offsetof(MeshoptVertex, texCoord1));
+    builder.addMesh(std::move(primitive));
+    return builder;
 }
 
 GltfBuilder meshoptScene() {

@@ -42,10 +42,23 @@ int addPackedView(GltfBuilder& builder, const base::Bytes& packed, std::size_t c
                   const std::string& mode, const std::string& filter = "NONE");
 
 base::Bytes packVertices(const void* vertices, std::size_t count, std::size_t stride);
+// Packs by version 1 of the codec, which the library of Debian 12 does not write: with every mode of
+// channels, control and groups, where the data allow it.
+base::Bytes packVerticesV1(const void* vertices, std::size_t count, std::size_t stride);
 
 // Returns the grid with EXT_meshopt_compression: plain positions, octahedral normals in 8 bits, exponential
 // UVs, indices as triangles.
 GltfBuilder meshoptScene();
+
+// Returns triangles with KHR_meshopt_compression's version 1: the vertices of meshoptVertices(), in two
+// blocks.
+struct MeshoptVertex {
+    gltf::Float3 position;
+    gltf::Float2 texCoord0;
+    gltf::Float2 texCoord1;
+};
+std::vector<MeshoptVertex> meshoptVertices();
+GltfBuilder meshoptV1Scene();
 
 // Encodes without loss; the input has four bytes for each pixel.
 base::Bytes encodeWebp(const base::Bytes& rgba8, int width, int height);

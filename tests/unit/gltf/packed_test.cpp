@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <meshoptimizer.h>
 #include <set>
 #include <string>
@@ -81,16 +83,35 @@ TEST(GltfDraco, ReadsWhatIsNotCompressedFromItsAccessor) {
         builder.addAccessor<float>(texCoords, 2);
     const Result<gltf::Scene> scene = import(builder);
     EXPECT_EQ(onlyPrimitive(scene).texCoords1.at(24), (gltf::Float2{0.5F, 0.5F}));
-    dracoOf(builder)["attributes"].erase("NORMAL");
-    expectError(builder, "attribute-data", "/meshes/0/primitives/0/attributes/NORMAL");
+    // An accessor without data has zeros.
+    builder.root["accessors"].back().erase("bufferView");
+    const Result<gltf::Scene> bare = import(builder);
+    EXPECT_EQ(onlyPrimitive(bare).texCoords1.at(24), (gltf::Float2{0.0F, 0.0F}));
+    EXPECT_TRUE(bare->warnings.empty()) << toString(bare->warnings[0]);
+    builder.root["accessors"].back()["count"] = 24;
+    expectError(builder, "attribute-count", "/meshes/0/primitives/0/attributes/TEXCOORD_1", "25");
+}
+
+TEST(GltfDraco, LeavesOutWhatTheDataLack) {
+    GltfBuilder builder = dracoScene(DracoMethod::Edgebreaker);
+    Json& attributes = dracoOf(builder)["attributes"];
+    attributes["NORMAL"] = 7;
+    attributes["JOINTS_0"] = 8;
+    Json& given = builder.root["meshes"][0]["primitives"][0]["attributes"];
+    given["WEIGHTS_0"] = given["JOINTS_0"] = given["NORMAL"];
+    const Result<gltf::Scene> scene = import(builder);
+    EXPECT_TRUE(onlyPrimitive(scene).normals.empty());
+    EXPECT_EQ(onlyPrimitive(scene).influences.count, 0U);
+    EXPECT_EQ(onlyPrimitive(scene).texCoords0.size(), 25U);
+    EXPECT_EQ(countWarnings(*scene, "draco-attribute"), 2U);
+    attributes["POSITION"] = 9;
+    expectError(builder, "draco-attribute", std::string(kDracoPointer) + "/attributes/POSITION", "9");
 }
 
 TEST(GltfDraco, ExplainsWrongAttributes) {
     GltfBuilder builder = dracoScene(DracoMethod::Sequential);
     Json& attributes = dracoOf(builder)["attributes"];
     const std::string pointer = std::string(kDracoPointer) + "/attributes";
-    attributes["NORMAL"] = 7;
-    expectError(builder, "draco-attribute", pointer + "/NORMAL", "7");
     attributes["NORMAL"] = kDracoTexCoord;
     expectError(builder, "draco-attribute", pointer + "/NORMAL", "2 components");
     attributes["NORMAL"] = -1;
@@ -105,15 +126,17 @@ TEST(GltfDraco, ExplainsWrongAttributes) {
     expectError(builder, "json-missing", kDracoPointer);
 }
 
-TEST(GltfDraco, ComparesCounts) {
-    GltfBuilder points = dracoScene(DracoMethod::Edgebreaker);
-    points.root["accessors"][0]["count"] = 24;
-    expectError(points, "attribute-count", "/meshes/0/primitives/0/attributes/POSITION", "25");
-    GltfBuilder triangles = dracoScene(DracoMethod::Edgebreaker);
-    triangles.root["accessors"][3]["count"] = 99;
-    const Result<gltf::Scene> scene = import(triangles);
-    EXPECT_EQ(onlyPrimitive(scene).indices.size(), 96U);
-    EXPECT_EQ(countWarnings(*scene, "draco-count"), 1U);
+TEST(GltfDraco, UsesTheCountsOfTheData) {
+    GltfBuilder builder = dracoScene(DracoMethod::Edgebreaker);
+    builder.root["accessors"][0]["count"] = 24;
+    builder.root["accessors"][1]["count"] = 26;
+    builder.root["accessors"][3]["count"] = 99;
+    const Result<gltf::Scene> scene = import(builder);
+    expectGrid(onlyPrimitive(scene));
+    ASSERT_EQ(countWarnings(*scene, "draco-count"), 1U);
+    EXPECT_TRUE(findWarning(*scene, "draco-count")
+                    .message.ends_with(
+                        "POSITION 24 instead of 25, NORMAL 26 instead of 25, indices 99 instead of 96"));
 }
 
 TEST(GltfDraco, ExplainsDamage) {
@@ -191,6 +214,77 @@ TEST(GltfMeshopt, RoundTrips) {
     }
 }
 
+TEST(GltfMeshopt, ReadsVersion1OfAttributes) {
+    const Result<gltf::Scene> scene = import(meshoptV1Scene());
+    const gltf::Primitive& read = onlyPrimitive(scene);
+    const std::vector<MeshoptVertex> vertices = meshoptVertices();
+    ASSERT_EQ(read.positions.size(), vertices.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        ASSERT_EQ(read.positions[i], vertices[i].position) << i;
+        ASSERT_EQ(read.texCoords0[i], vertices[i].texCoord0) << i;
+        ASSERT_EQ(read.texCoords1[i], vertices[i].texCoord1) << i;
+    }
+}
+
+TEST(GltfMeshopt, ExplainsDamageOfVersion1) {
+    const GltfBuilder whole = meshoptV1Scene();
+    GltfBuilder longer = whole;
+    const auto size = meshoptOf(longer, 0)["byteLength"].get<std::size_t>();
+    const auto expectDamage = [&](std::size_t place, std::uint8_t byte, const char* part) {
+        GltfBuilder builder = whole;
+        builder.buffer[place] = byte;
+        expectError(builder, "meshopt-decode", "/bufferViews/0", part);
+    };
+    expectDamage(0, 0xA2, "newer format");
+    // The last byte is the mode of the last channel.
+    expectDamage(size - 1, 3, "damaged");
+    expectDamage(size - 1, 0x10, "damaged");
+    // A byte of all elements takes less than it did, or more.
+    expectDamage(1, 0xAA, "");
+    expectDamage(1, 0xFF, "");
+    longer.buffer.insert(longer.buffer.begin() + 8, 0);
+    meshoptOf(longer, 0)["byteLength"] = size + 1;
+    expectError(longer, "meshopt-decode", "/bufferViews/0");
+}
+
+// KHR_meshopt_compression, appendix B: Y, Co and Cg; alpha tells the number of bits.
+TEST(GltfMeshopt, DecodesColors) {
+    const auto colorsOf = [](const base::Bytes& filtered, int componentType) {
+        const std::size_t stride = filtered.size() / 3;
+        meshopt_encodeVertexVersion(0);
+        GltfBuilder builder;
+        Json& primitive = builder.addTriangle();
+        addFallbackBuffer(builder, filtered.size());
+        const int view = addPackedView(builder, packVertices(filtered.data(), 3, stride), 3, stride,
+                                       "ATTRIBUTES", "COLOR");
+        primitive["attributes"]["COLOR_0"] = builder.append("accessors", {{"bufferView", view},
+                                                                          {"componentType", componentType},
+                                                                          {"count", 3},
+                                                                          {"type", "VEC4"},
+                                                                          {"normalized", true}});
+        std::vector<std::array<int, 4>> colors;
+        const Result<gltf::Scene> scene = import(builder);
+        for (const gltf::Float4& color : onlyPrimitive(scene).colors) {
+            std::array<int, 4>& whole = colors.emplace_back();
+            for (std::size_t i = 0; i < 4; ++i) {
+                whole[i] =
+                    static_cast<int>(std::lround(color[i] * (componentType == 5121 ? 255.0F : 65535.0F)));
+            }
+        }
+        return colors;
+    };
+    using Colors = std::vector<std::array<int, 4>>;
+    // White; a red whose alpha is half; 32 of 63, opaque.
+    EXPECT_EQ(colorsOf({255, 0, 0, 255, 64, 127, 192, 192, 32, 0, 0, 63}, 5121),
+              (Colors{{255, 255, 255, 255}, {255, 0, 1, 128}, {130, 130, 130, 255}}));
+    const std::vector<std::uint16_t> wide{65535, 0, 0, 65535, 512, 0, 0, 1023, 300, 65436, 50, 512};
+    base::Bytes bytes(wide.size() * sizeof wide[0]);
+    std::memcpy(bytes.data(), wide.data(), bytes.size());
+    // (300 - 100 - 50, 300 + 50, 300 + 100 - 50) of 1023
+    EXPECT_EQ(colorsOf(bytes, 5123),
+              (Colors{{65535, 65535, 65535, 65535}, {32800, 32800, 32800, 65535}, {9609, 22422, 22422, 0}}));
+}
+
 TEST(GltfMeshopt, ReadsTheNameOfTheKhronosExtension) {
     GltfBuilder builder = meshoptScene();
     builder.root["extensionsRequired"][0] = builder.root["extensionsUsed"][0] = "KHR_meshopt_compression";
@@ -252,6 +346,7 @@ TEST(GltfMeshopt, ExplainsContradictions) {
     };
     check(0, "mode", "LINES", "meshopt-layout", "LINES");
     check(0, "filter", "COLOR", "meshopt-layout", "COLOR");
+    check(0, "filter", "HUE", "meshopt-layout", "HUE");
     check(0, "byteStride", 6, "meshopt-layout", "multiple of 4");
     check(0, "filter", "OCTAHEDRAL", "meshopt-layout", "OCTAHEDRAL");
     check(1, "filter", "QUATERNION", "meshopt-layout", "QUATERNION");

@@ -217,7 +217,9 @@ TEST(GltfRepair, TransformsThatOverflowAreRefused) {
     const Result<gltf::Scene> tooLarge =
         importText(R"({"asset": {"version": "2.0"}, "nodes": [{"translation": [1e400, 0, 0]}]})");
     ASSERT_FALSE(tooLarge.ok());
-    EXPECT_EQ(tooLarge.error().id, "json-syntax");
+    EXPECT_EQ(tooLarge.error().id, "json-range");
+    EXPECT_TRUE(tooLarge.error().where.ends_with("scene.gltf#/nodes/0/translation/0"));
+    EXPECT_NE(tooLarge.error().message.find("1e400"), std::string::npos);
 }
 
 }  // namespace

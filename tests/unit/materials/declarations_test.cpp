@@ -37,7 +37,7 @@ std::string refusal(const std::string& text) {
 
 TEST(Declarations, OfGlintAreComplete) {
     const materials::MaterialModel& model = materials::builtinMaterialModel();
-    EXPECT_EQ(model.features.size(), 43U);
+    EXPECT_EQ(model.features.size(), 44U);
     EXPECT_EQ(model.order.size(), model.features.size());
     std::set<std::string> shortNames;
     for (const materials::Feature& feature : model.features) {

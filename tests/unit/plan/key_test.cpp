@@ -50,8 +50,8 @@ TEST(Key, HasEveryFeatureThatMatters) {
     Dropped dropped;
     const materials::FeatureMask key = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, &dropped);
     for (const materials::Feature& info : materials::builtinMaterialModel().features) {
-        const bool excluded =
-            info.name == "unlit" || info.name == "specularGlossiness" || info.name == "clearcoatSharesNormal";
+        const bool excluded = info.name == "unlit" || info.name == "specularGlossiness" ||
+                              info.name == "clearcoatSharesNormal" || info.name == "turnedFrames";
         EXPECT_EQ((key & info.mask()) != 0, !excluded) << info.name;
     }
     EXPECT_TRUE(dropped.empty());
@@ -272,6 +272,65 @@ TEST(Key, NamesExtensionsThatAreNotShaded) {
     Dropped dropped;
     compiler::makeKey(material, materials::PrimitiveInputs{}, kTested, &dropped);
     EXPECT_FALSE(reasonFor(dropped, "KHR_materials_future").empty());
+}
+
+TEST(Key, FramesTurnWhereATransformTurnsThem) {
+    materials::PrimitiveInputs primitive = fullPrimitive();
+    primitive.hasTangents = false;
+    const auto turns = [&](const char* slot, const materials::TextureTransform& transform) {
+        materials::Material material = fullMaterial();
+        material.texture(slot).transform = transform;
+        return (compiler::makeKey(material, primitive, kTested) & bit("turnedFrames")) != 0;
+    };
+    for (const char* const slot : {"normalTexture", "clearcoatNormalTexture", "anisotropyTexture"}) {
+        EXPECT_TRUE(turns(slot, {.rotation = 0.1F})) << slot;
+        EXPECT_TRUE(turns(slot, {.rotation = 3.1415927F})) << slot;
+        EXPECT_TRUE(turns(slot, {.scale = {-1, 1}})) << slot;
+        EXPECT_TRUE(turns(slot, {.scale = {1, -2}})) << slot;
+        EXPECT_FALSE(turns(slot, {.offset = {0.5F, 0.5F}, .scale = {2, 3}})) << slot;
+        EXPECT_FALSE(turns(slot, {.scale = {0, 1}})) << slot;
+        EXPECT_FALSE(turns(slot, {.rotation = 6.2831855F})) << slot << ", a whole turn";
+        EXPECT_FALSE(turns(slot, {.rotation = 3.1415927F, .scale = {-1, -1}}))
+            << slot << ", half a turn twice";
+    }
+    EXPECT_FALSE(turns("emissiveTexture", {.rotation = 1})) << "it has no frame";
+}
+
+TEST(Key, TangentsOfTheFileAreUsedAsTheyAre) {
+    materials::Material material = fullMaterial();
+    material.texture("normalTexture").transform.rotation = 1.0F;
+    materials::PrimitiveInputs primitive = fullPrimitive();
+    Dropped dropped;
+    const materials::FeatureMask given = compiler::makeKey(material, primitive, kTested, &dropped);
+    EXPECT_EQ(given & bit("turnedFrames"), 0U);
+    EXPECT_FALSE(reasonFor(dropped, "turnedFrames").empty());
+    // They say something else than the transformed UVs, even if they are those of the UVs themselves.
+    primitive.derivesTangents = true;
+    EXPECT_EQ(compiler::makeKey(material, primitive, kTested), given);
+    material.texture("normalTexture").transform.rotation = 0.0F;
+    EXPECT_EQ(compiler::makeKey(material, primitive, kTested) & bit("tangents"), 0U);
+}
+
+// Anisotropy without a texture has the frame of the normal texture, whether or not that is read.
+TEST(Key, GroovesWithoutATextureHaveTheFrameOfTheNormalTexture) {
+    materials::Material material;
+    material.give("KHR_materials_anisotropy");
+    material["anisotropyStrength"] = 0.5F;
+    material["roughnessFactor"] = 0.5F;
+    materials::TextureInfo& normal = material.texture("normalTexture");
+    normal.texture = 0;
+    normal.texCoord = 1;
+    normal.transform.rotation = 1.0F;
+    material["normalScale"] = 0.0F;
+    materials::PrimitiveInputs primitive = fullPrimitive();
+    primitive.hasTangents = false;
+    const materials::FeatureMask key = compiler::makeKey(material, primitive, kTested);
+    EXPECT_EQ(key & (bit("normalTexture") | bit("texCoord0")), 0U);
+    EXPECT_EQ(key & (bit("texCoord1") | bit("turnedFrames")), bit("texCoord1") | bit("turnedFrames"));
+    normal.texture = -1;
+    EXPECT_EQ(compiler::makeKey(material, primitive, kTested) &
+                  (bit("texCoord0") | bit("texCoord1") | bit("turnedFrames")),
+              bit("texCoord0"));
 }
 
 TEST(Key, ReadsOnlyTheUvSetsOfLiveTextures) {

@@ -247,6 +247,10 @@ std::size_t DracoMesh::pointCount() const {
     return mesh_->num_points();
 }
 
+bool DracoMesh::has(std::uint32_t id) const {
+    return mesh_->GetAttributeByUniqueId(id) != nullptr;
+}
+
 Result<base::Bytes> DracoMesh::attribute(const Document& document, std::uint32_t id,
                                          const ElementFormat& format, const std::string& pointer) const {
     const draco::PointAttribute* attribute = mesh_->GetAttributeByUniqueId(id);

@@ -34,9 +34,10 @@ public:
     const std::vector<std::uint32_t>& indices() const {
         return indices_;
     }
-    // Returns the elements of the attribute with that unique identifier, packed tightly in the format of
-    // their accessor. The error is "draco-attribute" if there is no such attribute or its values have another
-    // form.
+    // Whether there is an attribute with that unique identifier.
+    bool has(std::uint32_t id) const;
+    // Returns the elements of that attribute, packed tightly in the format of their accessor. The error is
+    // "draco-attribute" if there is no such attribute or its values have another form.
     Result<base::Bytes> attribute(const Document& document, std::uint32_t id, const ElementFormat& format,
                                   const std::string& pointer) const;
 

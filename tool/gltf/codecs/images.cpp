@@ -155,8 +155,9 @@ Decodable decodability(const Document& document, int image) {
     std::string type = lowerCase(textMember(json, "mimeType"));
     const std::string uri = lowerCase(textMember(json, "uri"));
     if (type.empty() && isDataUri(uri)) {
-        type = uri.substr(5, uri.find_first_of(";,") - 5);
+        type = uri.substr(5, uri.find(',') - 5);
     }
+    type = type.substr(0, type.find_first_of("; "));  // without parameters
     const auto endsWith = [&](std::string_view end) { return !isDataUri(uri) && uri.ends_with(end); };
     if (type == "image/ktx2" || endsWith(".ktx2")) {
         return hasBasisu() ? Decodable::Yes : Decodable::NeedsBasisu;

@@ -24,7 +24,10 @@ struct Container {
 Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std::string& file,
                                  std::vector<Diagnostic>& warnings);
 
-// Errors: "json-depth", "json-syntax", and "json-type" if the root is not an object.
-Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file);
+// A number that a double can't hold becomes a text that isHugeNumber() recognises, so that it does not matter
+// where nothing reads it. Errors: "scene-empty" and "scene-format" if it is a whole file of another kind,
+// "json-depth", "json-syntax", and "json-type" if the root is not an object.
+Result<Json> parseJson(std::span<const std::uint8_t> bytes, const std::string& file,
+                       std::vector<Diagnostic>& warnings);
 
 }  // namespace glint::gltf

@@ -60,7 +60,7 @@ Status Document::parse() {
         return container.error();
     }
     binary_ = container->binary;
-    Result<Json> root = parseJson(container->json, name_);
+    Result<Json> root = parseJson(container->json, name_, warnings_);
     if (!root) {
         return root.error();
     }

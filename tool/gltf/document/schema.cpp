@@ -32,7 +32,13 @@ std::string_view describe(Kind kind) {
     return "another type";
 }
 
-SchemaError typeError(const std::string& pointer, std::string_view expected) {
+// Returns what is wrong with a value of another type than the expected one.
+SchemaError typeError(const Json& value, const std::string& pointer, std::string_view expected) {
+    if (isHugeNumber(value)) {
+        return {"json-range", pointer,
+                fmt::format("is {}, which is too large for a number of 64 bits",
+                            value.get_ref<const std::string&>().substr(kHugeNumberMark.size()))};
+    }
     return {"json-type", pointer, fmt::format("must be {}", expected)};
 }
 
@@ -61,7 +67,7 @@ bool makeInteger(Json& value) {
 std::optional<SchemaError> checkIndex(const Json& root, Json& value, const Rule& rule,
                                       const std::string& pointer) {
     if (!makeInteger(value)) {
-        return typeError(pointer, describe(Kind::Index));
+        return typeError(value, pointer, describe(Kind::Index));
     }
     const std::size_t size = arraySize(root, rule.target);
     const bool inside = value.is_number_unsigned()
@@ -77,13 +83,14 @@ std::optional<SchemaError> checkIndex(const Json& root, Json& value, const Rule&
 
 std::optional<SchemaError> checkNumbers(Json& value, const Rule& rule, const std::string& pointer) {
     if (!value.is_array() || (rule.length != 0 && value.size() != rule.length)) {
-        return typeError(pointer, rule.length == 0 ? std::string(describe(Kind::Numbers))
-                                                   : fmt::format("an array of {} numbers", rule.length));
+        return typeError(value, pointer,
+                         rule.length == 0 ? std::string(describe(Kind::Numbers))
+                                          : fmt::format("an array of {} numbers", rule.length));
     }
     for (std::size_t i = 0; i < value.size(); ++i) {
         const std::string element = fmt::format("{}/{}", pointer, i);
         if (!value[i].is_number()) {
-            return typeError(element, describe(Kind::Number));
+            return typeError(value[i], element, describe(Kind::Number));
         }
         if (auto error = checkRange(value[i], rule, element)) {
             return error;
@@ -97,7 +104,7 @@ template <typename Check>
 std::optional<SchemaError> checkElements(Json& value, Kind kind, const std::string& pointer,
                                          const Check& check) {
     if (!value.is_array()) {
-        return typeError(pointer, describe(kind));
+        return typeError(value, pointer, describe(kind));
     }
     for (std::size_t i = 0; i < value.size(); ++i) {
         if (auto error = check(value[i], fmt::format("{}/{}", pointer, i))) {
@@ -110,7 +117,7 @@ std::optional<SchemaError> checkElements(Json& value, Kind kind, const std::stri
 std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule& rule,
                                       const std::string& pointer) {
     const auto expect = [&](bool holds) -> std::optional<SchemaError> {
-        return holds ? std::nullopt : std::optional(typeError(pointer, describe(rule.kind)));
+        return holds ? std::nullopt : std::optional(typeError(value, pointer, describe(rule.kind)));
     };
     switch (rule.kind) {
         case Kind::Integer:
@@ -122,7 +129,7 @@ std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule&
         case Kind::Bool:
             return expect(value.is_boolean());
         case Kind::Text:
-            return expect(value.is_string());
+            return expect(value.is_string() && !isHugeNumber(value));
         case Kind::Index:
             return checkIndex(root, value, rule, pointer);
         case Kind::Indices:
@@ -145,7 +152,7 @@ std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule&
 std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
                                        const std::string& pointer) {
     if (!object.is_object()) {
-        return typeError(pointer, describe(Kind::Object));
+        return typeError(object, pointer, describe(Kind::Object));
     }
     for (const Rule& rule : rules) {
         const auto member = object.find(rule.name);
@@ -160,6 +167,10 @@ std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span
         }
     }
     return std::nullopt;
+}
+
+bool isHugeNumber(const Json& value) {
+    return value.is_string() && value.get_ref<const std::string&>().starts_with(kHugeNumberMark);
 }
 
 const Json* find(const Json& object, std::string_view name) {

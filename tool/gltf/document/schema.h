@@ -53,6 +53,10 @@ struct SchemaError {
 std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
                                        const std::string& pointer);
 
+// Begins the text that stands for a number which a double can't hold. The rest of the text is the number.
+inline constexpr std::string_view kHugeNumberMark("\0number ", 8);
+bool isHugeNumber(const Json& value);
+
 // Returns the member of that name, or null if it is absent or `object` is not an object.
 const Json* find(const Json& object, std::string_view name);
 // Returns the extension of that name if it is an object, and null otherwise.

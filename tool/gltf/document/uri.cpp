@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <utility>
 
 namespace glint::gltf {
 
@@ -35,19 +36,22 @@ int base64Digit(char c) {
     return c == '/' || c == '_' ? 63 : -1;
 }
 
+// White space is skipped, as browsers do.
 std::optional<base::Bytes> decodeBase64(std::string_view text) {
-    while (!text.empty() && text.back() == '=') {
+    const auto isSpace = [](char c) {
+        return std::string_view(" \t\n\f\r").find(c) != std::string_view::npos;
+    };
+    while (!text.empty() && (text.back() == '=' || isSpace(text.back()))) {
         text.remove_suffix(1);
-    }
-    // One digit after the last whole group would hold six bits, which is less than a byte.
-    if (text.size() % 4 == 1) {
-        return std::nullopt;
     }
     base::Bytes bytes;
     bytes.reserve(text.size() / 4 * 3 + 2);
     std::uint32_t bits = 0;
     int bitCount = 0;
     for (const char c : text) {
+        if (isSpace(c)) {
+            continue;
+        }
         const int digit = base64Digit(c);
         if (digit < 0) {
             return std::nullopt;
@@ -59,7 +63,31 @@ std::optional<base::Bytes> decodeBase64(std::string_view text) {
             bytes.push_back(static_cast<std::uint8_t>(bits >> static_cast<unsigned>(bitCount)));
         }
     }
-    return bytes;
+    // One digit after the last whole group would hold six bits, which is less than a byte.
+    return bitCount == 6 ? std::nullopt : std::optional(std::move(bytes));
+}
+
+bool equalsIgnoringCase(std::string_view text, std::string_view lower) {
+    return std::ranges::equal(text, lower, [](char c, char expected) {
+        return std::tolower(static_cast<unsigned char>(c)) == expected;
+    });
+}
+
+// Removes ";base64" from the end of a header, where spaces may follow the semicolon. Returns whether it was
+// there.
+bool removeBase64(std::string_view& header) {
+    constexpr std::string_view kBase64 = "base64";
+    if (header.size() < kBase64.size() ||
+        !equalsIgnoringCase(header.substr(header.size() - kBase64.size()), kBase64)) {
+        return false;
+    }
+    std::string_view rest = header.substr(0, header.size() - kBase64.size());
+    rest = rest.substr(0, rest.find_last_not_of(' ') + 1);
+    if (!rest.ends_with(';')) {
+        return false;
+    }
+    header = rest.substr(0, rest.size() - 1);
+    return true;
 }
 
 bool hasScheme(std::string_view uri) {
@@ -70,10 +98,7 @@ bool hasScheme(std::string_view uri) {
 }  // namespace
 
 bool isDataUri(std::string_view uri) {
-    return uri.size() >= kDataScheme.size() &&
-           std::equal(kDataScheme.begin(), kDataScheme.end(), uri.begin(), [](char expected, char c) {
-               return expected == std::tolower(static_cast<unsigned char>(c));
-           });
+    return equalsIgnoringCase(uri.substr(0, kDataScheme.size()), kDataScheme);
 }
 
 std::optional<DataUri> decodeDataUri(std::string_view uri) {
@@ -83,11 +108,7 @@ std::optional<DataUri> decodeDataUri(std::string_view uri) {
     }
     std::string_view header = uri.substr(kDataScheme.size(), comma - kDataScheme.size());
     const std::string_view payload = uri.substr(comma + 1);
-    constexpr std::string_view kBase64 = ";base64";
-    const bool base64 = header.ends_with(kBase64);
-    if (base64) {
-        header.remove_suffix(kBase64.size());
-    }
+    const bool base64 = removeBase64(header);
     DataUri data{std::string(header.substr(0, header.find(';'))), {}};
     if (base64) {
         // '+', '/' and '=' may be percent-encoded.

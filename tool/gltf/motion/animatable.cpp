@@ -227,7 +227,9 @@ bool setPropertyRange(materials::Material& material, int property, std::size_t n
     if (parameter == nullptr) {
         materials::TextureInfo& info =
             material.textures[static_cast<std::size_t>(placeOf(model, property).texture)];
+        const int part = partOf(model, property);
         info.moves = info.moves || varies;
+        info.turns = info.turns || (varies && (part == kRotation || (part == kScale && range.low < 0.0)));
         return varies;
     }
     if (material.ranges.empty()) {

@@ -475,12 +475,7 @@ bool TexCoordBox::isFinite() const {
 }
 
 TexCoordBox boxOf(std::span<const Float2> corners, const materials::TextureTransform& transform) {
-    // As in the rows of a TextureRecord.
-    const double sine = std::sin(static_cast<double>(transform.rotation));
-    const double cosine = std::cos(static_cast<double>(transform.rotation));
-    const std::array<std::array<double, 3>, 2> rows{
-        {{cosine * transform.scale[0], sine * transform.scale[1], transform.offset[0]},
-         {-sine * transform.scale[0], cosine * transform.scale[1], transform.offset[1]}}};
+    const materials::TransformRows rows = rowsOf(transform);
     TexCoordBox box;
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const std::array<double, 3>& row = rows[axis];
