@@ -9,15 +9,12 @@
 
 namespace glint::testing {
 
-// The decades that scenes are drawn from. Point lights nearer than a millimetre, as in smaller scenes, shine
-// as if they were at that distance.
-inline constexpr int kLeastScaleDecade = -2;
+// The decades that scenes are drawn from: their scale, metres from the origin, and metres from the origin for
+// each metre of the scene.
+inline constexpr int kLeastScaleDecade = -4;
 inline constexpr int kMostScaleDecade = 5;
-// Metres from the origin.
 inline constexpr int kMostOffsetDecade = 6;
-// Metres from the origin for each metre of the scene: 100 leave a pixel of a small picture exact where
-// positions in the world are single floats.
-inline constexpr int kMostOffsetOverScaleDecade = 2;
+inline constexpr int kMostOffsetOverScaleDecade = 10;
 
 // Where a scene is put. Everything in it grows by `scale`, its lights and its camera included, and then
 // moves.
