@@ -83,6 +83,7 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
     const Json& primitives = arrayMember(json, "primitives");
     Mesh mesh;
     mesh.name = textMember(json, "name");
+    compareTargets(document, index);
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         Primitive primitive;
         primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);

@@ -115,14 +115,16 @@ void repairTangents(Document& document, Primitive& primitive) {
         const Float4 stored = primitive.tangents[i];
         const auto unit = unitVector({stored[0], stored[1], stored[2]});
         const Float3 tangent = unit ? *unit : anyTangent(primitive.normals[i]);
-        const bool valid = unit.has_value() && std::isfinite(stored[3]) && stored[3] != 0.0F;
+        const bool valid = unit.has_value() && std::abs(stored[3]) == 1.0F;
         count += valid ? 0 : 1;
         primitive.tangents[i] = {tangent[0], tangent[1], tangent[2], stored[3] < 0.0F ? -1.0F : 1.0F};
     }
     if (count > 0) {
         document.warn(
             "tangent-invalid", primitive.pointer + "/attributes/TANGENT",
-            fmt::format("{} tangents are zero or not finite; others in the surface are used", count),
+            fmt::format("{} tangents are zero or not finite, or have a w other than 1 and -1; others in the "
+                        "surface are used, and the sign of w",
+                        count),
             kRepairHint);
     }
 }
@@ -140,6 +142,14 @@ void replaceNonFinite(Document& document, const Primitive& primitive,
     if (count > 0) {
         document.warn("attribute-not-finite", fmt::format("{}/attributes/{}", primitive.pointer, attribute),
                       fmt::format("{} values are not finite; {} is used", count, substitute), kRepairHint);
+    }
+}
+
+// glTF asks for this (section 3.7.2.1), so it is no repair that anyone is told of.
+void clampColors(Primitive& primitive) {
+    for (Float4& color : primitive.colors) {
+        std::ranges::transform(color, color.begin(),
+                               [](float channel) { return std::clamp(channel, 0.0F, 1.0F); });
     }
 }
 
@@ -168,6 +178,7 @@ void repairPrimitive(Document& document, Primitive& primitive) {
     replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
     replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
     replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
+    clampColors(primitive);
     repairDeclared(document, primitive);
     for (MorphTarget& target : primitive.targets) {
         replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");

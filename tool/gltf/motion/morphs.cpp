@@ -1,10 +1,12 @@
 #include "gltf/motion/morphs.h"
 
 #include "gltf/document/accessor.h"
+#include "gltf/document/validate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -70,7 +72,34 @@ std::size_t countTargets(const Mesh& mesh) {
     return count;
 }
 
+// Warns of attributes that glTF lets a target change and that Glint does not change.
+void warnOfUnread(Document& document, const Json& target, const std::string& pointer) {
+    for (const auto& [name, accessor] : target.items()) {
+        if (!name.starts_with('_') &&
+            std::ranges::find(kTargetAttributes, name) == std::end(kTargetAttributes)) {
+            document.warn("morph-attribute", pointer + "/" + name,
+                          "Glint morphs POSITION, NORMAL and TANGENT alone; these differences are left out",
+                          "animate the material instead, or give each shape a mesh of its own");
+        }
+    }
+}
+
 }  // namespace
+
+void compareTargets(Document& document, std::size_t mesh) {
+    const Json& primitives = arrayMember(document.json()["meshes"][mesh], "primitives");
+    for (std::size_t i = 1; i < primitives.size(); ++i) {
+        const std::size_t first = arrayMember(primitives[0], "targets").size();
+        const std::size_t own = arrayMember(primitives[i], "targets").size();
+        if (own != first) {
+            document.warn("morph-targets", fmt::format("/meshes/{}/primitives/{}", mesh, i),
+                          fmt::format("has {} morph targets, and the mesh's first primitive has {}; the "
+                                      "targets that one of them lacks don't change it",
+                                      own, first),
+                          "give all primitives of the mesh the same targets");
+        }
+    }
+}
 
 Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
     const Json& targets = arrayMember(source.json, "targets");
@@ -78,6 +107,7 @@ Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const std::string pointer = fmt::format("{}/targets/{}", primitive.pointer, i);
         MorphTarget& target = primitive.targets.emplace_back();
+        warnOfUnread(source.document, targets[i], pointer);
         struct Member {
             const char* attribute;
             bool isBased;
