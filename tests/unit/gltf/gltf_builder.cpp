@@ -73,8 +73,10 @@ void collectExtensions(const Json& json, std::set<std::string>& names) {
             names.insert(name);
         }
     }
-    for (const Json& element : json.is_structured() ? json : Json::array()) {
-        collectExtensions(element, names);
+    for (auto member = json.begin(); json.is_structured() && member != json.end(); ++member) {
+        if (!json.is_object() || member.key() != "extras") {
+            collectExtensions(*member, names);
+        }
     }
 }
 

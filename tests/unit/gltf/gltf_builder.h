@@ -90,15 +90,19 @@ private:
     template <typename T>
     static void addBounds(const std::vector<T>& values, int components, Json& accessor) {
         const auto width = static_cast<std::size_t>(components);
-        if (components > 4 || values.size() < width ||
-            std::ranges::any_of(values, [](T value) { return !std::isfinite(static_cast<double>(value)); })) {
+        if (components > 4 || values.size() < width) {
             return;
         }
-        std::vector<T> least(values.begin(), values.begin() + components);
-        std::vector<T> greatest = least;
+        std::vector<T> least(width);
+        std::vector<T> greatest(width);
         for (std::size_t i = 0; i < values.size(); ++i) {
-            least[i % width] = std::min(least[i % width], values[i]);
-            greatest[i % width] = std::max(greatest[i % width], values[i]);
+            if (std::isfinite(static_cast<double>(values[i]))) {
+                const bool isFirst = i < width;
+                T& low = least[i % width];
+                T& high = greatest[i % width];
+                low = isFirst ? values[i] : std::min(low, values[i]);
+                high = isFirst ? values[i] : std::max(high, values[i]);
+            }
         }
         accessor["min"] = least;
         accessor["max"] = greatest;

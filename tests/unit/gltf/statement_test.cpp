@@ -230,7 +230,8 @@ std::string fileOf(const Ordered& row, const Ordered& edits) {
     if (!row.contains("glb")) {
         return text;
     }
-    for (const auto& [place, byte] : row["glb"].value("set", Ordered::object()).items()) {
+    const Ordered set = row["glb"].value("set", Ordered::object());
+    for (const auto& [place, byte] : set.items()) {
         text.at(std::stoul(place)) = static_cast<char>(byte.get<int>());
     }
     for (const Ordered& byte : row["glb"].value("append", Ordered::array())) {
@@ -371,7 +372,8 @@ void compareReads(const Ordered& row, gltf::Scene scene) {
         scene_view::applyPose(scene_view::poseAt(scene, animations, row["time"].get<double>()), scene);
     }
     const Json all = describe(scene);
-    for (const auto& [place, value] : row.value("reads", Ordered::object()).items()) {
+    const Ordered reads = row.value("reads", Ordered::object());
+    for (const auto& [place, value] : reads.items()) {
         const Json::json_pointer pointer(place);
         ASSERT_TRUE(all.contains(pointer)) << place;
         EXPECT_PRED2(isNear, all[pointer], Json(value)) << place;

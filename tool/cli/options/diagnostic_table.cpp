@@ -30,8 +30,8 @@ constexpr DiagnosticInfo kTable[] = {
      "`--alpha auto`: the scene has the alpha mode BLEND, which is seen with the probability alpha."},
     {"alpha-tested", kNote, "`--alpha auto`: the scene has alpha masks, so rays test them."},
     {"animation-channel", kWarning,
-     "A channel of an animation drives nothing that Glint moves, or what an earlier one drives; it is not "
-     "played."},
+     "A channel of an animation drives nothing that Glint moves, and is not played, or what an earlier one "
+     "drives."},
     {"animation-keyframes", kWarning,
      "The keyframes of an animation are not well formed. Most such flaws keep what they drive from being "
      "played."},

@@ -145,20 +145,22 @@ private:
         }
     }
 
-    // Plays the channel, unless an earlier one drives the same property. glTF forbids that.
+    // Appends the channel, and warns if an earlier one drives the same property, which glTF forbids.
     void append(const AnimationChannel& channel, const std::string& pointer) {
-        const auto drivesSame = [&](const AnimationChannel& other) {
-            const bool isWeights =
-                channel.path == AnimationPath::Weights || other.path == AnimationPath::Weights;
-            const auto kind = [](AnimationPath path) {
-                return path == AnimationPath::Weight ? AnimationPath::Weights : path;
-            };
-            return other.target == channel.target && kind(other.path) == kind(channel.path) &&
-                   (isWeights || other.property == channel.property);
+        const auto isWeights = [](const AnimationChannel& one) { return one.path == AnimationPath::Weights; };
+        const auto isOfWeights = [&](const AnimationChannel& one) {
+            return isWeights(one) || one.path == AnimationPath::Weight;
         };
-        if (std::ranges::any_of(animation_.channels, drivesSame)) {
-            leaveOut(pointer, "drives what an earlier channel of the animation drives");
-            return;
+        const bool isDriven = std::ranges::any_of(animation_.channels, [&](const AnimationChannel& other) {
+            const bool drivesWeights = isOfWeights(other) && isOfWeights(channel);
+            return other.target == channel.target &&
+                   ((drivesWeights && (isWeights(other) || isWeights(channel))) ||
+                    (other.path == channel.path && other.property == channel.property));
+        });
+        if (isDriven) {
+            document_.warn("animation-channel", pointer,
+                           "drives what an earlier channel of the animation drives; the later one holds",
+                           kExportAnimation);
         }
         animation_.channels.push_back(channel);
     }
