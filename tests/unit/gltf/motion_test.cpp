@@ -131,11 +131,11 @@ TEST(GltfAnimations, LeaveOutChannelsThatDriveNothing) {
 TEST(GltfAnimations, AreChecked) {
     Animated missing("translation");
     missing.animation["samplers"][0]["input"] = 99;
-    missing.builder.root["animations"] = {missing.animation};
+    missing.builder.root["animations"] = Json::array({missing.animation});
     EXPECT_EQ(errorId(missing.builder), "index-range");
     Animated typed("translation");
     typed.animation["channels"][0]["target"] = 3;
-    typed.builder.root["animations"] = {typed.animation};
+    typed.builder.root["animations"] = Json::array({typed.animation});
     EXPECT_EQ(errorId(typed.builder), "json-type");
 }
 
