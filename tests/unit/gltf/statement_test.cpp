@@ -19,9 +19,9 @@
 #include <iterator>
 #include <map>
 #include <numeric>
-#include <regex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::test {
@@ -437,17 +437,30 @@ const bool kRegistered = [] {
 
 // ---- The list itself ----
 
-// The names "Suite.Test" of all tests of the repository.
-std::set<std::string> testNames() {
-    static const std::regex kTest(R"(\b(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\s*\))");
-    std::set<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(GLINT_SOURCE_DIR "/tests")) {
-        if (entry.path().extension() != ".cpp") {
+// Adds "Suite.Test" for each TEST(Suite, Test), TEST_F and so on.
+void collectTests(const std::string& text, std::set<std::string>& names) {
+    constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_";
+    constexpr std::string_view kBlanks = " \n";
+    for (std::size_t at = text.find("TEST"); at != std::string::npos; at = text.find("TEST", at + 1)) {
+        const std::size_t open = text.find_first_not_of("TESTFP_", at);
+        if (open == std::string::npos || text[open] != '(') {
             continue;
         }
-        const std::string text = readText(entry.path());
-        for (std::sregex_iterator match(text.begin(), text.end(), kTest), end; match != end; ++match) {
-            names.insert((*match)[1].str() + "." + (*match)[2].str());
+        const std::size_t comma = text.find_first_not_of(kLetters, open + 1);
+        const std::size_t test = text.find_first_not_of(kBlanks, comma + 1);
+        if (comma != std::string::npos && text[comma] == ',' && test != std::string::npos) {
+            names.insert(text.substr(open + 1, comma - open - 1) + "." +
+                         text.substr(test, text.find_first_not_of(kLetters, test) - test));
+        }
+    }
+}
+
+// The names of all tests of the repository.
+std::set<std::string> testNames() {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(GLINT_SOURCE_DIR "/tests")) {
+        if (entry.path().extension() == ".cpp") {
+            collectTests(readText(entry.path()), names);
         }
     }
     return names;

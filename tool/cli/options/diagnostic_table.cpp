@@ -347,7 +347,9 @@ constexpr DiagnosticInfo kTable[] = {
      "The file of `--settings` is not a settings file, or has an unknown setting or value."},
     {"sized-lights", kError,
      "`--sized-lights on` in a package that has no shadow rays, or whose lights are a host's own."},
-    {"skin-attribute", kError, "A primitive has joints without weights, or weights without joints."},
+    {"skin-attribute", kWarning | kError,
+     "A primitive has joints without weights, or weights without joints; a warning where a skin is on a node "
+     "whose mesh, or a part of it, can't follow it."},
     {"skin-influences", kWarning, "A primitive has more sets of joints than Glint reads."},
     {"skin-joint-outside", kWarning, "A joint of a skin is not in the scene; the skin is left out."},
     {"skin-joint-range", kError, "A vertex follows a joint that its skin does not have."},

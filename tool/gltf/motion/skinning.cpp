@@ -193,7 +193,13 @@ Status importSkins(Document& document, Scene& scene) {
     std::map<std::size_t, int> known;  // by number in the file; -1: the skin is left out
     for (Node& node : scene.nodes) {
         const Json* skin = find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "skin");
-        if (skin == nullptr || node.mesh < 0) {
+        if (skin == nullptr) {
+            continue;
+        }
+        const std::string pointer = fmt::format("/nodes/{}/skin", node.source);
+        if (node.mesh < 0) {
+            document.warn("skin-attribute", pointer, "belongs to a node without a mesh; it is left out",
+                          kExportSkin);
             continue;
         }
         const auto index = skin->get<std::size_t>();
@@ -210,6 +216,13 @@ Status importSkins(Document& document, Scene& scene) {
         node.skin = known[index];
         if (node.skin >= 0) {
             const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+            if (std::ranges::any_of(mesh.primitives, [](const Primitive& primitive) {
+                    return primitive.influences.count == 0;
+                })) {
+                document.warn("skin-attribute", pointer,
+                              "the mesh has primitives without joints and weights; they follow the node",
+                              kExportSkin);
+            }
             const Skin& followed = scene.skins[static_cast<std::size_t>(node.skin)];
             if (Status status = checkJoints(document, mesh, followed); !status) {
                 return status;
