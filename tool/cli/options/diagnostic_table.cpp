@@ -222,7 +222,9 @@ constexpr DiagnosticInfo kTable[] = {
     {"module-stale", kError, "`glint compile --modules`: a module is of another scene or another compiler."},
     {"module-unknown", kError, "`glint inspect --disassemble`: the package has no such module."},
     {"morph-attribute", kWarning,
-     "A morph target changes an attribute that its primitive lacks, or that Glint does not morph."},
+     "A morph target changes an attribute that its primitive lacks, or that Glint does not morph, or not "
+     "over "
+     "time."},
     {"morph-limit", kError, "The nodes of the scene have more morph weights than Glint reads."},
     {"morph-targets", kWarning, "Primitives of one mesh have different numbers of morph targets."},
     {"morph-weights", kWarning, "A mesh has a different number of weights than of morph targets."},

@@ -145,14 +145,6 @@ void replaceNonFinite(Document& document, const Primitive& primitive,
     }
 }
 
-// glTF asks for this (section 3.7.2.1), so it is no repair that anyone is told of.
-void clampColors(Primitive& primitive) {
-    for (Float4& color : primitive.colors) {
-        std::ranges::transform(color, color.begin(),
-                               [](float channel) { return std::clamp(channel, 0.0F, 1.0F); });
-    }
-}
-
 // Values of packs' attributes, one by one.
 void repairDeclared(Document& document, Primitive& primitive) {
     for (VertexValues& attribute : primitive.attributes) {
@@ -178,12 +170,12 @@ void repairPrimitive(Document& document, Primitive& primitive) {
     replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
     replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
     replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
-    clampColors(primitive);
     repairDeclared(document, primitive);
     for (MorphTarget& target : primitive.targets) {
         replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");
         replaceNonFinite(document, primitive, target.normals, 0.0F, "NORMAL of a morph target");
         replaceNonFinite(document, primitive, target.tangents, 0.0F, "TANGENT of a morph target");
+        replaceNonFinite(document, primitive, target.colors, 0.0F, "COLOR_0 of a morph target");
     }
 }
 

@@ -49,6 +49,6 @@ inline constexpr int kInfluenceSets = 4;
 // The attributes of EXT_mesh_gpu_instancing that the importer reads.
 inline constexpr const char* kInstanceAttributes[] = {"TRANSLATION", "ROTATION", "SCALE"};
 // The attributes of morph targets that the importer reads.
-inline constexpr const char* kTargetAttributes[] = {"POSITION", "NORMAL", "TANGENT"};
+inline constexpr const char* kTargetAttributes[] = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
 
 }  // namespace glint::gltf
