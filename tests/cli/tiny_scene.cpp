@@ -98,6 +98,8 @@ void addMotion(Json& gltf) {
     accessor(32, 48, 4, "VEC3");
     gltf["accessors"][first]["min"] = {0.0};
     gltf["accessors"][first]["max"] = {1.0};
+    gltf["accessors"][first + 2]["min"] = {0.0, 0.0, 0.0};
+    gltf["accessors"][first + 2]["max"] = {0.0, 1.0, 0.0};
     gltf["meshes"][1]["primitives"][0]["targets"] = {{{"POSITION", first + 2}}};
     const auto channel = [](int sampler, int node, const char* path) {
         return Json{{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}};
@@ -162,6 +164,7 @@ std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const 
     }
     if (options.variants) {
         gltf["extensionsUsed"].push_back("KHR_materials_variants");
+        gltf["extensionsUsed"].push_back("KHR_materials_clearcoat");
         gltf["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "Day"}}, {{"name", "Night"}}};
         gltf["meshes"][0]["primitives"][0]["extensions"]["KHR_materials_variants"]["mappings"] = {
             {{"material", 2}, {"variants", {0}}}};

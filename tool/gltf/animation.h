@@ -65,6 +65,8 @@ struct MorphTarget {
     std::vector<std::array<float, 3>> positions;
     std::vector<std::array<float, 3>> normals;
     std::vector<std::array<float, 3>> tangents;
+    std::vector<std::array<float, 4>>
+        colors;  // only until the scene is read: Primitive::colors has them then
 };
 
 // Which joints of a skin each vertex follows, and with which weight.

@@ -62,6 +62,7 @@ Status fillScene(Document& document, Scene& scene) {
         return status;
     }
     importAnimations(document, scene);
+    settleColors(document, scene);
     if (Status status = applyVariant(document, scene); !status) {
         return status;
     }

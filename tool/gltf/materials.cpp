@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -125,6 +126,31 @@ void readParameter(const ObjectReader& reader, const materials::Parameter& param
     }
 }
 
+// Warns of extensions that another one of the material excludes.
+void warnOfConflicts(Document& document, const std::string& pointer, const materials::Material& material) {
+    const materials::MaterialModel& model = material.model();
+    const auto objectOf = [&](const materials::Feature& feature) {
+        const bool isGiven =
+            feature.object >= 0 && material.given[static_cast<std::size_t>(feature.object)] != 0;
+        return isGiven ? feature.object : -1;
+    };
+    std::set<int> told;
+    for (const materials::Exclusion& exclusion : model.exclusions) {
+        const int by = objectOf(model.features[static_cast<std::size_t>(exclusion.by)]);
+        for (const materials::Feature& feature : model.features) {
+            const int object = (exclusion.excluded & feature.mask()) != 0 ? objectOf(feature) : -1;
+            if (by < 0 || object < 0 || object == by || !told.insert(object).second) {
+                continue;
+            }
+            document.warn("material-conflict",
+                          pointerOf(pointer, model.objects[static_cast<std::size_t>(object)]),
+                          fmt::format("must not be on a material that has {}; it changes nothing",
+                                      model.objects[static_cast<std::size_t>(by)].name),
+                          "leave one of the two extensions out");
+        }
+    }
+}
+
 void readParameters(Document& document, const Json& json, const std::string& pointer,
                     materials::Material& material) {
     const materials::MaterialModel& model = material.model();
@@ -147,6 +173,7 @@ void readParameters(Document& document, const Json& json, const std::string& poi
             readParameter({document, *object, pointerOf(pointer, owner)}, parameter, material);
         }
     }
+    warnOfConflicts(document, pointer, material);
     if (const Json* extensions = find(json, "extensions")) {
         for (const auto& [name, ignored] : extensions->items()) {
             if (!isSupportedExtension(model, name) && !changesNoPicture(name)) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -70,7 +71,6 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
         return status.error();
     }
     repairPrimitive(source.document, primitive);
-    primitive.colorContent = contentOf(primitive.colors);
     if (primitive.indices.empty()) {
         source.document.warn("primitive-empty", primitive.pointer, "has no triangle and is skipped");
         return false;
@@ -83,6 +83,7 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
     const Json& primitives = arrayMember(json, "primitives");
     Mesh mesh;
     mesh.name = textMember(json, "name");
+    compareTargets(document, index);
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         Primitive primitive;
         primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
@@ -107,7 +108,61 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
     return mesh;
 }
 
+// Whether nodes show the mesh with different weights, or an animation changes the weights.
+bool weightsVary(const Scene& scene, int mesh, const std::vector<double>& weights) {
+    const auto shows = [&](int node) { return scene.nodes[static_cast<std::size_t>(node)].mesh == mesh; };
+    const bool moves = std::ranges::any_of(scene.animations, [&](const Animation& animation) {
+        return std::ranges::any_of(animation.channels, [&](const AnimationChannel& channel) {
+            return (channel.path == AnimationPath::Weights || channel.path == AnimationPath::Weight) &&
+                   shows(channel.target);
+        });
+    });
+    return moves || std::ranges::any_of(scene.nodes, [&](const Node& node) {
+               return node.mesh == mesh && node.weights != weights;
+           });
+}
+
+// Adds the differences of the targets to the colours. Returns whether there are any.
+bool morphColors(Primitive& primitive, const std::vector<double>& weights) {
+    bool any = false;
+    for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
+        const std::vector<Float4> differences = std::exchange(primitive.targets[t].colors, {});
+        any = any || !differences.empty();
+        constexpr double kLargest = std::numeric_limits<float>::max();
+        const auto weight = static_cast<float>(std::clamp(weights[t], -kLargest, kLargest));
+        for (std::size_t i = 0; i < differences.size(); ++i) {
+            for (std::size_t c = 0; c < 4; ++c) {
+                primitive.colors[i][c] += weight * differences[i][c];
+            }
+        }
+    }
+    return any;
+}
+
 }  // namespace
+
+void settleColors(Document& document, Scene& scene) {
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        Mesh& mesh = scene.meshes[m];
+        const auto node = std::ranges::find(scene.nodes, static_cast<int>(m), &Node::mesh);
+        const std::vector<double>& weights = node == scene.nodes.end() ? mesh.weights : node->weights;
+        for (Primitive& primitive : mesh.primitives) {
+            if (morphColors(primitive, weights) && weightsVary(scene, static_cast<int>(m), weights)) {
+                document.warn("morph-attribute", primitive.pointer + "/targets",
+                              "the differences of COLOR_0 are added with the weights at rest of the first "
+                              "node that shows the mesh; other weights don't change the colours",
+                              "animate the material instead, or give each shape a mesh of its own");
+            }
+            for (Float4& color : primitive.colors) {
+                // A sum of huge differences may be NaN, which becomes 0.
+                std::ranges::transform(color, color.begin(), [](float channel) {
+                    return channel > 0.0F ? std::min(channel, 1.0F) : 0.0F;
+                });
+            }
+            primitive.colorContent = contentOf(primitive.colors);
+        }
+    }
+}
 
 Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene) {
     const int defaultMaterial = static_cast<int>(scene.materials.size());

@@ -15,4 +15,9 @@ namespace glint::gltf {
 // without a material get material `scene.materials.size()`; the function returns whether there are any.
 Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene);
 
+// Adds the differences of morph targets to the colours of vertices, by the weights at rest, and clamps the
+// colours (glTF 2.0, sections 3.7.2.1 and 3.7.2.2). Call it after importing weights and animations. The
+// warning "morph-attribute" says that the weights do not stay as they are.
+void settleColors(Document& document, Scene& scene);
+
 }  // namespace glint::gltf

@@ -39,7 +39,7 @@ struct Primitive {
     std::vector<Float4> tangents;  // xyz has unit length, w = ±1; empty: the hit derives a frame from the UVs
     std::vector<Float2> texCoords0;
     std::vector<Float2> texCoords1;
-    std::vector<Float4> colors;  // linear RGBA; empty where COLOR_0 is absent
+    std::vector<Float4> colors;  // linear RGBA in [0, 1]; empty where COLOR_0 is absent
     materials::ColorContent colorContent = materials::ColorContent::None;
     std::vector<VertexValues>
         attributes;  // those of MaterialModel::attributes that the file gives, each name once

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace glint::gltf {
@@ -43,14 +44,42 @@ std::optional<int> materialIn(const Json& primitive, std::size_t variant) {
     return std::nullopt;
 }
 
+// Warns of primitives that map one variant to several materials, of which the first holds.
+void checkMappings(Document& document) {
+    const Json& meshes = arrayMember(document.json(), "meshes");
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Json& primitives = arrayMember(meshes[i], "primitives");
+        for (std::size_t k = 0; k < primitives.size(); ++k) {
+            const Json* const extension = findExtension(primitives[k], kName);
+            std::set<std::size_t> seen;
+            if (extension == nullptr) {
+                continue;
+            }
+            for (const Json& mapping : arrayMember(*extension, "mappings")) {
+                for (const Json& variant : arrayMember(mapping, "variants")) {
+                    if (!seen.insert(variant.get<std::size_t>()).second) {
+                        document.warn("variant-repeated",
+                                      fmt::format("/meshes/{}/primitives/{}/extensions/{}", i, k, kName),
+                                      fmt::format("maps variant {} more than once; the first material is "
+                                                  "used",
+                                                  variant.get<std::size_t>()),
+                                      "give the primitive one material for each variant");
+                    }
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 
-Status applyVariant(const Document& document, Scene& scene) {
+Status applyVariant(Document& document, Scene& scene) {
     if (const Json* extension = findExtension(document.json(), kName)) {
         for (const Json& variant : arrayMember(*extension, "variants")) {
             scene.variants.push_back(variant["name"].get<std::string>());
         }
     }
+    checkMappings(document);
     scene.variant = document.options().variant;
     if (scene.variant.empty()) {
         return okStatus();

@@ -10,6 +10,6 @@ namespace glint::gltf {
 
 // Fills Scene::variants. Primitives get the materials of ImportOptions::variant if they have one for it. The
 // error is "variant-unknown".
-Status applyVariant(const Document& document, Scene& scene);
+Status applyVariant(Document& document, Scene& scene);
 
 }  // namespace glint::gltf

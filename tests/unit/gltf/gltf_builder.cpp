@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 #include <string>
 
 namespace glint::test {
@@ -66,8 +67,48 @@ Json GltfBuilder::buffers(bool embedded) const {
     return all;
 }
 
+namespace {
+
+void collectExtensions(const Json& json, std::set<std::string>& names) {
+    if (json.is_object() && json.contains("extensions") && json["extensions"].is_object()) {
+        for (const auto& [name, ignored] : json["extensions"].items()) {
+            names.insert(name);
+        }
+    }
+    for (auto member = json.begin(); json.is_structured() && member != json.end(); ++member) {
+        if (!json.is_object() || member.key() != "extras") {
+            collectExtensions(*member, names);
+        }
+    }
+}
+
+}  // namespace
+
+Json GltfBuilder::document() const {
+    Json all = root;
+    if (all.contains("extensionsUsed")) {
+        return all;
+    }
+    std::set<std::string> names;
+    collectExtensions(all, names);
+    for (const Json& buffer : otherBuffers) {
+        collectExtensions(buffer, names);
+    }
+    if (all.contains("extensionsRequired") && all["extensionsRequired"].is_array()) {
+        for (const Json& name : all["extensionsRequired"]) {
+            if (name.is_string()) {
+                names.insert(name.get<std::string>());
+            }
+        }
+    }
+    if (!names.empty()) {
+        all["extensionsUsed"] = names;
+    }
+    return all;
+}
+
 std::string GltfBuilder::text() const {
-    Json document = root;
+    Json document = this->document();
     if (!buffer.empty() && !document.contains("buffers")) {
         document["buffers"] = buffers(true);
     }
@@ -75,7 +116,7 @@ std::string GltfBuilder::text() const {
 }
 
 std::string GltfBuilder::glb() const {
-    Json document = root;
+    Json document = this->document();
     if (!document.contains("buffers")) {
         document["buffers"] = buffers(false);
     }

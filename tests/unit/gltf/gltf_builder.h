@@ -7,7 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -58,6 +60,7 @@ public:
         if (normalized) {
             accessor["normalized"] = true;
         }
+        addBounds(values, components, accessor);
         return append("accessors", std::move(accessor));
     }
 
@@ -82,6 +85,31 @@ public:
 
 private:
     static const char* typeName(int components);
+
+    // glTF demands bounds of positions and of the times of keyframes, and allows them everywhere.
+    template <typename T>
+    static void addBounds(const std::vector<T>& values, int components, Json& accessor) {
+        const auto width = static_cast<std::size_t>(components);
+        if (components > 4 || values.size() < width) {
+            return;
+        }
+        std::vector<T> least(width);
+        std::vector<T> greatest(width);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (std::isfinite(static_cast<double>(values[i]))) {
+                const bool isFirst = i < width;
+                T& low = least[i % width];
+                T& high = greatest[i % width];
+                low = isFirst ? values[i] : std::min(low, values[i]);
+                high = isFirst ? values[i] : std::max(high, values[i]);
+            }
+        }
+        accessor["min"] = least;
+        accessor["max"] = greatest;
+    }
+    // Returns the root, in which extensionsUsed has all extensions of materials, nodes and so on, unless the
+    // test gives that list.
+    Json document() const;
 };
 
 // Returns a four-byte little-endian number, as in GLB headers.

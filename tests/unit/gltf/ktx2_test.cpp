@@ -82,7 +82,9 @@ protected:
     }
 
     static gltf::Image decode(const std::string& name) {
-        const Result<gltf::Scene> scene = import(basisuScene(readKtx2File(name)), kDecodeKtx2);
+        GltfBuilder builder = basisuScene(readKtx2File(name));
+        builder.root["extensionsRequired"] = builder.root["extensionsUsed"];
+        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
         if (!scene || scene->images.size() != 1) {
             ADD_FAILURE() << name << ": " << (scene ? "no image" : toString(scene.error()));
             return {};

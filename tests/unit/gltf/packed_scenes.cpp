@@ -42,6 +42,14 @@ Json vertexAccessor(int view, int componentType, std::size_t count, const char* 
     return accessor;
 }
 
+// The positions of a grid.
+Json positionAccessor(int view, std::size_t count) {
+    Json accessor = vertexAccessor(view, 5126, count, "VEC3", false);
+    accessor["min"] = {0, 0, 0};
+    accessor["max"] = {kGridCells, kGridCells, 0};
+    return accessor;
+}
+
 }  // namespace
 
 Grid makeGrid() {
@@ -98,8 +106,7 @@ GltfBuilder dracoScene(DracoMethod method) {
     const int view = builder.addView(packed.data(), packed.size());
     const std::size_t count = grid.positions.size();
     Json primitive;
-    primitive["attributes"]["POSITION"] =
-        builder.append("accessors", vertexAccessor(-1, 5126, count, "VEC3", false));
+    primitive["attributes"]["POSITION"] = builder.append("accessors", positionAccessor(-1, count));
     primitive["attributes"]["NORMAL"] =
         builder.append("accessors", vertexAccessor(-1, 5126, count, "VEC3", false));
     primitive["attributes"]["TEXCOORD_0"] =
@@ -304,8 +311,7 @@ GltfBuilder meshoptScene() {
 
     const int positions =
         addPackedView(builder, packVertices(grid.positions.data(), count, 12), count, 12, "ATTRIBUTES");
-    primitive["attributes"]["POSITION"] =
-        builder.append("accessors", vertexAccessor(positions, 5126, count, "VEC3", false));
+    primitive["attributes"]["POSITION"] = builder.append("accessors", positionAccessor(positions, count));
 
     std::vector<std::array<float, 4>> unit(count, {0.0F, 0.0F, 1.0F, 0.0F});
     base::Bytes octahedral(count * 4);

@@ -7,9 +7,19 @@ namespace glint::cli {
 namespace {
 
 constexpr DiagnosticInfo kTable[] = {
+    {"accessor-bounds", kWarning,
+     "Positions or times of keyframes have no `min` and `max`, or these have a wrong length; Glint takes the "
+     "bounds from the data."},
     {"accessor-component-type", kError, "An accessor's component type is not one that glTF allows there."},
     {"accessor-count", kError,
      "An accessor without a buffer view has more elements than Glint fills with zeros."},
+    {"accessor-form", kWarning,
+     "An accessor has a component type, or a mark of normalised integers, that glTF does not allow for its "
+     "use; its values are read all the same."},
+    {"accessor-layout", kWarning,
+     "A buffer view or an accessor breaks a rule of glTF on alignment, strides, or kinds of data in one "
+     "view; "
+     "its values are read all the same."},
     {"accessor-range", kError, "An accessor's elements reach beyond their buffer view."},
     {"accessor-stride", kError,
      "The stride of a buffer view is shorter than the elements that are read from it."},
@@ -20,18 +30,25 @@ constexpr DiagnosticInfo kTable[] = {
      "`--alpha auto`: the scene has the alpha mode BLEND, which is seen with the probability alpha."},
     {"alpha-tested", kNote, "`--alpha auto`: the scene has alpha masks, so rays test them."},
     {"animation-channel", kWarning,
-     "A channel of an animation drives nothing that Glint moves; it is not played."},
+     "A channel of an animation drives nothing that Glint moves, and is not played, or what an earlier one "
+     "drives."},
     {"animation-keyframes", kWarning,
-     "The keyframes of an animation are not well formed; what they drive is not played."},
+     "The keyframes of an animation are not well formed. Most such flaws keep what they drive from being "
+     "played."},
     {"animation-missing", kError, "`glint render` was asked to play an animation, but the scene has none."},
     {"animation-pointer", kNote | kWarning,
-     "The target of a `KHR_animation_pointer` is not animated: the pointer is wrong, or Glint does not have "
-     "that data."},
+     "The target of a `KHR_animation_pointer` is not animated, because the pointer is wrong or Glint does "
+     "not "
+     "have that data, or the channel says more than the pointer."},
     {"animation-unknown", kError, "The scene has no such animation."},
-    {"asset-version", kError,
-     "The file has a version of glTF that Glint does not read, or names no version."},
+    {"asset-version", kWarning | kError,
+     "The file has a version of glTF that Glint does not read, or names none; a warning where it is "
+     "malformed."},
     {"attribute-count", kError,
      "The attributes of a primitive, or of instances, have different numbers of elements."},
+    {"attribute-name", kWarning,
+     "An attribute has no name that glTF knows and does not start with an underscore, or its set is not the "
+     "next one."},
     {"attribute-not-finite", kWarning, "Values of an attribute are NaN or infinite."},
     {"attribute-type", kError, "An attribute has another number of components than glTF allows."},
     {"bench-advice", kError,
@@ -54,7 +71,6 @@ constexpr DiagnosticInfo kTable[] = {
      "out."},
     {"buffer-size", kError, "A buffer is shorter than it says, or larger than the device takes."},
     {"buffer-view-range", kError, "A buffer view reaches beyond its buffer."},
-    {"buffer-view-stride", kError, "The stride of a buffer view is not a multiple of 4."},
     {"cache-write", kNote, "The folder of the cache can't be written: nothing is kept for the next run."},
     {"calibrate-picture", kWarning,
      "`glint bench --calibrate`: a strategy shows another picture than `uber`; its times don't count."},
@@ -130,6 +146,8 @@ constexpr DiagnosticInfo kTable[] = {
      "An extension that the scene uses is not supported; what it adds is left out."},
     {"extension-no-picture", kNote,
      "The scene uses extensions that change no picture; Glint does not read them."},
+    {"extension-unlisted", kWarning,
+     "An extension that the file uses, or needs, is missing in `extensionsUsed` or `extensionsRequired`."},
     {"extension-unsupported", kError, "An extension that the scene needs is not supported."},
     {"file-open", kError, "A file does not exist, is not a regular file, or may not be read."},
     {"file-read", kError, "A file ended early or could not be read."},
@@ -137,7 +155,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"file-write", kError, "A file could not be written."},
     {"frame-not-recorded", kError, "The runtime was asked for a picture before a frame was recorded."},
     {"frame-options", kError, "The runtime was given frame options that are out of range."},
-    {"glb-chunk", kWarning | kError, "A chunk of a GLB is damaged or unknown."},
+    {"glb-chunk", kWarning | kError, "A chunk of a GLB is damaged, unknown or not aligned."},
     {"glb-length", kWarning | kError, "A GLB is longer or shorter than it says."},
     {"glb-version", kError, "A GLB is of another version."},
     {"glsl", kError, "A generated shader does not compile: a defect of Glint."},
@@ -152,6 +170,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"image-format", kError, "An image file is damaged, or of a kind that Glint does not read."},
     {"image-mismatch", kError, "Two images that are compared have different sizes."},
     {"image-size", kError, "An image is empty or too large."},
+    {"image-type", kWarning, "An image has another media type than the file says, or the file says none."},
     {"index-range", kError, "An index is out of range."},
     {"input-missing", kWarning,
      "A material asks for a texture or a lobe that a primitive lacks the input of, such as a UV set."},
@@ -181,6 +200,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"lock-stale", kNote, "The lock file has keys that no scene has."},
     {"malioc", kWarning | kError, "`glint lint`: `malioc` can't be run, or can't compile a module."},
     {"manifest-format", kError, "A manifest can't be read."},
+    {"material-conflict", kWarning, "A material has two extensions of which one excludes the other."},
     {"material-range", kWarning, "A value of a material is outside of its range and clamped."},
     {"material-unknown", kError, "The scene has no such material."},
     {"materials-folder", kError, "A folder of `--materials` can't be listed, or has no declaration."},
@@ -192,7 +212,9 @@ constexpr DiagnosticInfo kTable[] = {
     {"memory-size", kError, "A resource is larger than the device takes."},
     {"memory-type", kError, "The device has no memory of the kind that a resource needs."},
     {"meshopt-decode", kError, "meshopt data can't be decoded."},
-    {"meshopt-layout", kError, "meshopt data is of a mode or layout that glTF does not have."},
+    {"meshopt-layout", kWarning | kError,
+     "meshopt data is of a mode or layout that glTF does not have; a warning where a buffer view has both "
+     "extensions."},
     {"meshopt-size", kError, "meshopt data claims more bytes than it can hold."},
     {"micromap", kError,
      "Opacity micromaps of a file (`EXT_mesh_opacity_micromap`) are not as the draft demands."},
@@ -201,15 +223,19 @@ constexpr DiagnosticInfo kTable[] = {
     {"module-missing", kError, "`glint compile --modules`: a module was not compiled."},
     {"module-stale", kError, "`glint compile --modules`: a module is of another scene or another compiler."},
     {"module-unknown", kError, "`glint inspect --disassemble`: the package has no such module."},
-    {"morph-attribute", kWarning, "A morph target changes an attribute that its primitive lacks."},
+    {"morph-attribute", kWarning,
+     "A morph target changes an attribute that its primitive lacks, or that Glint does not morph, or not "
+     "over "
+     "time."},
     {"morph-limit", kError, "The nodes of the scene have more morph weights than Glint reads."},
+    {"morph-targets", kWarning, "Primitives of one mesh have different numbers of morph targets."},
     {"morph-weights", kWarning, "A mesh has a different number of weights than of morph targets."},
     {"ninja-name", kError, "`glint compile --plan-only`: a path can't be written to a file for Ninja."},
     {"node-cycle", kError, "A node is its own ancestor."},
     {"node-instances", kNote | kWarning,
-     "The instances of a node have attributes that Glint does not read, or follow a skin and are drawn as "
-     "one mesh."},
-    {"node-matrix", kWarning, "A node has a matrix and another transform."},
+     "The instances of a node have attributes that Glint does not read, follow a skin and are drawn as one "
+     "mesh, or have no mesh."},
+    {"node-matrix", kWarning, "A node has a matrix and another transform, or a matrix that shears."},
     {"node-parents", kError, "A node has several parents."},
     {"node-rotation", kWarning, "A node's rotation is not a unit quaternion."},
     {"node-transform", kError, "The transform of a node overflows."},
@@ -338,13 +364,19 @@ constexpr DiagnosticInfo kTable[] = {
      "The file of `--settings` is not a settings file, or has an unknown setting or value."},
     {"sized-lights", kError,
      "`--sized-lights` in a package that has no shadow rays, or whose lights are a host's own."},
-    {"skin-attribute", kError, "A primitive has joints without weights, or weights without joints."},
+    {"skin-attribute", kWarning | kError,
+     "A primitive has joints without weights, or weights without joints; a warning where a skin is on a node "
+     "whose mesh, or a part of it, can't follow it."},
     {"skin-influences", kWarning, "A primitive has more sets of joints than Glint reads."},
     {"skin-joint-outside", kWarning, "A joint of a skin is not in the scene; the skin is left out."},
     {"skin-joint-range", kError, "A vertex follows a joint that its skin does not have."},
     {"skin-joints", kError, "A skin has no joints, or more than 65536."},
-    {"skin-matrices", kError, "The inverse bind matrices of a skin are too few, or not finite."},
-    {"skin-weights", kWarning, "The weights of a vertex do not sum to 1; they are scaled."},
+    {"skin-matrices", kWarning | kError,
+     "The inverse bind matrices of a skin are too few, or not finite; a warning where a last row is not 0 0 "
+     "0 "
+     "1."},
+    {"skin-weights", kWarning,
+     "The weights of a vertex do not sum to 1, are negative, or are several for one joint."},
     {"sky", kError, "The runtime was given a sky that is negative or not finite."},
     {"sky-light", kError,
      "`--sky-light` in a package that has no shadow rays, or whose lights or sky are a host's own."},
@@ -353,7 +385,9 @@ constexpr DiagnosticInfo kTable[] = {
     {"source-include", kError, "An include of a shader source does not exist: a defect of Glint."},
     {"source-version", kError, "A shader source has no #version: a defect of Glint."},
     {"sparse-count", kError, "A sparse accessor replaces more elements than it has."},
-    {"sparse-index", kError, "A sparse accessor replaces an element that it does not have."},
+    {"sparse-index", kWarning | kError,
+     "A sparse accessor replaces an element that it does not have; a warning where its indices do not "
+     "increase."},
     {"spirv-format", kError, "A file is not a SPIR-V module, or is cut short."},
     {"spirv-invalid", kError, "`glint lint`: a module is not valid SPIR-V."},
     {"spirv-join", kError, "The parts of a shader do not fit together: a defect of Glint."},
@@ -363,7 +397,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"spirv-validate", kError, "A generated shader is not valid SPIR-V: a defect of Glint."},
     {"strategy", kError, "The compiler was given an invalid set of strategies."},
     {"stream-frame", kError, "The runtime was given a frame whose number is below that of an earlier one."},
-    {"tangent-invalid", kWarning, "Tangents are zero or not finite."},
+    {"tangent-invalid", kWarning, "Tangents are zero or not finite, or their w is neither 1 nor -1."},
     {"tangent-without-normal", kWarning, "Tangents without normals are ignored."},
     {"template", kError, "A template of shader sources is missing or malformed: a defect of Glint."},
     {"texture-basisu", kNote | kError,
@@ -387,6 +421,7 @@ constexpr DiagnosticInfo kTable[] = {
      "A URI, or with `--strict-paths` a symbolic link, leads out of the scene's folder."},
     {"validation", kWarning | kError, "`--validate`: the validation layers have messages."},
     {"validation-layer", kError, "The validation layers are not installed."},
+    {"variant-repeated", kWarning, "A primitive has several materials for one variant."},
     {"variant-unknown", kError, "The scene has no such variant."},
     {"vertex-limit", kError, "The scene has more vertices than Glint reads."},
     {"view-layer", kError, "A view reads a layer that the package lacks."},

@@ -104,7 +104,7 @@ bool decodeBlockFile(ByteView bytes, Image& image, std::string& problem) {
     return true;
 }
 
-const Codec kBasisu{"KTX2", readBlockHeader, decodeBlockFile};
-const Codec kDds{"DDS", readBlockHeader, decodeBlockFile};
+const Codec kBasisu{"KTX2", "image/ktx2", readBlockHeader, decodeBlockFile};
+const Codec kDds{"DDS", "image/vnd-ms.dds", readBlockHeader, decodeBlockFile};
 
 }  // namespace glint::gltf

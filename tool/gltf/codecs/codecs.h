@@ -11,6 +11,7 @@ namespace glint::gltf {
 // Describes one format. Both functions return false on failure, and `problem` then has the decoder's message.
 struct Codec {
     const char* name;
+    const char* type;  // the media type
     // Sets the image's size and format. It allocates nothing that depends on them.
     bool (*readHeader)(ByteView bytes, Image& image, std::string& problem);
     // Fills the pixels of an image. Its header must have been read from the same bytes, and its size must

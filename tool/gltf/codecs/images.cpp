@@ -35,6 +35,16 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
+// Returns the media type that an image names, or that of its data URI: in lower case, without parameters.
+std::string mediaType(const Json& image) {
+    const std::string uri = textMember(image, "uri");
+    std::string type = textMember(image, "mimeType");
+    if (type.empty() && isDataUri(uri)) {
+        type = uri.substr(5);
+    }
+    return lowerCase(type.substr(0, type.find_first_of("; ,")));
+}
+
 std::string nameOf(const Json& json, int image) {
     if (std::string name = textMember(json, "name"); !name.empty()) {
         return name;
@@ -127,8 +137,21 @@ std::optional<Failure> readHeader(ByteView bytes, Image& image, const Codec*& co
     return std::nullopt;
 }
 
+// Warns if the file says that the image is of another type than its bytes are.
+void compareType(Document& document, int index, const Codec& codec) {
+    const Json& json = imageJson(document, index);
+    const bool named = find(json, "mimeType") != nullptr || isDataUri(textMember(json, "uri"));
+    const std::string given = mediaType(json);
+    if (named && given != codec.type) {
+        document.warn(
+            "image-type", imagePointer(index),
+            fmt::format("says that it is \"{}\", but it is {}; it is read as what it is", given, codec.type),
+            "correct the type");
+    }
+}
+
 // Reads the header, and the pixels if something needs them.
-Status read(Document& document, ByteView bytes, Image& image) {
+Status read(Document& document, int index, ByteView bytes, Image& image) {
     const auto fail = [&](Failure failure) {
         return document.error("image-decode", image.pointer, std::move(failure.message), failure.hint);
     };
@@ -144,6 +167,7 @@ Status read(Document& document, ByteView bytes, Image& image) {
     if (options.decodeImages && !codec->decode(bytes, image, problem)) {
         return fail(cantDecode(*codec, problem));
     }
+    compareType(document, index, *codec);
     warnOfDeviations(document, bytes, *codec, image);
     return okStatus();
 }
@@ -152,12 +176,8 @@ Status read(Document& document, ByteView bytes, Image& image) {
 
 Decodable decodability(const Document& document, int image) {
     const Json& json = imageJson(document, image);
-    std::string type = lowerCase(textMember(json, "mimeType"));
+    const std::string type = mediaType(json);
     const std::string uri = lowerCase(textMember(json, "uri"));
-    if (type.empty() && isDataUri(uri)) {
-        type = uri.substr(5, uri.find(',') - 5);
-    }
-    type = type.substr(0, type.find_first_of("; "));  // without parameters
     const auto endsWith = [&](std::string_view end) { return !isDataUri(uri) && uri.ends_with(end); };
     if (type == "image/ktx2" || endsWith(".ktx2")) {
         return hasBasisu() ? Decodable::Yes : Decodable::NeedsBasisu;
@@ -179,13 +199,18 @@ Result<Image> importImage(Document& document, int index) {
                                       : "has neither a \"uri\" nor a \"bufferView\"",
                               "export the scene again");
     }
+    if (hasView && find(json, "mimeType") == nullptr) {
+        document.warn("image-type", image.pointer,
+                      "is in a buffer view and has no \"mimeType\"; its first bytes tell the type",
+                      "give the type");
+    }
     const ImportOptions& options = document.options();
     if (!options.decodeImages && !options.trustTextures && !options.keepImageFiles) {
         return image;
     }
     base::Bytes storage;
     const Result<ByteView> bytes = encodedBytes(document, index, storage);
-    const Status status = bytes ? read(document, *bytes, image) : Status(bytes.error());
+    const Status status = bytes ? read(document, index, *bytes, image) : Status(bytes.error());
     // Nothing but --trust-textures asks for the image, and planning does without.
     if (!status && !options.decodeImages && !options.keepImageFiles) {
         document.warnings().push_back(unknownTexels(status.error()));

@@ -96,7 +96,7 @@ bool decodeStb(ByteView bytes, Image& image, std::string& problem) {
 
 }  // namespace
 
-const Codec kPng{"PNG", readPngHeader, decodeStb};
-const Codec kJpeg{"JPEG", readJpegHeader, decodeStb};
+const Codec kPng{"PNG", "image/png", readPngHeader, decodeStb};
+const Codec kJpeg{"JPEG", "image/jpeg", readJpegHeader, decodeStb};
 
 }  // namespace glint::gltf

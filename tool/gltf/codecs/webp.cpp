@@ -51,6 +51,6 @@ bool decodeWebp(ByteView bytes, Image& image, std::string& problem) {
 
 }  // namespace
 
-const Codec kWebp{"WebP", readWebpHeader, decodeWebp};
+const Codec kWebp{"WebP", "image/webp", readWebpHeader, decodeWebp};
 
 }  // namespace glint::gltf

@@ -157,6 +157,8 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
     if (!values) {
         return values.error();
     }
+    std::int64_t before = -1;
+    bool increases = true;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t target =
             loadUnsigned(&indices->bytes[indices->offset + i * indexSize], sparse.indicesType);
@@ -165,8 +167,15 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
                 "sparse-index", pointer + "/indices",
                 fmt::format("index {} is {}, beyond the {} elements", i, target, accessor.count), kDamaged);
         }
+        increases = increases && target > before;
+        before = target;
         std::memcpy(&elements[target * elementSize], &values->bytes[values->offset + i * elementSize],
                     elementSize);
+    }
+    if (!increases) {
+        document.warn("sparse-index", pointer + "/indices",
+                      "do not strictly increase; of two values for one element the later one is used",
+                      "export the scene again");
     }
     return okStatus();
 }

@@ -180,6 +180,12 @@ Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std:
                              hasJson ? "has more than one JSON chunk" : "its first GLB chunk is not JSON",
                              kExportHint);
         }
+        if (length % 4 != 0) {
+            warnings.push_back(makeWarning(
+                "glb-chunk", file,
+                fmt::format("a GLB chunk of {} bytes does not end at a multiple of 4 bytes", length),
+                kExportHint));
+        }
         if (type == kJsonChunk) {
             container.json = rest.first(length);
             hasJson = true;

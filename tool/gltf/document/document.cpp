@@ -2,6 +2,7 @@
 
 #include "gltf/codecs/compression.h"
 #include "gltf/codecs/meshopt.h"
+#include "gltf/document/conformance.h"
 #include "gltf/document/container.h"
 #include "gltf/document/extensions.h"
 #include "gltf/document/uri.h"
@@ -10,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace glint::gltf {
 
@@ -79,6 +81,7 @@ Status Document::parse() {
         return error(failure->id, failure->pointer, failure->message, hintFor(failure->id));
     }
     readElements();
+    warnOfBrokenRules(*this);
     return okStatus();
 }
 
@@ -97,7 +100,7 @@ void Document::readElements() {
     }
 }
 
-Status Document::checkVersion() const {
+Status Document::checkVersion() {
     const Json* asset = find(json_, "asset");
     const Json* version = asset == nullptr ? nullptr : find(*asset, "version");
     if (version == nullptr || !version->is_string()) {
@@ -105,10 +108,22 @@ Status Document::checkVersion() const {
     }
     const Json* minVersion = find(*asset, "minVersion");
     const bool hasMin = minVersion != nullptr && minVersion->is_string();
-    const auto needed = (hasMin ? minVersion : version)->get<std::string>();
-    if ((hasMin && needed != "2.0") || !needed.starts_with("2.")) {
-        return error("asset-version", hasMin ? "/asset/minVersion" : "/asset/version",
-                     fmt::format("needs glTF {}; Glint reads 2.0", needed), "convert the file to glTF 2.0");
+    const auto target = version->get<std::string>();
+    if (hasMin && *minVersion != "2.0") {
+        return error("asset-version", "/asset/minVersion",
+                     fmt::format("needs glTF {}; Glint reads 2.0", minVersion->get<std::string>()),
+                     "convert the file to glTF 2.0");
+    }
+    if (!target.starts_with("2.")) {
+        return error("asset-version", "/asset/version", fmt::format("needs glTF {}; Glint reads 2.0", target),
+                     "convert the file to glTF 2.0");
+    }
+    const bool isNumber = target.size() > 2 && std::ranges::all_of(target.substr(2), [](unsigned char c) {
+                              return std::isdigit(c) != 0;
+                          });
+    if (!isNumber) {
+        warn("asset-version", "/asset/version",
+             fmt::format("\"{}\" is no version; it is read as 2.0", target), "write 2.0");
     }
     return okStatus();
 }

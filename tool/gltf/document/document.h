@@ -82,7 +82,7 @@ private:
     Document(const std::filesystem::path& path, const ImportOptions& options);
 
     Status parse();
-    Status checkVersion() const;
+    Status checkVersion();
     void readElements();
     Result<ByteView> buffer(int index);
     Result<ByteView> bufferRange(int buffer, std::uint64_t offset, std::uint64_t length,

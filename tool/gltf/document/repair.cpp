@@ -115,14 +115,16 @@ void repairTangents(Document& document, Primitive& primitive) {
         const Float4 stored = primitive.tangents[i];
         const auto unit = unitVector({stored[0], stored[1], stored[2]});
         const Float3 tangent = unit ? *unit : anyTangent(primitive.normals[i]);
-        const bool valid = unit.has_value() && std::isfinite(stored[3]) && stored[3] != 0.0F;
+        const bool valid = unit.has_value() && std::abs(stored[3]) == 1.0F;
         count += valid ? 0 : 1;
         primitive.tangents[i] = {tangent[0], tangent[1], tangent[2], stored[3] < 0.0F ? -1.0F : 1.0F};
     }
     if (count > 0) {
         document.warn(
             "tangent-invalid", primitive.pointer + "/attributes/TANGENT",
-            fmt::format("{} tangents are zero or not finite; others in the surface are used", count),
+            fmt::format("{} tangents are zero or not finite, or have a w other than 1 and -1; others in the "
+                        "surface are used, and the sign of w",
+                        count),
             kRepairHint);
     }
 }
@@ -173,6 +175,7 @@ void repairPrimitive(Document& document, Primitive& primitive) {
         replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");
         replaceNonFinite(document, primitive, target.normals, 0.0F, "NORMAL of a morph target");
         replaceNonFinite(document, primitive, target.tangents, 0.0F, "TANGENT of a morph target");
+        replaceNonFinite(document, primitive, target.colors, 0.0F, "COLOR_0 of a morph target");
     }
 }
 

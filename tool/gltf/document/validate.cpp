@@ -188,18 +188,6 @@ std::optional<SchemaError> checkAccessor(const Json& root, Json& accessor, const
     return std::nullopt;
 }
 
-std::optional<SchemaError> checkStrides(const Json& root) {
-    const Json& views = arrayMember(root, "bufferViews");
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        const Json* stride = find(views[i], "byteStride");
-        if (stride != nullptr && stride->get<int>() % 4 != 0) {
-            return SchemaError{"buffer-view-stride", fmt::format("/bufferViews/{}/byteStride", i),
-                               fmt::format("is {}, which is no multiple of 4", stride->get<int>())};
-        }
-    }
-    return std::nullopt;
-}
-
 std::optional<SchemaError> checkCameras(const Json& root) {
     const Json& cameras = arrayMember(root, "cameras");
     for (std::size_t i = 0; i < cameras.size(); ++i) {
@@ -222,9 +210,6 @@ std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialMo
     if (auto error = checkObject(root, root, rules.rules(), "")) {
         return error;
     }
-    if (auto error = checkStrides(root)) {
-        return error;
-    }
     if (auto error = checkCameras(root)) {
         return error;
     }
@@ -239,45 +224,63 @@ std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialMo
     return std::nullopt;
 }
 
-std::vector<bool> usedAccessors(const Json& root, const materials::MaterialModel& model) {
-    std::vector<bool> used(arraySize(root, "/accessors"));
-    const auto use = [&](const Json& object, std::string_view name) {
+void visitAccessors(const Json& root, const materials::MaterialModel& model, const AccessorVisitor& visit) {
+    // Visits the accessor that the object's member of that name refers to, if it has one.
+    const auto use = [&](const Json& object, std::string_view name, AccessorUse how,
+                         const std::string& pointer) {
         if (const Json* accessor = find(object, name)) {
-            used[accessor->get<std::size_t>()] = true;
+            visit({accessor->get<int>(), how, name, fmt::format("{}/{}", pointer, name)});
         }
     };
-    for (const Json& mesh : arrayMember(root, "meshes")) {
-        for (const Json& primitive : arrayMember(mesh, "primitives")) {
+    const Json& meshes = arrayMember(root, "meshes");
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const Json& primitives = arrayMember(meshes[i], "primitives");
+        for (std::size_t k = 0; k < primitives.size(); ++k) {
+            const std::string pointer = fmt::format("/meshes/{}/primitives/{}", i, k);
             for (const char* name : kAttributes) {
-                use(primitive["attributes"], name);
+                use(primitives[k]["attributes"], name, AccessorUse::Attribute, pointer + "/attributes");
             }
             for (const materials::VertexAttribute& attribute : model.attributes) {
-                use(primitive["attributes"], attribute.gltf);
+                use(primitives[k]["attributes"], attribute.gltf, AccessorUse::Attribute,
+                    pointer + "/attributes");
             }
-            for (const Json& target : arrayMember(primitive, "targets")) {
+            const Json& targets = arrayMember(primitives[k], "targets");
+            for (std::size_t t = 0; t < targets.size(); ++t) {
                 for (const char* name : kTargetAttributes) {
-                    use(target, name);
+                    use(targets[t], name, AccessorUse::Target, fmt::format("{}/targets/{}", pointer, t));
                 }
             }
-            use(primitive, "indices");
+            use(primitives[k], "indices", AccessorUse::Indices, pointer);
         }
     }
-    for (const Json& node : arrayMember(root, "nodes")) {
-        if (const Json* const instancing = findExtension(node, "EXT_mesh_gpu_instancing")) {
+    const Json& nodes = arrayMember(root, "nodes");
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (const Json* const instancing = findExtension(nodes[i], "EXT_mesh_gpu_instancing")) {
             for (const char* name : kInstanceAttributes) {
-                use((*instancing)["attributes"], name);
+                use((*instancing)["attributes"], name, AccessorUse::Instances,
+                    fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", i));
             }
         }
     }
-    for (const Json& animation : arrayMember(root, "animations")) {
-        for (const Json& sampler : arrayMember(animation, "samplers")) {
-            use(sampler, "input");
-            use(sampler, "output");
+    const Json& animations = arrayMember(root, "animations");
+    for (std::size_t i = 0; i < animations.size(); ++i) {
+        const Json& samplers = arrayMember(animations[i], "samplers");
+        for (std::size_t k = 0; k < samplers.size(); ++k) {
+            const std::string pointer = fmt::format("/animations/{}/samplers/{}", i, k);
+            use(samplers[k], "input", AccessorUse::Times, pointer);
+            use(samplers[k], "output", AccessorUse::Keyframes, pointer);
         }
     }
-    for (const Json& skin : arrayMember(root, "skins")) {
-        use(skin, "inverseBindMatrices");
+    const Json& skins = arrayMember(root, "skins");
+    for (std::size_t i = 0; i < skins.size(); ++i) {
+        use(skins[i], "inverseBindMatrices", AccessorUse::InverseBinds, fmt::format("/skins/{}", i));
     }
+}
+
+std::vector<bool> usedAccessors(const Json& root, const materials::MaterialModel& model) {
+    std::vector<bool> used(arraySize(root, "/accessors"));
+    visitAccessors(root, model,
+                   [&](const UsedAccessor& one) { used[static_cast<std::size_t>(one.accessor)] = true; });
     return used;
 }
 

@@ -4,7 +4,11 @@
 #include "gltf/document/schema.h"
 #include "materials/material_model.h"
 
+#include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::gltf {
@@ -12,6 +16,26 @@ namespace glint::gltf {
 // Checks types, ranges and references of everything that the importer reads. It checks only the accessors
 // that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare.
 std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model);
+
+enum class AccessorUse : std::uint8_t {
+    Attribute,
+    Target,  // of a morph target
+    Indices,
+    Instances,  // EXT_mesh_gpu_instancing
+    Times,      // of keyframes
+    Keyframes,
+    InverseBinds,
+};
+// A place from which the importer reads an accessor.
+struct UsedAccessor {
+    int accessor = 0;
+    AccessorUse use = AccessorUse::Attribute;
+    std::string_view name;  // of the member that refers to it, such as "POSITION"
+    std::string pointer;    // of that member
+};
+using AccessorVisitor = std::function<void(const UsedAccessor&)>;
+// Calls `visit` for each place of a checked document from which the importer reads an accessor.
+void visitAccessors(const Json& root, const materials::MaterialModel& model, const AccessorVisitor& visit);
 
 // Returns for each accessor whether the importer reads it. Only these have been checked.
 std::vector<bool> usedAccessors(const Json& root, const materials::MaterialModel& model);
@@ -25,6 +49,6 @@ inline constexpr int kInfluenceSets = 4;
 // The attributes of EXT_mesh_gpu_instancing that the importer reads.
 inline constexpr const char* kInstanceAttributes[] = {"TRANSLATION", "ROTATION", "SCALE"};
 // The attributes of morph targets that the importer reads.
-inline constexpr const char* kTargetAttributes[] = {"POSITION", "NORMAL", "TANGENT"};
+inline constexpr const char* kTargetAttributes[] = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
 
 }  // namespace glint::gltf

@@ -127,10 +127,13 @@ double settled(const AnimatableProperty<Object, Number>& row, double value) {
     return std::clamp(converted, row.low, row.high);
 }
 
-// Returns the value as the material stores it.
-float heldValue(const materials::MaterialModel& model, int property, double value) {
-    const materials::Parameter* const parameter = parameterOf(model, property);
-    return parameter != nullptr ? parameter->hold(value) : static_cast<float>(std::clamp(value, -kMax, kMax));
+// Returns the value as the material stores it while an animation plays, which never is Parameter::also.
+float heldValue(const materials::Parameter* parameter, double value) {
+    if (parameter == nullptr) {
+        return static_cast<float>(std::clamp(value, -kMax, kMax));
+    }
+    return parameter->hold(value == parameter->also ? std::clamp(value, parameter->low, parameter->high)
+                                                    : value);
 }
 
 // A material reads only one of the two base models.
@@ -168,6 +171,28 @@ std::string materialPropertyName(const materials::MaterialModel& model, int prop
     return name.starts_with(kExtensions) ? name.substr(kExtensions.size()) : name;
 }
 
+bool isFixed(const materials::Material& material, int property) {
+    const materials::Parameter* const parameter = parameterOf(material.model(), property);
+    return parameter != nullptr && parameter->also &&
+           material.values[static_cast<std::size_t>(parameter->first)] == *parameter->also;
+}
+
+bool takesMaterialValue(const materials::MaterialModel& model, int property, double value) {
+    const materials::Parameter* const parameter = parameterOf(model, property);
+    return parameter == nullptr || parameter->isAngle ||
+           (value >= parameter->low && value <= parameter->high);
+}
+
+bool takesLightValue(int property, double value) {
+    // A float rounds the right angle up.
+    return std::abs(settled(kLightValues[property], value) - value) <= 1e-6;
+}
+
+bool takesCameraValue(int property, double value) {
+    return settled(kCameras[property], value) ==
+           (kCameras[property].convert == nullptr ? value : std::abs(value));
+}
+
 std::size_t materialPropertyWidth(const materials::MaterialModel& model, int property) {
     const materials::Parameter* const parameter = parameterOf(model, property);
     return parameter != nullptr                   ? static_cast<std::size_t>(parameter->channels)
@@ -185,7 +210,7 @@ void setMaterialProperty(materials::Material& material, int property, std::span<
     }
     float* const numbers = firstOf(material, property);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        numbers[i] = heldValue(material.model(), property, values[i]);
+        numbers[i] = heldValue(parameterOf(material.model(), property), values[i]);
     }
 }
 
@@ -238,7 +263,7 @@ bool setPropertyRange(materials::Material& material, int property, std::size_t n
         }
     }
     const bool turns = parameter->isAngle && varies;
-    const materials::ValueInterval held{parameter->hold(range.low), parameter->hold(range.high)};
+    const materials::ValueInterval held{heldValue(parameter, range.low), heldValue(parameter, range.high)};
     material.ranges[static_cast<std::size_t>(parameter->first) + number] =
         turns ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
               : materials::hull({held.low, held.low}, {held.high, held.high});

@@ -38,6 +38,15 @@ int materialPropertyCount(const materials::MaterialModel& model);
 // Returns the name without "extensions/" at its start.
 std::string materialPropertyName(const materials::MaterialModel& model, int property);
 
+// Whether the property has the value outside of its range that its parameter takes, too. KHR_materials_ior
+// calls that a mode, which no animation enters or leaves.
+bool isFixed(const materials::Material& material, int property);
+
+// Whether a keyframe may have the value. Others are clamped.
+bool takesMaterialValue(const materials::MaterialModel& model, int property, double value);
+bool takesLightValue(int property, double value);
+bool takesCameraValue(int property, double value);
+
 std::size_t materialPropertyWidth(const materials::MaterialModel& model, int property);
 std::size_t lightPropertyWidth(int property);
 

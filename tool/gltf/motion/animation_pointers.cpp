@@ -219,9 +219,14 @@ private:
         if (!property) {
             return unknown();
         }
-        return hasOwner() ? known(AnimationPath::Material, materialPropertyWidth(model_, *property),
-                                  {static_cast<int>(index)}, *property)
-                          : undefined();
+        if (!hasOwner()) {
+            return undefined();
+        }
+        if (isFixed(scene_.materials[index], *property)) {
+            return wrong("has a value in the file that stands for a mode, which no animation changes");
+        }
+        return known(AnimationPath::Material, materialPropertyWidth(model_, *property),
+                     {static_cast<int>(index)}, *property);
     }
 
     template <typename Object>

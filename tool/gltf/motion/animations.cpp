@@ -1,6 +1,7 @@
 #include "gltf/motion/animations.h"
 
 #include "gltf/document/accessor.h"
+#include "gltf/motion/animatable.h"
 #include "gltf/motion/animated_values.h"
 #include "gltf/motion/animation_pointers.h"
 #include "gltf/motion/node_numbers.h"
@@ -139,12 +140,59 @@ private:
         const std::size_t width = widthOf(*path, scene_.nodes[static_cast<std::size_t>(node)], pointer);
         const int sampler = width == 0 ? -1 : samplerOf(json, pointer, {width});
         if (sampler >= 0) {
-            animation_.channels.push_back({node, *path, sampler});
+            checkOutput(json, pointer, *path);
+            append({node, *path, sampler}, pointer);
+        }
+    }
+
+    // Appends the channel, and warns if an earlier one drives the same property, which glTF forbids.
+    void append(const AnimationChannel& channel, const std::string& pointer) {
+        const auto isWeights = [](const AnimationChannel& one) { return one.path == AnimationPath::Weights; };
+        const auto isOfWeights = [&](const AnimationChannel& one) {
+            return isWeights(one) || one.path == AnimationPath::Weight;
+        };
+        const bool isDriven = std::ranges::any_of(animation_.channels, [&](const AnimationChannel& other) {
+            const bool drivesWeights = isOfWeights(other) && isOfWeights(channel);
+            return other.target == channel.target &&
+                   ((drivesWeights && (isWeights(other) || isWeights(channel))) ||
+                    (other.path == channel.path && other.property == channel.property));
+        });
+        if (isDriven) {
+            document_.warn("animation-channel", pointer,
+                           "drives what an earlier channel of the animation drives; the later one holds",
+                           kExportAnimation);
+        }
+        animation_.channels.push_back(channel);
+    }
+
+    // The form of a node's keyframes, of which only the number of values matters to Glint.
+    void checkOutput(const Json& channel, const std::string& pointer, AnimationPath path) {
+        const int output = json_["samplers"][channel["sampler"].get<std::size_t>()]["output"].get<int>();
+        const Accessor& values = document_.accessor(output);
+        const std::size_t components = path == AnimationPath::Weights    ? 1
+                                       : path == AnimationPath::Rotation ? 4
+                                                                         : 3;
+        const bool mayBeFractions = path == AnimationPath::Weights || path == AnimationPath::Rotation;
+        if (values.components != components || values.isMatrix ||
+            (values.componentType != ComponentType::Float && !(mayBeFractions && values.normalized))) {
+            document_.warn(
+                "accessor-form", pointer,
+                fmt::format("/accessors/{} has a type or a component type that glTF does not allow "
+                            "for this property; its numbers are read in their order",
+                            output),
+                kExportAnimation);
         }
     }
 
     void readPointer(const Json& channel, const std::string& place, const std::string& pointer) {
         const std::string where = place + "/target/extensions/KHR_animation_pointer/pointer";
+        if (channel["target"]["path"] != "pointer" || find(channel["target"], "node") != nullptr) {
+            document_.warn(
+                "animation-pointer", place + "/target",
+                "must have the path \"pointer\" and no node beside KHR_animation_pointer; the pointer "
+                "is followed",
+                kExportAnimation);
+        }
         const PointerTarget target = resolvePointer(document_, scene_, numbers_, pointer);
         if (target.verdict == PointerTarget::Verdict::Unknown) {
             if (noted_.insert(pointer).second) {
@@ -163,10 +211,40 @@ private:
         }
         const int sampler =
             target.targets.empty() ? -1 : samplerOf(channel, place, {target.width, target.kind});
+        if (sampler >= 0) {
+            checkValues(target, animation_.samplers[static_cast<std::size_t>(sampler)], where);
+        }
         for (const int found : target.targets) {
             if (sampler >= 0) {
                 const int index = target.path == AnimationPath::Material ? animatedMaterial(found) : found;
-                animation_.channels.push_back({index, target.path, sampler, target.property});
+                append({index, target.path, sampler, target.property}, where);
+            }
+        }
+    }
+
+    void checkValues(const PointerTarget& target, const AnimationSampler& sampler, const std::string& where) {
+        const auto takes = [&](double value) {
+            switch (target.path) {
+                case AnimationPath::Material:
+                    return takesMaterialValue(*document_.options().materialModel, target.property, value);
+                case AnimationPath::Light:
+                    return takesLightValue(target.property, value);
+                case AnimationPath::Camera:
+                    return takesCameraValue(target.property, value);
+                default:
+                    return true;
+            }
+        };
+        const bool cubic = sampler.interpolation == Interpolation::CubicSpline;
+        for (std::size_t i = 0; i < sampler.values.size(); ++i) {
+            const bool isTangent = cubic && i / sampler.width % 3 != 1;
+            if (!isTangent && !takes(sampler.values[i])) {
+                document_.warn("animation-keyframes", where,
+                               fmt::format("has the value {}, which the property does not take; values are "
+                                           "clamped",
+                                           sampler.values[i]),
+                               "keep the values in the range of the property");
+                return;
             }
         }
     }
@@ -256,6 +334,11 @@ private:
             readFloats(document_, output, form.kind ? Integers::AsValues : Integers::Normalized);
         if (!values) {
             return refuse(pointer, values.error().where + " " + values.error().message);
+        }
+        if (*interpolation == Interpolation::CubicSpline && times->count < 2) {
+            document_.warn("animation-keyframes", pointer,
+                           "is a cubic spline of one keyframe, and 2 are the least; its value is held",
+                           kExportAnimation);
         }
         const std::size_t perKeyframe = *interpolation == Interpolation::CubicSpline ? 3 : 1;
         const std::size_t expected = times->count * form.width * perKeyframe;

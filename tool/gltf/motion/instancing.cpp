@@ -140,11 +140,16 @@ Status importInstances(Document& document, Scene& scene) {
     for (Node& node : scene.nodes) {
         const Json* const extension = findExtension(
             document.json()["nodes"][static_cast<std::size_t>(node.source)], "EXT_mesh_gpu_instancing");
-        if (extension == nullptr || node.mesh < 0) {
+        if (extension == nullptr) {
             continue;
         }
         const std::string pointer =
             fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", node.source);
+        if (node.mesh < 0) {
+            document.warn("node-instances", pointer, "belong to a node without a mesh; nothing is drawn",
+                          kExportInstances);
+            continue;
+        }
         const Json& attributes = (*extension)["attributes"];
         for (const auto& [name, accessor] : attributes.items()) {
             if (std::ranges::find(kInstanceAttributes, name) == std::end(kInstanceAttributes)) {

@@ -1,10 +1,12 @@
 #include "gltf/motion/morphs.h"
 
 #include "gltf/document/accessor.h"
+#include "gltf/document/validate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -16,22 +18,26 @@ constexpr const char* kExportMorphs = "export the mesh again";
 // Limits all nodes of a scene together. A thousand figures with a thousand targets each have a quarter of it.
 constexpr std::uint64_t kMaxWeights = 1ULL << 22;
 
-// Reads one attribute of a target if the target has it.
+// Reads one attribute of a target if the target has it. Alpha that is missing does not change.
+template <std::size_t N>
 Status readDifferences(const PrimitiveSource& source, const Json& target, const std::string& pointer,
-                       const char* attribute, std::size_t vertices, std::vector<Float3>& differences) {
+                       const char* attribute, std::size_t vertices,
+                       std::vector<std::array<float, N>>& differences) {
     const Json* accessor = find(target, attribute);
     if (accessor == nullptr) {
         return okStatus();
     }
     Document& document = source.document;
     const std::string place = pointer + "/" + attribute;
-    const Result<FloatElements> elements = readFloats(document, accessor->get<int>());
+    const Result<FloatElements> elements =
+        readFloats(document, accessor->get<int>(), N == 4 ? Integers::Normalized : Integers::AsValues);
     if (!elements) {
         return elements.error();
     }
-    if (elements->components != 3) {
+    if (elements->components < 3 || elements->components > N) {
         return document.error("attribute-type", place,
-                              fmt::format("has {} components, not 3", elements->components), kExportMorphs);
+                              fmt::format("has {} components, not {}", elements->components, N),
+                              kExportMorphs);
     }
     if (elements->count != vertices) {
         return document.error("attribute-count", place,
@@ -40,7 +46,8 @@ Status readDifferences(const PrimitiveSource& source, const Json& target, const 
     }
     differences.resize(vertices);
     for (std::size_t i = 0; i < vertices; ++i) {
-        std::copy_n(&elements->values[3 * i], 3, differences[i].begin());
+        std::copy_n(&elements->values[elements->components * i], elements->components,
+                    differences[i].begin());
     }
     return okStatus();
 }
@@ -70,7 +77,34 @@ std::size_t countTargets(const Mesh& mesh) {
     return count;
 }
 
+// Warns of attributes that glTF lets a target change and that Glint does not change.
+void warnOfUnread(Document& document, const Json& target, const std::string& pointer) {
+    for (const auto& [name, accessor] : target.items()) {
+        if (!name.starts_with('_') &&
+            std::ranges::find(kTargetAttributes, name) == std::end(kTargetAttributes)) {
+            document.warn("morph-attribute", pointer + "/" + name,
+                          "Glint does not morph this attribute; its differences are left out",
+                          "animate the texture's transform instead, or give each shape a mesh of its own");
+        }
+    }
+}
+
 }  // namespace
+
+void compareTargets(Document& document, std::size_t mesh) {
+    const Json& primitives = arrayMember(document.json()["meshes"][mesh], "primitives");
+    for (std::size_t i = 1; i < primitives.size(); ++i) {
+        const std::size_t first = arrayMember(primitives[0], "targets").size();
+        const std::size_t own = arrayMember(primitives[i], "targets").size();
+        if (own != first) {
+            document.warn("morph-targets", fmt::format("/meshes/{}/primitives/{}", mesh, i),
+                          fmt::format("has {} morph targets, and the mesh's first primitive has {}; the "
+                                      "targets that one of them lacks don't change it",
+                                      own, first),
+                          "give all primitives of the mesh the same targets");
+        }
+    }
+}
 
 Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
     const Json& targets = arrayMember(source.json, "targets");
@@ -78,26 +112,28 @@ Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
     for (std::size_t i = 0; i < targets.size(); ++i) {
         const std::string pointer = fmt::format("{}/targets/{}", primitive.pointer, i);
         MorphTarget& target = primitive.targets.emplace_back();
-        struct Member {
-            const char* attribute;
-            bool isBased;
-            std::vector<Float3>& differences;
-        };
-        for (const Member& member : {Member{"POSITION", true, target.positions},
-                                     Member{"NORMAL", !primitive.normals.empty(), target.normals},
-                                     Member{"TANGENT", !primitive.tangents.empty(), target.tangents}}) {
-            if (!member.isBased && find(targets[i], member.attribute) != nullptr) {
+        warnOfUnread(source.document, targets[i], pointer);
+        const auto read = [&](const char* attribute, bool isBased, auto& differences) {
+            if (!isBased && find(targets[i], attribute) != nullptr) {
                 source.document.warn(
-                    "morph-attribute", pointer + "/" + member.attribute,
+                    "morph-attribute", pointer + "/" + attribute,
                     "the primitive itself has no such attribute; its differences are left out",
                     kExportMorphs);
-                continue;
+                return okStatus();
             }
-            if (Status status = readDifferences(source, targets[i], pointer, member.attribute, vertices,
-                                                member.differences);
-                !status) {
-                return status;
-            }
+            return readDifferences(source, targets[i], pointer, attribute, vertices, differences);
+        };
+        if (Status status = read("POSITION", true, target.positions); !status) {
+            return status;
+        }
+        if (Status status = read("NORMAL", !primitive.normals.empty(), target.normals); !status) {
+            return status;
+        }
+        if (Status status = read("TANGENT", !primitive.tangents.empty(), target.tangents); !status) {
+            return status;
+        }
+        if (Status status = read("COLOR_0", !primitive.colors.empty(), target.colors); !status) {
+            return status;
         }
     }
     return okStatus();

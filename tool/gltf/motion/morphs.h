@@ -6,10 +6,15 @@
 
 #include <glint/result.h>
 
+#include <cstddef>
+
 namespace glint::gltf {
 
+// Warns ("morph-targets") of primitives of a mesh with different numbers of targets, as the file has them.
+void compareTargets(Document& document, std::size_t mesh);
+
 // Fills primitive.targets. Call it after reading the primitive's attributes. Differences to an attribute that
-// the primitive lacks are left out, because glTF requires the attribute (warning "morph-attribute"). Errors:
+// the primitive lacks, or that Glint does not morph, are left out (warning "morph-attribute"). Errors:
 // "attribute-count", "attribute-type", and those of accessors.
 Status readTargets(const PrimitiveSource& source, Primitive& primitive);
 

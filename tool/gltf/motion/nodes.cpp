@@ -1,6 +1,7 @@
 #include "gltf/motion/nodes.h"
 
 #include "base/suggest.h"
+#include "base/vectors.h"
 #include "gltf/motion/transform.h"
 
 #include <fmt/format.h>
@@ -231,6 +232,23 @@ std::array<double, 4> readRotation(Document& document, const std::vector<double>
     return {values[0] / length, values[1] / length, values[2] / length, values[3] / length};
 }
 
+// Whether axes that the matrix turns are no longer at right angles to each other.
+bool shears(const Matrix4& matrix) {
+    // Rounding a matrix to floats causes a smaller error.
+    constexpr double kTolerance = 1e-3;
+    const auto axis = [&](std::size_t i) {
+        return glm::dvec3(matrix[4 * i], matrix[4 * i + 1], matrix[4 * i + 2]);
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+        const glm::dvec3 a = axis(i);
+        const glm::dvec3 b = axis((i + 1) % 3);
+        if (std::abs(glm::dot(a, b)) > kTolerance * glm::length(a) * glm::length(b)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 Matrix4 readMatrix(Document& document, const Json& json, const std::string& pointer) {
     if (json.contains("translation") || json.contains("rotation") || json.contains("scale")) {
         document.warn("node-matrix", pointer, "has a matrix and another transform; the matrix is used",
@@ -243,6 +261,12 @@ Matrix4 readMatrix(Document& document, const Json& json, const std::string& poin
                       "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExportNodes);
         matrix[3] = matrix[7] = matrix[11] = 0.0;
         matrix[15] = 1.0;
+    }
+    if (shears(matrix)) {
+        document.warn("node-matrix", pointer + "/matrix",
+                      "is no product of a translation, a rotation and a scale, because it shears; it is used "
+                      "as it is",
+                      kExportNodes);
     }
     return matrix;
 }

@@ -43,6 +43,10 @@ Matrix4 poseOf(Document& document, const std::string& pointer, const Matrix4& wo
 void readSpot(Document& document, const Json& json, const std::string& pointer, Light& light) {
     constexpr double kRightAngle = std::numbers::pi / 2;
     const Json* spot = find(json, "spot");
+    if (spot == nullptr) {
+        document.warn("light-range", pointer, "is a spot light without \"spot\"; its angles are the defaults",
+                      "give the light its angles");
+    }
     const Json empty = Json::object();
     const Json& angles = spot == nullptr ? empty : *spot;
     const double outer =
@@ -148,6 +152,11 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
     light.intensity = static_cast<float>(
         clampLight(document, pointer + "/intensity", numberOr(json, "intensity", 1.0), 0.0, kLargest));
     light.range = readRange(document, json, pointer + "/range");
+    if (light.type == LightType::Directional && light.range > 0.0F) {
+        document.warn("light-range", pointer + "/range", "a directional light has no range; it is ignored",
+                      "leave the range out, or use a point or spot light");
+        light.range = 0.0F;
+    }
     if (const Json* color = find(json, "color")) {
         for (std::size_t i = 0; i < 3; ++i) {
             light.color[i] =

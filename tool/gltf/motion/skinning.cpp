@@ -37,6 +37,20 @@ std::vector<Influence> influencesOf(const std::vector<InfluenceSet>& sets, std::
     return influences;
 }
 
+// Whether a weight is negative, or two weights above 0 are those of one joint. glTF forbids both.
+bool breaksRules(const std::vector<InfluenceSet>& sets, std::size_t vertex,
+                 const std::vector<Influence>& influences) {
+    for (auto one = influences.begin(); one != influences.end(); ++one) {
+        if (std::any_of(one + 1, influences.end(),
+                        [&](const Influence& other) { return other.joint == one->joint; })) {
+            return true;
+        }
+    }
+    return std::ranges::any_of(sets, [&](const InfluenceSet& set) {
+        return std::ranges::any_of(set.weights[vertex], [](float weight) { return weight < 0.0F; });
+    });
+}
+
 double sumOf(const std::vector<Influence>& influences) {
     double sum = 0.0;
     for (const Influence& influence : influences) {
@@ -65,6 +79,17 @@ Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& js
     matrices->resize(joints);
     if (!std::ranges::all_of(*matrices, fitsFloat)) {
         return document.error("skin-matrices", place, "has elements that are no finite numbers", kExportSkin);
+    }
+    std::size_t odd = 0;
+    for (Matrix4& matrix : *matrices) {
+        odd += matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0 ? 1 : 0;
+        matrix[3] = matrix[7] = matrix[11] = 0.0;
+        matrix[15] = 1.0;
+    }
+    if (odd > 0) {
+        document.warn("skin-matrices", place,
+                      fmt::format("the last row of {} matrices is not 0 0 0 1, and is ignored", odd),
+                      kExportSkin);
     }
     return matrices;
 }
@@ -130,8 +155,10 @@ SkinInfluences joinInfluences(Document& document, const std::string& pointer,
     // Rounding eight weights to 8 bits each causes a smaller error.
     constexpr double kTolerance = 0.02;
     std::size_t off = 0;
+    std::size_t broken = 0;
     for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
         std::vector<Influence> influences = influencesOf(sets, vertex);
+        broken += breaksRules(sets, vertex, influences) ? 1 : 0;
         const double sum = sumOf(influences);
         off += std::abs(sum - 1.0) > kTolerance ? 1 : 0;
         if (influences.empty()) {
@@ -143,6 +170,13 @@ SkinInfluences joinInfluences(Document& document, const std::string& pointer,
             joined.weights.push_back(sum > 0.0 ? static_cast<float>(influence.weight / sum)
                                                : influence.weight);
         }
+    }
+    if (broken > 0) {
+        document.warn("skin-weights", pointer + "/attributes/WEIGHTS_0",
+                      fmt::format("{} vertices have a negative weight, which counts as 0, or several weights "
+                                  "for one joint, which are added",
+                                  broken),
+                      "export the mesh again with one weight of 0 or more for each joint");
     }
     if (off > 0) {
         document.warn("skin-weights", pointer + "/attributes/WEIGHTS_0",
@@ -159,7 +193,13 @@ Status importSkins(Document& document, Scene& scene) {
     std::map<std::size_t, int> known;  // by number in the file; -1: the skin is left out
     for (Node& node : scene.nodes) {
         const Json* skin = find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "skin");
-        if (skin == nullptr || node.mesh < 0) {
+        if (skin == nullptr) {
+            continue;
+        }
+        const std::string pointer = fmt::format("/nodes/{}/skin", node.source);
+        if (node.mesh < 0) {
+            document.warn("skin-attribute", pointer, "belongs to a node without a mesh; it is left out",
+                          kExportSkin);
             continue;
         }
         const auto index = skin->get<std::size_t>();
@@ -176,6 +216,13 @@ Status importSkins(Document& document, Scene& scene) {
         node.skin = known[index];
         if (node.skin >= 0) {
             const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+            if (std::ranges::any_of(mesh.primitives, [](const Primitive& primitive) {
+                    return primitive.influences.count == 0;
+                })) {
+                document.warn("skin-attribute", pointer,
+                              "the mesh has primitives without joints and weights; they follow the node",
+                              kExportSkin);
+            }
             const Skin& followed = scene.skins[static_cast<std::size_t>(node.skin)];
             if (Status status = checkJoints(document, mesh, followed); !status) {
                 return status;
