@@ -1,22 +1,29 @@
 #!/usr/bin/env python3
-"""Measures the time at equal error of `--lights all` and `--lights K` by the number of lights, on any device.
+"""Measures time and error of `--lights` by the number of lights, on any device.
 
-    benchmarks/measure_lights.py [--glint PROGRAM] [--counts 8 64 512 4096] [--samples 1 4] [--size WxH] [--spp N]
-                                 [--rounds N] [--all-rounds N] [--tracer auto|ray-query|ray-pipeline] [--device NAME]
-                                 [--json FILE]
+    benchmarks/measure_lights.py [--glint PROGRAM] [--before PROGRAM] [--scene FILE] [--counts 8 64 512 4096]
+                                 [--samples 1 4 auto] [--effects LIST] [--size WxH] [--spp N] [--reference-spp N]
+                                 [--rounds N] [--all-rounds N] [--seconds N] [--tracer auto|ray-query|ray-pipeline]
+                                 [--device NAME] [--json FILE]
 
 The scene is generated: a floor with boxes under a field of point lights, whose total flux does not depend on their
-number. The camera's sample positions are those of `--spp N` in every picture, so `all` has no error of its own. Each
-round renders every count with every choice once, one after the other, so that what else the machine does slows all
-alike. --all-rounds renders `all` only in the first N rounds, because it takes long with 100,000 lights. The error is
-the relMse of `glint compare` against `all`, which falls as 1 / samples: it is given for one sample. The time is the median
-over the rounds of the device time of the lighting pass, for a sample. `--lights all` has no error after one sample. K
-needs error / TARGET samples, and at least one. Prints a Markdown table, and writes JSON.
+number. With --scene it is that glTF file with such a field before it, on the side of +z. The camera's sample positions
+are those of `--spp N` in every picture, so `all` has no error of its own. Each round renders every count with every
+choice once, one after the other, so that what else the machine does slows all alike; after --seconds no round begins.
+--all-rounds renders `all` only in the first N rounds, because it takes long with 100,000 lights. --before measures
+another program, too: its choices have the word "before". The error is the relMse of `glint compare` against `all`,
+which falls as 1 / samples: it is given for one sample. With --reference-spp, JSON also has the error against so many
+samples of 64 lights, or of all up to 64: that of a pixel's edges and textures is part of it. The time is the median
+over the rounds of the device time of the lighting pass, for a sample. JSON also has that of all passes. `--lights all`
+has no error after one sample. K needs error / TARGET samples, and at least one. Prints a Markdown table, and writes
+JSON.
 """
 
 import argparse
+import concurrent.futures
 import json
 import math
+import os
 import pathlib
 import random
 import statistics
@@ -24,9 +31,11 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 
 # The relMse at which times are compared: a relative error of 5 %.
 TARGET = 0.05**2
+MOST_SAMPLES = 64  # of --lights
 
 
 def run(*words):
@@ -112,10 +121,58 @@ def write_scene(path, count):
     path.write_text(json.dumps(scene))
 
 
-def lighting_ms(stats):
-    """The device time of the lighting pass of a sample."""
+def world_bounds(scene):
+    """The box of all meshes. Rotations of nodes are left out, so it is rough."""
+    lower, upper = [math.inf] * 3, [-math.inf] * 3
+
+    def visit(index, place, scale):
+        node = scene["nodes"][index]
+        moved = node.get("matrix", [0] * 12 + node.get("translation", [0, 0, 0]))[12:15]
+        place = [place[i] + scale[i] * moved[i] for i in range(3)]
+        scale = [scale[i] * node.get("scale", [1, 1, 1])[i] for i in range(3)]
+        for primitive in scene["meshes"][node["mesh"]]["primitives"] if "mesh" in node else []:
+            box_of = scene["accessors"][primitive["attributes"]["POSITION"]]
+            for i in range(3):
+                for corner in (box_of["min"][i], box_of["max"][i]):
+                    lower[i] = min(lower[i], place[i] + scale[i] * corner)
+                    upper[i] = max(upper[i], place[i] + scale[i] * corner)
+        for child in node.get("children", []):
+            visit(child, place, scale)
+
+    for root in scene["scenes"][scene.get("scene", 0)]["nodes"]:
+        visit(root, [0, 0, 0], [1, 1, 1])
+    return lower, upper
+
+
+def add_lights(source, path, count):
+    """Writes the scene with a field of lights before it. Its files are found through links beside the copy."""
+    scene = json.loads(source.read_text(encoding="utf-8"))
+    for file in source.parent.iterdir():
+        link = path.parent / file.name
+        if not link.exists():
+            link.symlink_to(file.resolve())
+    lower, upper = world_bounds(scene)
+    size = math.dist(lower, upper)
+    generator = random.Random(1)
+    field = scene.setdefault("extensions", {}).setdefault("KHR_lights_punctual", {}).setdefault("lights", [])
+    for _ in range(count):
+        color = [generator.random(), 0.6, generator.random()]
+        field.append({"type": "point", "intensity": size**2 / count * 2.0 * generator.random(), "color": color})
+        place = [lower[i] + (upper[i] - lower[i]) * generator.random() for i in (0, 1)]
+        place.append(upper[2] + size * (0.1 + 0.3 * generator.random()))
+        scene["nodes"].append({"translation": place, "extensions": {"KHR_lights_punctual": {"light": len(field) - 1}}})
+        scene["scenes"][scene.get("scene", 0)]["nodes"].append(len(scene["nodes"]) - 1)
+    used = scene.setdefault("extensionsUsed", [])
+    if "KHR_lights_punctual" not in used:
+        used.append("KHR_lights_punctual")
+    path.write_text(json.dumps(scene))
+
+
+def times_of(stats):
+    """The device time of the lighting pass of a sample, and that of all passes."""
     passes = json.loads(stats.read_text())["passes"]
-    return sum(entry["milliseconds"] for entry in passes if entry["name"] == "lighting")
+    return (sum(entry["milliseconds"] for entry in passes if entry["name"] == "lighting"),
+            sum(entry["milliseconds"] for entry in passes))
 
 
 def spread(values):
@@ -123,48 +180,122 @@ def spread(values):
     return f"{median:.3g} ({low:.3g} to {high:.3g})"
 
 
+class Measurement:
+    """Scenes, packages and pictures in a folder, and the times of the pictures."""
+
+    def __init__(self, options, folder):
+        self.options = options
+        self.folder = folder
+        self.times = {}
+        self.tracer = ["--tracer", options.tracer]
+
+    def choices(self, count):
+        """The choices of --lights for so many lights, each with its program. No number is above that of the lights."""
+        result = [("all", self.options.glint)]
+        for choice in self.options.samples:
+            if choice.isdigit() and int(choice) > count:
+                continue
+            result.append((choice, self.options.glint))
+            if self.options.before:
+                result.append((f"{choice} before", self.options.before))
+        return result
+
+    def compile(self):
+        for count in self.options.counts:
+            path = self.folder / f"{count}.gltf"
+            if self.options.scene:
+                add_lights(self.options.scene, path, count)
+            else:
+                write_scene(path, count)
+        tracer = ["--tracer", "all"] if self.options.tracer == "auto" else self.tracer
+        packages = {(count, choice): program for count in self.options.counts
+                    for choice, program in self.choices(count)}
+        if self.options.reference_spp:
+            packages |= {(count, self.reference_choice(count)): self.options.glint for count in self.options.counts}
+        with concurrent.futures.ThreadPoolExecutor(max(1, os.cpu_count() // 2)) as pool:
+            jobs = [pool.submit(run, program, "compile", self.folder / f"{count}.gltf", "-o",
+                                self.package(count, choice), "--strategy", "uber", "--effects", self.options.effects,
+                                "--lights", choice.split()[0], *tracer)
+                    for (count, choice), program in packages.items()]
+            for job in jobs:
+                job.result()
+
+    @staticmethod
+    def reference_choice(count):
+        return "all" if count <= MOST_SAMPLES else str(MOST_SAMPLES)
+
+    def package(self, count, choice):
+        return self.folder / f"{count}-{choice.replace(' ', '-')}"
+
+    def picture(self, count, choice):
+        return self.package(count, choice).with_suffix(".exr")
+
+    def render(self, count, choice, program, spp, picture):
+        stats = self.folder / "stats.json"
+        run(program, "render", self.folder / f"{count}.gltf", "-o", picture, "--package", self.package(count, choice),
+            "--strategy", "uber", *self.tracer, "--size", self.options.size, "--sky", 0, "--spp", spp, "--stats", stats,
+            *(["--device", self.options.device] if self.options.device else []))
+        return stats
+
+    def rounds(self):
+        begin = time.monotonic()
+        for turn in range(self.options.rounds):
+            if turn > 0 and time.monotonic() - begin > self.options.seconds:
+                break
+            for count in self.options.counts:
+                for choice, program in self.choices(count):
+                    if choice == "all" and self.options.all_rounds and turn >= self.options.all_rounds:
+                        continue
+                    stats = self.render(count, choice, program, self.options.spp, self.picture(count, choice))
+                    self.times.setdefault((count, choice), []).append(times_of(stats))
+                    self.device = json.loads(stats.read_text())["device"]
+
+    def error(self, picture, reference):
+        report = json.loads(run(self.options.glint, "compare", picture, reference, "--json"))
+        return report["relMse"] * self.options.spp
+
+    def results(self):
+        for count in self.options.counts:
+            reference = None
+            if self.options.reference_spp:
+                reference = self.folder / f"{count}-reference.exr"
+                self.render(count, self.reference_choice(count), self.options.glint, self.options.reference_spp,
+                            reference)
+            for choice, _ in self.choices(count):
+                lighting, frames = zip(*self.times[count, choice])
+                ratios = [own / whole for own, (whole, _) in zip(lighting, self.times[count, "all"])]
+                inspected = json.loads(run(self.options.glint, "inspect", self.package(count, choice), "--json"))
+                row = {"lights": count, "choice": choice, "taken": inspected["settings"]["lights"],
+                       "milliseconds": lighting, "frameMilliseconds": frames, "ratioToAll": ratios,
+                       "relMseOfSample": self.error(self.picture(count, choice), self.picture(count, "all"))}
+                if reference:
+                    row["errorOfSample"] = self.error(self.picture(count, choice), reference)
+                yield row
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--glint", default="build/release/bin/glint")
+    parser.add_argument("--before", help="another program, of an older Glint")
+    parser.add_argument("--scene", type=pathlib.Path)
     parser.add_argument("--counts", type=int, nargs="+", default=[8, 16, 32, 64, 512, 4096])
     parser.add_argument("--samples", nargs="+", default=["1", "4"])
+    parser.add_argument("--effects", default="shadow")
     parser.add_argument("--size", default="160x90")
     parser.add_argument("--spp", type=int, default=4)
+    parser.add_argument("--reference-spp", type=int, default=0)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--all-rounds", type=int, help="at least 1; default: every round")
+    parser.add_argument("--seconds", type=float, default=math.inf)
     parser.add_argument("--tracer", default="auto")
     parser.add_argument("--device", default="")
     parser.add_argument("--json", type=pathlib.Path)
     options = parser.parse_args()
-    choices = ["all", *options.samples]
-    results = []
     with tempfile.TemporaryDirectory() as text:
-        folder = pathlib.Path(text)
-        for count in options.counts:
-            write_scene(folder / f"{count}.gltf", count)
-            for choice in choices:
-                run(options.glint, "compile", folder / f"{count}.gltf", "-o", folder / f"{count}-{choice}", "--strategy",
-                    "uber", "--effects", "shadow", "--lights", choice,
-                    *(["--tracer", "all"] if options.tracer == "auto" else ["--tracer", options.tracer]))
-        times = {}
-        for turn in range(options.rounds):
-            for count in options.counts:
-                for choice in choices:
-                    if choice == "all" and options.all_rounds and turn >= options.all_rounds:
-                        continue
-                    run(options.glint, "render", folder / f"{count}.gltf", "-o", folder / f"{count}-{choice}.exr",
-                        "--package", folder / f"{count}-{choice}", "--strategy", "uber", "--tracer", options.tracer,
-                        "--size", options.size, "--sky", 0, "--spp", options.spp, "--stats", folder / "stats.json",
-                        *(["--device", options.device] if options.device else []))
-                    times.setdefault((count, choice), []).append(lighting_ms(folder / "stats.json"))
-        device = json.loads((folder / "stats.json").read_text())["device"]
-        for count in options.counts:
-            for choice in choices:
-                report = json.loads(run(options.glint, "compare", folder / f"{count}-{choice}.exr",
-                                        folder / f"{count}-all.exr", "--json"))
-                ratios = [own / whole for own, whole in zip(times[count, choice], times[count, "all"])]
-                results.append({"lights": count, "choice": choice, "milliseconds": times[count, choice],
-                                "ratioToAll": ratios, "relMseOfSample": report["relMse"] * options.spp})
+        measurement = Measurement(options, pathlib.Path(text))
+        measurement.compile()
+        measurement.rounds()
+        results = list(measurement.results())
     print("| lights | `--lights` | ms a sample | time over that of all | relMse of a sample | ms at relMse "
           f"{TARGET:.2g} |\n|--:|---|--:|--:|--:|--:|")
     for row in results:
@@ -172,8 +303,9 @@ def main():
         print(f"| {row['lights']:,} | {row['choice']} | {spread(row['milliseconds'])} | {spread(row['ratioToAll'])} | "
               f"{row['relMseOfSample']:.3g} | {needed * statistics.median(row['milliseconds']):.3g} |")
     if options.json:
-        report = {"device": device, "size": options.size, "spp": options.spp, "targetRelMse": TARGET,
-                  "results": results}
+        report = {"device": measurement.device, "scene": options.scene.name if options.scene else "floor with boxes",
+                  "effects": options.effects, "size": options.size, "spp": options.spp,
+                  "referenceSpp": options.reference_spp, "targetRelMse": TARGET, "results": results}
         options.json.write_text(json.dumps(report, indent=1) + "\n")
 
 

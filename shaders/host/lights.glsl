@@ -88,7 +88,7 @@ HostLight lightOfEmitter(uint emitter, float chance) {
 float emitterChance(LightReceiver receiver, uint emitter) {
     uint leaf = GLINT_FRAME.emitters.data[emitter].leaf;
 #if GLINT_LIGHT_SAMPLES > 0
-    return leaf == kNoEmitter ? 0.0 : float(GLINT_LIGHT_SAMPLES) * lightProbability(receiver, leaf);
+    return leaf == kNoEmitter ? 0.0 : lightChance(receiver, leaf);
 #else
     return leaf == kNoEmitter ? 0.0 : 1.0;
 #endif
@@ -101,7 +101,7 @@ float emitterChance(LightReceiver receiver, uint emitter) {
 // SceneLight::chance of the punctual light of a leaf.
 float leafChance(LightReceiver receiver, uint leaf) {
     bool isApart = leaf >= GLINT_FRAME.lightTreeNodes;
-    return isApart ? 1.0 : float(GLINT_LIGHT_SAMPLES) * lightProbability(receiver, leaf);
+    return isApart ? 1.0 : lightChance(receiver, leaf);
 }
 
 #endif
@@ -114,7 +114,8 @@ HostLight lightApart(uint index) {
     return lightOfScene(GLINT_FRAME.lightNodes.data[leaf].next & ~kLightLeaf);
 }
 
-// The hierarchy knows the surface that asks. `random` is uniform in [0, 1)³. The same arguments give the same light.
+// The hierarchy knows the surface that asks. `random` is uniform in [0, 1)³, and the same for all samples of punctual
+// lights that a surface takes. The same arguments give the same light.
 HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
 #if GLINT_SKY_LIGHT
     if (index == sceneLightCount()) {
@@ -124,19 +125,17 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
     if (index < GLINT_FRAME.lightsApart) {
         return lightApart(index);
     }
-    // The samples of a surface divide the first random number among them, which spreads them over the tree.
-    precise float stratum = (float(index - GLINT_FRAME.lightsApart) + random.x) / float(GLINT_LIGHT_SAMPLES);
-    float probability;
-    uint chosen = lightOfTree(receiver, vec3(min(stratum, kBelowOne), random.yz), probability);
-    float chance = float(GLINT_LIGHT_SAMPLES) * probability;
+    precise float place = float(index - GLINT_FRAME.lightsApart) + random.x;
+    float chance;
+    uint chosen = lightOfTree(receiver, place, random.yz, chance);
 #if GLINT_EMISSIVE_LIGHTS
     // Without light from any, it is an emitter with no chance, because there may be no other light.
-    if ((chosen & kLightEmitter) != 0u || probability <= 0.0) {
+    if ((chosen & kLightEmitter) != 0u || chance <= 0.0) {
         return lightOfEmitter(chosen & ~kLightEmitter, chance);
     }
 #endif
     HostLight light = lightOfScene(chosen);
-    GLINT_PUNCTUAL(light).intensity *= probability > 0.0 ? 1.0 / chance : 0.0;
+    GLINT_PUNCTUAL(light).intensity *= chance > 0.0 ? 1.0 / chance : 0.0;
 #if GLINT_SIZED_LIGHTS
     light.chance = chance;
 #endif

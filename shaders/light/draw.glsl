@@ -26,10 +26,15 @@ uint shadingDimension(uint dimension) {
 
 // A light of the host's list.
 HostLight lightOfHost(Hit hit, Features features, uint index) {
-    uint dimension = shadingDimension(kDimensionHostLight + 3u * index);
+#if GLINT_LIGHT_SAMPLES > 0 && !GLINT_EMISSIVE_LIGHTS
+    uint drawn = 0u;  // systematic sampling: the samples keep their distance, so none sees the light of another
+#else
+    uint drawn = index;
+#endif
+    uint dimension = shadingDimension(kDimensionHostLight + 3u * drawn);
 #if GLINT_LIGHT_SAMPLES > 0
     // The first numbers, which decide most, are well distributed.
-    vec2 first = hostRandomPair(hit.target, shadingDimension(kPairLightChoice + index));
+    vec2 first = hostRandomPair(hit.target, shadingDimension(kPairLightChoice + drawn));
     return hostLight(index, receiverOf(hit, features), vec3(first, hostRandom(hit.target, dimension)));
 #else
     vec3 random = vec3(hostRandom(hit.target, dimension), hostRandom(hit.target, dimension + 1u),

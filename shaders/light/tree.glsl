@@ -1,7 +1,7 @@
 // Chooses one of many lights by the hierarchy over them: Conty Estevez and Kulla, "Importance Sampling of Many Lights
-// with Adaptive Tree Splitting" (2018), and pbrt-v4's BVHLightSampler. From the root on, a child is chosen in
-// proportion to its importance, so the probability of a light is the product over its way. Every expression that
-// decides is `precise`, because all strategies choose the same light.
+// with Adaptive Tree Splitting" (2018), and pbrt-v4's BVHLightSampler. From the root on, the samples of a surface are
+// divided between the children of each node in proportion to their importance. Every expression that decides is
+// `precise`, because all strategies choose the same light.
 #include "hit/bindings.glsl"
 #include "light/punctual.glsl"
 
@@ -11,12 +11,10 @@ const float kMinLightFacing = 0.05;
 const float kLightSpread = 0.25;
 // What the cosines of bounds may lose to rounding.
 const float kLightCosineSlack = 1e-3;
-// The distance between random numbers. Each choice divides it by the probability of what was chosen.
+// The distance between random numbers.
 const float kGrain = 1.0 / 16777216.0;
-// Where the distance has grown to this, another random number is taken.
+// Where the distance has grown to this share of what is left to choose from, another random number is taken.
 const float kCoarseGrain = 1.0 / 4096.0;
-// The most that a random number is: the largest float below 1.
-const float kBelowOne = 0.99999994;
 
 // max(a - b, 0) of angles as cosine and sine, from those of a and b in [0, pi].
 vec2 angleBeyond(vec2 a, vec2 b) {
@@ -135,69 +133,110 @@ float lightImportance(LightNode node, LightReceiver receiver) {
     return importance;
 }
 
-// Returns the number of a light of the tree and the probability with which it was chosen, which is 0 if none brings
-// light to the surface. `u` is uniform in [0, 1)³.
-uint lightOfTree(LightReceiver receiver, vec3 u, out float probability) {
+// The samples of a surface lie side by side on a line as long as their number, and so do the lights of a tree, each
+// with a part as long as the number of samples that it expects. A sample is of the light in whose part it lies.
+struct LightSubtree {
+    uint root;
+    uint end;       // the node after the last one
+    float samples;  // the length of its part
+};
+
+// How many lights are below a node with so many nodes, itself among them.
+float lightsOfNodes(uint nodes) {
+    return float((nodes + 1u) / 2u);
+}
+
+LightSubtree wholeLightTree() {
+    LightSubtree tree = LightSubtree(0u, GLINT_FRAME.lightTreeNodes, float(GLINT_LIGHT_SAMPLES));
+#if !GLINT_EMISSIVE_LIGHTS
+    tree.samples = min(tree.samples, lightsOfNodes(tree.end));
+#endif
+    return tree;
+}
+
+// The samples of the first child, in proportion to the importance of both. A punctual light has at most one, because a
+// second one would see the same. Samples that this leaves over are those of other lights. So lights that are bright
+// enough for a sample of their own bring no noise. Samples of emissive triangles see different points of them.
+float samplesOfFirst(LightSubtree tree, uint second, float share) {
+    precise float samples = tree.samples * share;
+#if !GLINT_EMISSIVE_LIGHTS
+    precise float least = tree.samples - lightsOfNodes(tree.end - second);
+    samples = min(max(samples, least), lightsOfNodes(second - tree.root - 1u));
+#endif
+    return samples;
+}
+
+// Returns the number of the light at a place on the line, and how many samples of a surface it expects, which is 0 if no
+// light there brings light to the surface. `more` is uniform in [0, 1)².
+uint lightOfTree(LightReceiver receiver, float place, vec2 more, out float chance) {
     LightNodeArray nodes = GLINT_FRAME.lightNodes;
-    uint index = 0u;
-    precise float product = 1.0;
-    precise float random = u.x;
-    precise float grain = kGrain;
+    LightSubtree tree = wholeLightTree();
+    precise float along = place;
+    precise float grain = kGrain * float(GLINT_LIGHT_SAMPLES);
     uint numbers = 1u;
+    chance = 0.0;
+    if (along >= tree.samples) {
+        return 0u;
+    }
     uint next = nodes.data[0].next;
     while ((next & kLightLeaf) == 0u) {
-        float first = lightImportance(nodes.data[index + 1u], receiver);
+        float first = lightImportance(nodes.data[tree.root + 1u], receiver);
         float second = lightImportance(nodes.data[next], receiver);
         precise float both = first + second;
         if (!(both > 0.0)) {
-            probability = 0.0;
             return 0u;
         }
         precise float share = first / both;
+        precise float samples = samplesOfFirst(tree, next, share);
         // A number stands for those up to the next one, so their middle decides. Otherwise the number 0 would choose
-        // lights whose probability is far below that of the number, and these would be far too bright.
-        precise float middle = random + 0.5 * grain;
-        precise float taken = share;
-        if (share >= 1.0 || middle < share) {
-            index += 1u;
-            random = random / share;
-        } else {
-            taken = 1.0 - share;
-            index = next;
-            random = max(random - share, 0.0) / taken;
+        // lights whose part of the line is far shorter than the distance of the numbers, and these would be far too
+        // bright.
+        precise float middle = along + 0.5 * grain;
+        bool isFirst = middle < samples || samples >= tree.samples;
+        if ((isFirst ? first : second) <= 0.0) {
+            return 0u;
         }
-        product *= taken;
-        grain = grain / taken;
-        if (grain > kCoarseGrain && numbers < 3u) {
-            random = numbers == 1u ? u.y : u.z;
-            grain = kGrain;
+        if (isFirst) {
+            tree = LightSubtree(tree.root + 1u, next, samples);
+        } else {
+            along = max(along - samples, 0.0);
+            precise float rest = tree.samples - samples;
+            tree = LightSubtree(next, tree.end, rest);
+        }
+        if (grain > kCoarseGrain * tree.samples && numbers < 3u) {
+            along = tree.samples * (numbers == 1u ? more.x : more.y);
+            grain = kGrain * tree.samples;
             numbers += 1u;
         }
-        random = min(random, kBelowOne);
-        next = nodes.data[index].next;
+        next = nodes.data[tree.root].next;
     }
-    probability = product;
+    chance = tree.samples;
     return next & ~kLightLeaf;
 }
 
-// The probability with which lightOfTree() chooses the light of a leaf. The first child of a node has all nodes up to
-// the second one below it, so the way to a leaf follows from its index.
-float lightProbability(LightReceiver receiver, uint leaf) {
+// How many samples of a surface lightOfTree() is expected to give to the light of a leaf. The first child of a node has
+// all nodes up to the second one below it, so the way to a leaf follows from its index.
+float lightChance(LightReceiver receiver, uint leaf) {
     LightNodeArray nodes = GLINT_FRAME.lightNodes;
-    uint index = 0u;
-    precise float product = 1.0;
+    LightSubtree tree = wholeLightTree();
     uint next = nodes.data[0].next;
-    while (index != leaf) {
-        float first = lightImportance(nodes.data[index + 1u], receiver);
+    while (tree.root != leaf) {
+        float first = lightImportance(nodes.data[tree.root + 1u], receiver);
         float second = lightImportance(nodes.data[next], receiver);
-        precise float both = first + second;
-        if (!(both > 0.0)) {
+        bool isFirst = leaf < next;
+        if (!((isFirst ? first : second) > 0.0)) {
             return 0.0;
         }
+        precise float both = first + second;
         precise float share = first / both;
-        product *= leaf < next ? share : 1.0 - share;
-        index = leaf < next ? index + 1u : next;
-        next = nodes.data[index].next;
+        precise float samples = samplesOfFirst(tree, next, share);
+        if (isFirst) {
+            tree = LightSubtree(tree.root + 1u, next, samples);
+        } else {
+            precise float rest = tree.samples - samples;
+            tree = LightSubtree(next, tree.end, rest);
+        }
+        next = nodes.data[tree.root].next;
     }
-    return product;
+    return tree.samples;
 }

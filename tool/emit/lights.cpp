@@ -61,22 +61,6 @@ Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const Compile
                            : "the package has no effect shadow");
 }
 
-// Returns the samples that `--lights auto` takes of a scene's lights, or 0 for all of them.
-std::uint32_t samplesFor(const gltf::Scene& scene, const CompileSettings& settings) {
-    const std::size_t punctual = scene.lights.size() + (settings.addsLight ? 1 : 0);
-    const std::size_t emitters = countLights(scene, settings) - punctual;
-    if (emitters == 0) {
-        return punctual > kFewLights ? kSamplesOfManyLights : 0;
-    }
-    const std::size_t together = emitters + (punctual > gpu::kMostLightsApart ? punctual : 0);
-    for (const SamplesOfEmitters& few : kSamplesOfEmitters) {
-        if (together <= few.most) {
-            return few.samples;
-        }
-    }
-    return kSamplesOfManyLights;
-}
-
 }  // namespace
 
 std::size_t countEmitters(const gltf::Scene& scene) {
@@ -101,9 +85,15 @@ std::size_t countEmitters(const gltf::Scene& scene) {
     return count;
 }
 
-std::size_t countLights(const gltf::Scene& scene, const CompileSettings& settings) {
-    const std::size_t emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
-    return scene.lights.size() + emitters + (settings.addsLight ? 1 : 0);
+LightCounts countLights(const gltf::Scene& scene, const CompileSettings& settings) {
+    const auto hasPosition = [](const gltf::Light& light) {
+        return light.type != gltf::LightType::Directional;
+    };
+    LightCounts counts;
+    counts.positions = static_cast<std::size_t>(std::ranges::count_if(scene.lights, hasPosition));
+    counts.emitters = settings.emissiveLights == EmissiveLights::On ? countEmitters(scene) : 0;
+    counts.areApart = counts.emitters > 0 && counts.positions <= gpu::kMostLightsApart;
+    return counts;
 }
 
 Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
@@ -225,7 +215,7 @@ Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const 
     std::uint32_t samples = 0;
     if (!ofHost) {
         for (const gltf::Scene& scene : scenes) {
-            samples = std::max(samples, samplesFor(scene, settings));
+            samples = std::max(samples, lightSamplesFor(countLights(scene, settings)));
         }
     }
     return samples;

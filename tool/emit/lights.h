@@ -4,6 +4,7 @@
 
 #include "gltf/scene.h"
 #include "gltf/scene_list.h"
+#include "plan/light_samples.h"
 #include "settings/compile_settings.h"
 
 #include <glint/result.h>
@@ -13,18 +14,6 @@
 
 namespace glint::compiler {
 
-// `--lights auto` takes all lights of scenes with up to as many, and so many samples of more. docs/lights.md
-// says how both were measured.
-inline constexpr std::size_t kFewLights = 128;
-inline constexpr std::uint32_t kSamplesOfManyLights = 8;
-
-// Beside emissive triangles it takes no more samples than these where the hierarchy has up to `most` lights.
-struct SamplesOfEmitters {
-    std::size_t most;
-    std::uint32_t samples;
-};
-inline constexpr SamplesOfEmitters kSamplesOfEmitters[] = {{16, 2}, {512, 4}};
-
 // `--emissive-lights=auto` takes no more triangles of a scene as lights.
 inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
 
@@ -32,9 +21,9 @@ inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
 // animation.
 std::size_t countEmitters(const gltf::Scene& scene);
 
-// Returns the number of lights of a scene in a package: its own, the light that `settings` add, and the
-// emissive triangles, where these are lights. emissiveLights must be decided.
-std::size_t countLights(const gltf::Scene& scene, const CompileSettings& settings);
+// Returns what a hierarchy over the lights of a scene may choose: point and spot lights, and the emissive
+// triangles where these are lights. emissiveLights must be decided.
+LightCounts countLights(const gltf::Scene& scene, const CompileSettings& settings);
 
 // Returns EmissiveLights::On or Off for a package of `scenes`. It is Off where nothing emits light. Error
 // "emissive-lights" if the settings demand what a host with lights of its own, or a package without shadow
@@ -65,9 +54,9 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
 package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
                                        const CompileSettings& settings);
 
-// Returns CompileSettings::lightSamples for a package of `scenes`, which decides by the scene with the most
-// lights. emissiveLights must be decided. A host that has its own lights, or that sends its own rays, has no
-// hierarchy. Error "lights" if the settings demand one nevertheless.
+// Returns CompileSettings::lightSamples for a package of `scenes`. Without a number in the settings it is the
+// most of lightSamplesFor() over the scenes. emissiveLights must be decided. A host that has its own lights,
+// or that sends its own rays, has no hierarchy. Error "lights" if the settings demand one nevertheless.
 Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
 
 }  // namespace glint::compiler

@@ -89,7 +89,8 @@ compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Sce
     compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
     const Result<compiler::EmissiveLights> emissiveLights = compiler::emissiveLightsOf({&scene, 1}, own);
     own.emissiveLights = emissiveLights ? *emissiveLights : compiler::EmissiveLights::Off;
-    facts.lights = compiler::countLights(scene, own) - static_cast<std::size_t>(directional);
+    const compiler::LightCounts counts = compiler::countLights(scene, own);
+    facts.lights = counts.positions + counts.emitters;
     own.lightSamples.reset();
     const Result<std::uint32_t> samples = compiler::lightSamplesOf({&scene, 1}, own);
     facts.manyLights = samples && *samples > 0;

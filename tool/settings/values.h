@@ -513,7 +513,7 @@ inline constexpr SettingValues kLights{
     .words =
         [] {
             return std::vector<SettingWord>{{"auto",
-                                             "all of up to 128 lights, and 8 of more; 2 to 8 of the "
+                                             "all of few lights, and 16 where all cost more; 2 to 8 of the "
                                              "triangles in scenes with emissive lights"},
                                             {"all", "every light"}};
         },

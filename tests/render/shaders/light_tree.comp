@@ -1,7 +1,7 @@
 #version 460
-// For points (origin), packed normals (target) and random numbers (direction): the light that the tree chooses, how
-// probable that is, the sum of the probabilities of all lights, what is wrong, and the second moment of a sample without
-// shadows over the square of its mean.
+// For points (origin), packed normals (target), places and random numbers (direction): the light that the tree chooses,
+// how many samples it expects, the sum of these over all lights, what is wrong, and the second moment of a sample
+// without shadows over the square of its mean.
 #include "bsdf/fresnel.glsl"
 #include "hit/bindings.glsl"
 #include "light/punctual.glsl"
@@ -16,8 +16,8 @@ void main() {
     }
     RayRecord ray = GLINT_FRAME.rays.data[index];
     LightReceiver receiver = LightReceiver(ray.origin, unpackReceiver(ray.target));
-    float probability;
-    uint chosen = lightOfTree(receiver, ray.direction, probability);
+    float chance;
+    uint chosen = lightOfTree(receiver, ray.direction.x, ray.direction.yz, chance);
     float sum = 0.0;
     uint unreachable = 0u;
     float evaluated = -1.0;
@@ -29,7 +29,7 @@ void main() {
             continue;
         }
         uint light = next & ~kLightLeaf;
-        float own = lightProbability(receiver, node);
+        float own = lightChance(receiver, node);
         sum += own;
         LightSample arriving = sampleLight(GLINT_FRAME.lights.data[light], ray.origin);
         bool both = receiver.normal == vec3(0.0);
@@ -41,7 +41,7 @@ void main() {
         evaluated = light == chosen ? own : evaluated;
     }
     GLINT_FRAME.counters.data[6u * index] = chosen;
-    GLINT_FRAME.counters.data[6u * index + 1u] = floatBitsToUint(probability);
+    GLINT_FRAME.counters.data[6u * index + 1u] = floatBitsToUint(chance);
     GLINT_FRAME.counters.data[6u * index + 2u] = floatBitsToUint(evaluated);
     GLINT_FRAME.counters.data[6u * index + 3u] = floatBitsToUint(sum);
     GLINT_FRAME.counters.data[6u * index + 4u] = unreachable;
