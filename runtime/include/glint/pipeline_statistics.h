@@ -1,9 +1,6 @@
 // A driver's report about the pipelines that it made, in the terms of VK_KHR_pipeline_executable_properties.
 #pragma once
 
-#include <glint/package_modules.h>
-#include <glint/result.h>
-
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
@@ -37,27 +34,5 @@ struct PipelineStatistics {
     std::optional<bool> cacheHit;
     std::vector<PipelineExecutable> executables;
 };
-
-class Context;
-class Package;
-
-// A pipeline that renderers of a package make.
-struct PackagePipeline {
-    // Without executables if the device reports none, or if the pipeline could not be made.
-    PipelineStatistics statistics;
-    // The modules that it is the pipeline of. They have the same code: cases that share a shader, for
-    // instance. Stages that several pipelines have in common are left out.
-    std::vector<package::ModuleKey> modules;
-    std::uint32_t strategies = 0;       // package::Strategy bits of the renderers that have it
-    std::optional<Diagnostic> failure;  // the driver's error; no value if it made the pipeline
-};
-
-// Makes each pipeline that renderers of the package can have on the device, with every strategy, tracer and
-// ordering of both, and destroys it again. Needs no scene, and submits nothing. A package with the steps of a
-// host gets a layout with the descriptors that its modules declare. `threads` is as
-// RendererOptions::pipelineThreads. Errors: "device-tracer" and others of Renderer::create() if the device
-// runs no strategy of the package, "vulkan-call".
-Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, const Package& package,
-                                                          std::uint32_t threads = 0);
 
 }  // namespace glint

@@ -6,7 +6,7 @@
 #include "renderer/renderer_choice.h"
 #include "scene/gpu_scene_state.h"
 
-#include <glint/pipeline_statistics.h>
+#include <glint/package_pipelines.h>
 
 #include <algorithm>
 #include <array>
@@ -231,7 +231,7 @@ struct Planned {
     std::vector<PackagePipeline> pipelines;  // by job
     std::map<PipelineIdentity, std::size_t> known;
 
-    void add(const PlannedPipeline& planned, std::uint32_t strategies) {
+    void add(const Package& package, const PlannedPipeline& planned, std::uint32_t strategies) {
         const auto [found, fresh] = known.emplace(planned.job.identity, jobs.size());
         if (fresh) {
             jobs.push_back(planned.job);
@@ -239,22 +239,32 @@ struct Planned {
         }
         PackagePipeline& pipeline = pipelines[found->second];
         pipeline.strategies |= strategies;
-        for (const package::ModuleKey& key : modulesOf(planned)) {
+        for (const package::ModuleKey& key : modulesOf(package, planned)) {
             if (std::ranges::find(pipeline.modules, key) == pipeline.modules.end()) {
                 pipeline.modules.push_back(key);
             }
         }
     }
 
-    static std::vector<package::ModuleKey> modulesOf(const PlannedPipeline& planned) {
+    static std::vector<package::ModuleKey> modulesOf(const Package& package, const PlannedPipeline& planned) {
+        std::vector<package::ModuleKey> keys = planned.keys;
         if (!planned.rays) {
-            return planned.keys;
+            return keys;
         }
-        std::vector<package::ModuleKey> keys;
-        for (const std::uint32_t shaderId : planned.rays->shaderIds) {
-            keys.push_back({planned.rays->key.role, shaderId, planned.rays->key.tracer});
+        const RayPipelineSource& source = planned.rays->source;
+        std::vector<SpirvWords> stages{source.rayGeneration, source.anyHit};
+        stages.insert(stages.end(), source.miss.begin(), source.miss.end());
+        stages.insert(stages.end(), source.closestHit.begin(), source.closestHit.end());
+        // The loader gives the same words to entries that name the same file.
+        for (const SpirvWords words : stages) {
+            for (const package::ModuleEntry& entry : package.modules()) {
+                const package::ModuleKey key{entry.role, entry.index, entry.tracer};
+                if (!words.empty() && package.spirv(key).data() == words.data()) {
+                    keys.push_back(key);
+                }
+            }
         }
-        return keys.empty() ? std::vector{planned.rays->key} : keys;
+        return keys;
     }
 };
 
@@ -270,7 +280,7 @@ void planDeform(Context::State& context, const Package& package, VkPipelineLayou
                         return createComputePipeline(context, words, layout, creation);
                     },
                     identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, 0, {words})};
-    all.add({std::move(job), {key}}, package.shape().strategies);
+    all.add(package, {std::move(job), {key}}, package.shape().strategies);
 }
 
 }  // namespace
@@ -296,7 +306,7 @@ Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, cons
     for (const PipelineChoice& choice : *choices) {
         for (const PlannedPipeline& planned :
              planPipelines(state, package, choice, {}, layout->pipeline.get())) {
-            all.add(planned, choice.strategy);
+            all.add(package, planned, choice.strategy);
         }
     }
     planDeform(state, package, deformLayout->get(), all);
