@@ -74,22 +74,20 @@ double widthOf(const PipelineExecutable& executable) {
     return executable.subgroupSize > 0 ? executable.subgroupSize : kLanes;
 }
 
-// RADV (Mesa 25.0: src/amd/vulkan/radv_shader.c, src/amd/compiler/aco_statistics.cpp). "Inverse Throughput"
-// is that of 64 lanes, whatever the subgroup; "Latency" is that of one subgroup.
+// RADV (Mesa 25.0: src/amd/vulkan/radv_shader.c, src/amd/compiler/aco_statistics.cpp). "Subgroups per SIMD"
+// counts a subgroup of 64 lanes twice. "Inverse Throughput" is that of 64 lanes, whatever the subgroup; it is
+// "Latency" over the subgroups in flight where that is more.
 PipelineFacts radvFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a SIMD, from RDNA 2 on
+    constexpr double kSmallestWidth = 32.0;
     PipelineFacts facts;
     facts.registers = named("VGPRs");
     facts.spills = named.withWord({"spilled"});
     facts.scratchBytes = scaled(named("Scratch size"), 1.0 / width);
     facts.codeBytes = named("Code size");
-    const std::optional<double> subgroups = named("Subgroups per SIMD");
+    const std::optional<double> subgroups = scaled(named("Subgroups per SIMD"), kSmallestWidth / width);
     facts.occupancy = scaled(subgroups, 1.0 / kMostSubgroups);
-    const std::optional<double> busy = named("Inverse Throughput");
-    const std::optional<double> latency = named("Latency");
-    if (busy && latency && subgroups.value_or(0.0) > 0.0) {
-        facts.cost = std::max(*busy, *latency * (kLanes / width) / *subgroups);
-    }
+    facts.cost = named("Inverse Throughput");
     return facts;
 }
 
@@ -644,20 +642,6 @@ compiler::GpuCosts readGpu(base::JsonReader& reader, const base::Json& json) {
 }
 
 }  // namespace
-
-base::Json toJson(const compiler::GpuCosts& gpu) {
-    base::Json packages = base::Json::array();
-    for (const compiler::PackageCosts& costs : gpu.packages) {
-        packages.push_back({{"package", costs.package},
-                            {"merge", costs.merge},
-                            {"shadows", costs.shadows},
-                            {"precision", costs.precision},
-                            {"summary", summaryToJson(costs)}});
-    }
-    return {{"format", "glint-gpu"},          {"version", 1},         {"name", gpu.name},
-            {"device", gpu.device},           {"driver", gpu.driver}, {"subgroupSize", gpu.subgroupSize},
-            {"packages", std::move(packages)}};
-}
 
 compiler::GpuCosts gpuOf(std::string name, std::span<const PipelineReport> reports) {
     compiler::GpuCosts gpu;
