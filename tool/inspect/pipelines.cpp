@@ -666,7 +666,7 @@ std::vector<std::string> builtInGpus() {
 Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
     base::JsonReader reader(
         nameOrFile, "gpu-table",
-        "give a table that benchmarks/gpu_table.py wrote, or one of: " + base::join(builtInGpus()));
+        "give a table that scripts/gpu_table.py wrote, or one of: " + base::join(builtInGpus()));
     for (const base::BuiltinFile& file : gpuTables()) {
         if (file.name == nameOrFile + ".json") {
             return readGpu(reader, base::Json::parse(file.text));
