@@ -752,8 +752,8 @@ std::string titleOf(const ReportedPipeline& pipeline) {
                                     : fmt::format("{} ({})", pipeline.name, pipeline.modules.front().file);
 }
 
-Diagnostic overBudget(const PipelineReport& report, const PipelineBudget& budget,
-                      const ReportedPipeline& pipeline, const FactInfo& fact, double limit) {
+Diagnostic exceeded(const PipelineReport& report, const PipelineBudget& budget,
+                    const ReportedPipeline& pipeline, const FactInfo& fact, double limit) {
     const std::optional<double>& value = pipeline.facts.*fact.member;
     const std::string what =
         value ? fmt::format("{} is {}, and the budget is {} {:g}", fact.name, fmt::format("{:g}", *value),
@@ -788,7 +788,7 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file) {
     return reader.ok() ? Result<PipelineBudget>(std::move(budget)) : Result<PipelineBudget>(reader.error());
 }
 
-std::vector<Diagnostic> checkBudget(const PipelineReport& report, const PipelineBudget& budget) {
+std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget) {
     std::vector<Diagnostic> found;
     // Rules for other devices count as used, unless all are for others.
     std::vector<bool> used;
@@ -821,7 +821,7 @@ std::vector<Diagnostic> checkBudget(const PipelineReport& report, const Pipeline
             const std::optional<double>& limit = limits.*fact.member;
             const std::optional<double>& value = pipeline.facts.*fact.member;
             if (limit && (!value || (fact.isLeast ? *value < *limit : *value > *limit))) {
-                found.push_back(overBudget(report, budget, pipeline, fact, *limit));
+                found.push_back(exceeded(report, budget, pipeline, fact, *limit));
             }
         }
     }

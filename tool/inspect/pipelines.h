@@ -140,6 +140,6 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file);
 
 // Returns an error "pipeline-budget" for each fact that exceeds its limit or that the driver does not report,
 // and a warning "pipeline-budget-unused" for each rule that fits no pipeline of its device.
-std::vector<Diagnostic> checkBudget(const PipelineReport& report, const PipelineBudget& budget);
+std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget);
 
 }  // namespace glint::inspect
