@@ -12,6 +12,7 @@
 #include "cli/render/report.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
+#include "inspect/pipelines.h"
 
 #include <glint/context.h>
 #include <glint/measure/observer.h>
@@ -78,12 +79,9 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
                                              const std::optional<Result<Package>>& given) {
     HeadlessOptions options = measure::deviceOptions(arguments);
-    options.pipelineStatistics = arguments.pipelineStatistics;
+    options.pipelineStatistics = options.pipelineStatistics || arguments.pipelineStatistics;
     if (given && *given) {
-        const Package& package = **given;
-        options.positionFetch = package.positionFetch();
-        options.shaderClock = (package::demandsOf(package.layers()) & package::kLayerClock) != 0;
-        options.shaderFloat16 = package.precision() == package::ShadingPrecision::Half;
+        inspect::requirePackage(**given, options);
     }
     return Context::createHeadless(options);
 }
@@ -117,7 +115,7 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 }
 
 // Replaces --strategy auto by the strategy that is expected to be fastest.
-Status settleStrategy(const Console& console, const compiler::PlanOptions& plan, const Context& context,
+Status settleStrategy(const Console& console, const compiler::PlanOptions& plan, Context& context,
                       const gltf::Scene& scene, const std::optional<Result<Package>>& given,
                       RenderArguments& arguments, RenderReport& report) {
     if (arguments.strategy) {

@@ -60,6 +60,7 @@ struct Settings {
     std::string profile;      // hit counts, for the merge policies profile and auto
     std::string calibration;  // a device file; empty: constants that are built in
     std::string sceneInFile;  // ImportOptions::scene; empty: the file's default
+    std::string gpu;          // name or file of a table of a GPU's code, or kThisDevice; empty: none
     std::string variant;      // of KHR_materials_variants; empty: none
     bool strictPaths = false;
     std::vector<std::string> materials;  // folders of packs: material features of a user's own
@@ -69,6 +70,9 @@ struct Settings {
     // The names of the settings that have another value than usual because the user gave it.
     std::vector<std::string> given;
 };
+
+// The value of Settings::gpu that stands for the device that renders.
+inline constexpr std::string_view kThisDevice = "device";
 
 // Returns the lobes that hits keep with "base": the base models, and what is declared as part of the base.
 materials::FeatureMask baseLobes();
