@@ -10,7 +10,7 @@ namespace glint::gltf {
 namespace {
 
 // What single precision rounds in a unit vector.
-constexpr double kTolerance = 2.5e-7;
+constexpr double kDerivedError = 2.5e-7;
 
 using Vector = std::array<double, 3>;
 
@@ -56,7 +56,7 @@ bool derivesOn(const Primitive& primitive, const std::vector<Float2>& texCoords,
         const Float3& normal = primitive.normals[corners[i]];
         for (std::size_t axis = 0; axis < 3; ++axis) {
             // Not a number is no tangent that is derived.
-            if (!(std::abs(tangent[axis] - along[axis] / length) <= kTolerance)) {
+            if (!(std::abs(tangent[axis] - along[axis] / length) <= kDerivedError)) {
                 return false;
             }
         }

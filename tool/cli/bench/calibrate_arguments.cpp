@@ -128,11 +128,11 @@ void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
         command, "--pictures", arguments.pictures, "DIR",
         "with --calibrate: write the smallest picture of each\nscene here, too; existing files are replaced")
         .group(kGroup);
-    addText(command, kDeviceReport, arguments.deviceReport, "FILE.json",
-            "write what Glint's makers need to know of this device:\n"
-            "times of the strategies on five generated scenes and on\n"
-            "SCENE, if there is one, and statistics of all pipelines.\n"
-            "It has no names of hosts, users or files (default: off)")
+    addOutputFile(
+        command, kDeviceReport, arguments.deviceReport, "FILE.json", {".json"},
+        "write what Glint's makers need to know of this device: times of the strategies on five generated "
+        "scenes and on SCENE, if there is one, and statistics of all pipelines. It has no names of hosts, "
+        "users or files (default: off)")
         .group("Device report");
 }
 
