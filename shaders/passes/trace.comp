@@ -15,8 +15,40 @@
 
 GLINT_RAY_WORKGROUP
 
+#if GLINT_RAY_GENERATION
+
+// Neighbours store the other keys of the word.
+void storeKey(uint index, uint key) {
+    KeyWordArray words = KeyWordArray(GLINT_FRAME.bucketKeys);
+    uint shift = index % kKeysOfWord * kKeyBits;
+    atomicAnd(words.data[index / kKeysOfWord], ~(0xFFFFFFFFu >> (32u - kKeyBits) << shift));
+    atomicOr(words.data[index / kKeysOfWord], key << shift);
+}
+
+#else
+
+shared uint keysOfGroup[kRayGroupSize];
+
+// One thread stores all keys of a word. All threads of the workgroup have to call, those beyond the list with key 0.
+void storeKey(uint index, uint key) {
+    keysOfGroup[gl_LocalInvocationIndex] = key;
+    barrier();
+    uint firstKey = gl_LocalInvocationIndex * kKeysOfWord;
+    uint firstIndex = index - gl_LocalInvocationIndex + firstKey;
+    if (firstKey < kRayGroupSize && firstIndex < GLINT_FRAME.rayDispatch.data[0].elementCount) {
+        uint word = 0u;
+        for (uint i = 0u; i < kKeysOfWord; ++i) {
+            word |= keysOfGroup[firstKey + i] << i * kKeyBits;
+        }
+        KeyWordArray(GLINT_FRAME.bucketKeys).data[firstIndex / kKeysOfWord] = word;
+    }
+}
+
+#endif
+
 void main() {
     uint index = listIndex();
+    uint key = 0u;
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
         RayRecord ray = listedRay(index);
         GLINT_CLOCK_START
@@ -25,7 +57,8 @@ void main() {
         keepTracedHit(ray, hit);
 #endif
         storeHit(index, recordOf(hit));
-        storeKey(index, bucketOfGeometry(hit.geometry));
+        key = bucketOfGeometry(hit.geometry);
         GLINT_CLOCK_STOP
     }
+    storeKey(index, key);
 }
