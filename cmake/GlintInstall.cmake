@@ -4,8 +4,8 @@ include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_opacity glint_package glint_runtime)
 if(GLINT_BUILD_COMPILER)
-  # glint_base, glint_image and glint_synthetic, as glint_package, are what the others link; they are no interface of their own.
-  list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_synthetic glint_scene_view
+  # glint_base, glint_image, glint_inspect and glint_synthetic, as glint_package, are what the others link; they are no interface of their own.
+  list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_inspect glint_synthetic glint_scene_view
        glint_measure glint)
 endif()
 install(TARGETS ${glint_targets} EXPORT GlintTargets
@@ -20,7 +20,7 @@ install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/
 if(GLINT_BUILD_COMPILER)
   # The headers that those of the libraries include. All others are internal.
   foreach(header base/files.h base/memo.h emit/compile.h emit/glsl/unit.h emit/material_layout.h gltf/animation.h gltf/import.h gltf/scene.h gltf/scene_list.h gltf/texels/fit.h gltf/texels/texture_use.h image/error.h plan/cost.h plan/effects.h
-                 materials/effect_declaration.h materials/expression.h materials/interval.h plan/lock_ids.h materials/material.h materials/material_model.h plan/merge.h plan/plan.h plan/frame_rounds.h plan/strategy_choice.h
+                 materials/effect_declaration.h materials/expression.h materials/interval.h plan/lock_ids.h materials/material.h materials/material_model.h plan/merge.h plan/plan.h plan/frame_rounds.h plan/gpu_costs.h plan/strategy_choice.h
                  plan/strategy_cost.h settings/compile_settings.h settings/configuration.h settings/settings.h settings/table.h spirv/statistics.h)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})

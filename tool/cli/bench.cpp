@@ -1,5 +1,6 @@
 // glint bench: what each setting costs in time, and what it gains in accuracy.
 #include "base/clock.h"
+#include "base/files.h"
 #include "cli/bench/arguments.h"
 #include "cli/bench/calibrate.h"
 #include "cli/bench/text.h"
@@ -7,8 +8,10 @@
 #include "cli/commands.h"
 #include "cli/compile/cache.h"
 #include "cli/render/pipeline_cache.h"
+#include "cli/report.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
+#include "measure/device_report.h"
 #include "measure/report_json.h"
 
 #include <glint/measure/bench.h>
@@ -18,6 +21,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace glint::cli {
@@ -107,6 +111,57 @@ int run(const Console& console, const BenchArguments& arguments) {
     return kExitDone;
 }
 
+int reportDevice(const Console& console, const BenchArguments& arguments) {
+    const std::string& file = arguments.calibrate.deviceReport;
+    if (Status writable = checkOutputFile(file); !writable) {
+        return fail(console, writable.error());
+    }
+    CompileCache cache(arguments.cache, "");
+    std::optional<gltf::Scene> scene;
+    if (!arguments.render.scene.empty()) {
+        const Result<gltf::ImportOptions> import =
+            importOptions(arguments.render, ImageReading::Files, cache.store());
+        if (!import) {
+            return fail(console, import.error());
+        }
+        Result<gltf::Scene> read = importScene(arguments.render.scene, *import);
+        if (!read) {
+            return fail(console, read.error());
+        }
+        console.report(read->warnings);
+        scene = std::move(*read);
+    }
+    const measure::DeviceReportSettings settings{arguments.render,
+                                                 static_cast<std::uint32_t>(arguments.rounds),
+                                                 arguments.render.frame.seed + 1, arguments.quick};
+    const Result<base::Json> report = measure::makeDeviceReport(console, settings, scene ? &*scene : nullptr,
+                                                                cache.modules(), cache.store());
+    cache.close(console);
+    if (!report) {
+        return fail(console, report.error());
+    }
+    if (Status written = base::writeFile(file, base::toText(*report)); !written) {
+        return fail(console, written.error());
+    }
+    if (console.refused()) {
+        return kExitFailed;
+    }
+    if (console.isJson()) {
+        console.result(*report);
+    } else {
+        console.print(fmt::format("{} tells of {}: docs/performance.md says where to send it.\n", file,
+                                  report->at("machine").at("device").get<std::string>()));
+    }
+    return kExitDone;
+}
+
+int runChosen(const Console& console, const BenchArguments& arguments) {
+    if (!arguments.calibrate.deviceReport.empty()) {
+        return reportDevice(console, arguments);
+    }
+    return arguments.calibrate.enabled ? calibrate(console, arguments) : run(console, arguments);
+}
+
 }  // namespace
 
 void addBench(CLI::App& app, Action& chosen) {
@@ -116,9 +171,7 @@ void addBench(CLI::App& app, Action& chosen) {
     addBenchOptions(command, *arguments);
     command.callback([arguments, &command, &chosen] {
         settleBench(command, *arguments);
-        chosen = [arguments](const Console& console) {
-            return arguments->calibrate.enabled ? calibrate(console, *arguments) : run(console, *arguments);
-        };
+        chosen = [arguments](const Console& console) { return runChosen(console, *arguments); };
     });
 }
 

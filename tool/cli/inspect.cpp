@@ -1,6 +1,7 @@
 // glint inspect: shows the contents of a package.
 #include "cli/command_line.h"
 #include "cli/commands.h"
+#include "cli/inspect/pipelines.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "cli/traffic.h"
@@ -326,6 +327,7 @@ std::string toText(const inspect::InspectedPackage& inspected,
 struct InspectArguments {
     std::string folder;
     std::string disassemble;  // empty: an overview instead
+    PackagePipelineArguments pipelines;
 };
 
 int tell(const Console& console, const inspect::InspectedPackage& inspected) {
@@ -352,6 +354,9 @@ int show(const Console& console, const InspectArguments& arguments) {
     const Result<Package> package = Package::load(arguments.folder);
     if (!package) {
         return fail(console, package.error());
+    }
+    if (arguments.pipelines.enabled) {
+        return showPipelines(console, *package, arguments.folder, arguments.pipelines);
     }
     const Result<inspect::Manifest> manifest = inspect::readManifest(arguments.folder);
     if (!manifest) {
@@ -381,6 +386,8 @@ void addInspect(CLI::App& app, Action& chosen) {
             "print modules as SPIR-V assembly instead: those of a\n"
             "shader by ID or name, of a role, or of a file (default:\n"
             "off)");
+    addPipelineReportOptions(command, arguments->pipelines);
+    command.get_option("--disassemble")->excludes(command.get_option("--pipelines"));
     command.callback([arguments, &chosen] {
         chosen = [arguments](const Console& console) { return show(console, *arguments); };
     });

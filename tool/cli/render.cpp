@@ -11,6 +11,7 @@
 #include "cli/render/report.h"
 #include "gltf/import.h"
 #include "image/image_file.h"
+#include "inspect/pipelines.h"
 
 #include <glint/context.h>
 #include <glint/measure/observer.h>
@@ -78,10 +79,7 @@ Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
     HeadlessOptions options = measure::deviceOptions(arguments);
     options.pipelineStatistics = arguments.pipelineStatistics;
     if (given && *given) {
-        const Package& package = **given;
-        options.positionFetch = package.positionFetch();
-        options.shaderClock = (package::demandsOf(package.layers()) & package::kLayerClock) != 0;
-        options.shaderFloat16 = package.precision() == package::ShadingPrecision::Half;
+        inspect::requirePackage(**given, options);
     }
     return Context::createHeadless(options);
 }

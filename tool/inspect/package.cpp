@@ -110,6 +110,7 @@ Result<Manifest> readManifest(const std::filesystem::path& folder) {
             manifest.features.lobes |= feature.isLobe ? feature.mask() : 0;
         }
         for (const auto& shader : json.at("shaders")) {
+            manifest.shares[shader.at("id").get<std::uint32_t>()] = shader.at("share").get<double>();
             for (const auto& material : shader.at("materials")) {
                 const auto name = material.at("name").get<std::string>();
                 if (!name.empty()) {

@@ -31,6 +31,7 @@ struct Manifest {
     materials::MaterialModel features;  // names and bits of features alone
     // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
+    std::map<std::uint32_t, double> shares;  // of the expected hits, by shader ID
 };
 
 // Has the errors of readFile(), and "manifest-format" if the file is not JSON or lacks a member.

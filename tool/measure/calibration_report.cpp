@@ -45,37 +45,6 @@ base::Json strategyToJson(const StrategyMeasure& measure) {
               {"wrong", measure.difference.isWrong()}}}};
 }
 
-base::Json entryToJson(const CalibrationEntry& entry) {
-    const CalibrationPoint& point = entry.point;
-    base::Json work = base::Json::array();
-    for (const CaseWork& one : point.work) {
-        work.push_back({{"share", one.share}, {"instructions", one.instructions}, {"fetches", one.fetches}});
-    }
-    base::Json strategies = base::Json::array();
-    for (const StrategyMeasure& measure : entry.strategies) {
-        strategies.push_back(strategyToJson(measure));
-    }
-    return {{"cases", point.cases},
-            {"cost", point.cost},
-            {"coherence", point.coherence},
-            {"shares", entry.shares},
-            {"lights", entry.lights},
-            {"shadows", entry.shadows},
-            {"width", entry.width},
-            {"height", entry.height},
-            {"rays", static_cast<std::uint64_t>(point.rays)},
-            {"hits", entry.hits},
-            {"hitShare", point.hitShare},
-            {"coherentShare", point.coherentShare},
-            {"filledCases", entry.filledCases},
-            {"instructions", meanOf(point.work, &CaseWork::instructions)},
-            {"fetches", meanOf(point.work, &CaseWork::fetches)},
-            {"work", std::move(work)},
-            {"samples", entry.samples},
-            {"strategies", std::move(strategies)},
-            {"fastest", entry.fastest}};
-}
-
 }  // namespace
 
 double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member) {
@@ -112,10 +81,41 @@ void settleEntry(CalibrationEntry& entry) {
     }
 }
 
+base::Json toJson(const CalibrationEntry& entry) {
+    const CalibrationPoint& point = entry.point;
+    base::Json work = base::Json::array();
+    for (const CaseWork& one : point.work) {
+        work.push_back({{"share", one.share}, {"instructions", one.instructions}, {"fetches", one.fetches}});
+    }
+    base::Json strategies = base::Json::array();
+    for (const StrategyMeasure& measure : entry.strategies) {
+        strategies.push_back(strategyToJson(measure));
+    }
+    return {{"cases", point.cases},
+            {"cost", point.cost},
+            {"coherence", point.coherence},
+            {"shares", entry.shares},
+            {"lights", entry.lights},
+            {"shadows", entry.shadows},
+            {"width", entry.width},
+            {"height", entry.height},
+            {"rays", static_cast<std::uint64_t>(point.rays)},
+            {"hits", entry.hits},
+            {"hitShare", point.hitShare},
+            {"coherentShare", point.coherentShare},
+            {"filledCases", entry.filledCases},
+            {"instructions", meanOf(point.work, &CaseWork::instructions)},
+            {"fetches", meanOf(point.work, &CaseWork::fetches)},
+            {"work", std::move(work)},
+            {"samples", entry.samples},
+            {"strategies", std::move(strategies)},
+            {"fastest", entry.fastest}};
+}
+
 base::Json toJson(const CalibrationReport& report) {
     base::Json points = base::Json::array();
     for (const CalibrationEntry& entry : report.entries) {
-        points.push_back(entryToJson(entry));
+        points.push_back(toJson(entry));
     }
     return {{"format", "glint-calibration"},
             {"version", 1},

@@ -13,5 +13,6 @@ base::Json toJson(const BenchMachine& machine);
 base::Json toJson(const Interval& interval);
 base::Json toJson(const BenchReport& report);
 base::Json toJson(const CalibrationReport& report);
+base::Json toJson(const CalibrationEntry& entry);  // one of its points
 
 }  // namespace glint::measure

@@ -238,7 +238,7 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
     return okStatus();
 }
 
-Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
+std::vector<VkDescriptorSetLayoutBinding> setBindings(const Context::State& context, const FrameSize& size) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
         if (bindsImage(size, binding)) {
@@ -249,24 +249,25 @@ Status createSet(Context::State& context, const FrameSize& size, FrameResources&
         bindings.push_back(
             {gpu::kBindingLayers + i, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, passStages(context), nullptr});
     }
-    std::vector<VkDescriptorPoolSize> poolSizes{
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, static_cast<std::uint32_t>(bindings.size())}};
     if (size.environmentMap) {
-        constexpr VkDescriptorType kMap = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-        bindings.push_back({gpu::kBindingEnvironment, kMap, 1, passStages(context), nullptr});
-        poolSizes.push_back({kMap, 1});
+        bindings.push_back({gpu::kBindingEnvironment, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+                            passStages(context), nullptr});
     }
-    VkDescriptorSetLayoutCreateInfo layoutInfo{};
-    layoutInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    layoutInfo.bindingCount = static_cast<std::uint32_t>(bindings.size());
-    layoutInfo.pBindings = bindings.data();
-    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    return bindings;
+}
+
+Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    Result<UniqueSetLayout> made = createFrameSetLayout(context, size);
+    if (!made) {
+        return made.error();
+    }
+    frame.setLayout = std::move(*made);
+    const VkDescriptorSetLayout layout = frame.setLayout.get();
     const VkDevice device = context.handles.device;
-    VkResult result = context.vk.CreateDescriptorSetLayout(device, &layoutInfo, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDescriptorSetLayout", result);
+    std::vector<VkDescriptorPoolSize> poolSizes;
+    for (const VkDescriptorSetLayoutBinding& binding : setBindings(context, size)) {
+        poolSizes.push_back({binding.descriptorType, binding.descriptorCount});
     }
-    frame.setLayout = UniqueSetLayout(context, layout);
 
     VkDescriptorPoolCreateInfo poolInfo{};
     poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
@@ -274,7 +275,7 @@ Status createSet(Context::State& context, const FrameSize& size, FrameResources&
     poolInfo.poolSizeCount = static_cast<std::uint32_t>(poolSizes.size());
     poolInfo.pPoolSizes = poolSizes.data();
     VkDescriptorPool pool = VK_NULL_HANDLE;
-    result = context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
+    VkResult result = context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateDescriptorPool", result);
     }
@@ -335,6 +336,21 @@ VkFormat vulkanFormat(package::LayerFormat format) {
 const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding) {
     const DeviceImage& own = frame.images[binding];
     return own.handle.get() != VK_NULL_HANDLE ? own : frame.images[gpu::kBindingAccumulated];
+}
+
+Result<UniqueSetLayout> createFrameSetLayout(Context::State& context, const FrameSize& size) {
+    const std::vector<VkDescriptorSetLayoutBinding> bindings = setBindings(context, size);
+    VkDescriptorSetLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    info.bindingCount = static_cast<std::uint32_t>(bindings.size());
+    info.pBindings = bindings.data();
+    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+    const VkResult result =
+        context.vk.CreateDescriptorSetLayout(context.handles.device, &info, nullptr, &layout);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateDescriptorSetLayout", result);
+    }
+    return UniqueSetLayout(context, layout);
 }
 
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame) {

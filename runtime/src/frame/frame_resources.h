@@ -193,6 +193,9 @@ VkFormat vulkanFormat(package::LayerFormat format);
 // write the light of the primary surfaces there, and compose() adds to it.
 const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding);
 
+// Makes the layout of set 1, which follows from the package alone. Error "vulkan-call".
+Result<UniqueSetLayout> createFrameSetLayout(Context::State& context, const FrameSize& size);
+
 // Makes all resources, or with FrameSize::hostRays the lists and counters alone. The first commands that use
 // the images must come after those of prepareImages().
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame);

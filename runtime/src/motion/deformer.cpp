@@ -121,7 +121,7 @@ Result<std::unique_ptr<Deformer>> Deformer::create(Context::State& context, cons
     return deformer;
 }
 
-Status Deformer::createPipeline(const Package& package) {
+Result<UniquePipelineLayout> createDeformLayout(Context::State& context) {
     VkPushConstantRange range{};
     range.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
     range.size = sizeof(gpu::DeformConstants);
@@ -130,14 +130,21 @@ Status Deformer::createPipeline(const Package& package) {
     info.pushConstantRangeCount = 1;
     info.pPushConstantRanges = &range;
     VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result =
-        context_->vk.CreatePipelineLayout(context_->handles.device, &info, nullptr, &layout);
+    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreatePipelineLayout", result);
     }
-    layout_ = UniquePipelineLayout(*context_, layout);
+    return UniquePipelineLayout(context, layout);
+}
+
+Status Deformer::createPipeline(const Package& package) {
+    Result<UniquePipelineLayout> layout = createDeformLayout(*context_);
+    if (!layout) {
+        return layout.error();
+    }
+    layout_ = std::move(*layout);
     Result<UniquePipeline> pipeline =
-        createComputePipeline(*context_, package.spirv({package::ModuleRole::Deform}), layout);
+        createComputePipeline(*context_, package.spirv({package::ModuleRole::Deform}), layout_.get());
     if (!pipeline) {
         return pipeline.error();
     }

@@ -27,6 +27,9 @@ struct DeformedBuffers {
     DeformedAddresses addresses;
 };
 
+// Makes the layout of the pipeline that deforms. Error "vulkan-call".
+Result<UniquePipelineLayout> createDeformLayout(Context::State& context);
+
 class Deformer {
 public:
     // Queues copies in `uploader`, which must finish before recordDeform(). Fills `target`. `target`,

@@ -15,8 +15,8 @@ std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount) {
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(jobCount, 1, most));
 }
 
-Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
-                                                VkPipelineCreateFlags flags, std::uint32_t threads) {
+std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs, VkPipelineCreateFlags flags,
+                                               std::uint32_t threads) {
     // The longest job must not begin last, as the others would then wait for it.
     std::vector<std::size_t> order(jobs.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -44,15 +44,30 @@ Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> job
         helper.join();
     }
 
-    std::vector<MadePipeline> made;
+    std::vector<Result<MadePipeline>> made;
     made.reserve(jobs.size());
     for (std::size_t job = 0; job < jobs.size(); ++job) {
         Result<UniquePipeline>& result = *results[job];
         if (!result) {
+            made.emplace_back(result.error());
+            continue;
+        }
+        made.emplace_back(MadePipeline{jobs[job].name,
+                                       std::make_shared<const UniquePipeline>(std::move(*result)),
+                                       creations[job].feedback, jobs[job].identity});
+    }
+    return made;
+}
+
+Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
+                                                VkPipelineCreateFlags flags, std::uint32_t threads) {
+    std::vector<MadePipeline> made;
+    made.reserve(jobs.size());
+    for (Result<MadePipeline>& result : tryPipelines(jobs, flags, threads)) {
+        if (!result) {
             return result.error();
         }
-        made.push_back({jobs[job].name, std::make_shared<const UniquePipeline>(std::move(*result)),
-                        creations[job].feedback, jobs[job].identity});
+        made.push_back(std::move(*result));
     }
     return made;
 }

@@ -33,9 +33,12 @@ struct MadePipeline {
 // at once.
 std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount);
 
-// Returns the pipelines in the order of their jobs. The largest job begins first. `threads` includes the
-// calling thread and must not be 0; if the system gives fewer threads, fewer are used. All jobs run. The
-// error is that of the first job that failed.
+// Returns the pipelines, or why there is none, in the order of their jobs. The largest job begins first.
+// `threads` includes the calling thread and must not be 0; if the system gives fewer threads, fewer are used.
+std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs, VkPipelineCreateFlags flags,
+                                               std::uint32_t threads);
+
+// As tryPipelines(). All jobs run. The error is that of the first job that failed.
 Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
                                                 VkPipelineCreateFlags flags, std::uint32_t threads);
 

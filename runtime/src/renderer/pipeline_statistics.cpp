@@ -113,6 +113,15 @@ bool isCacheHit(const VkPipelineCreationFeedback& feedback) {
 
 }  // namespace
 
+PipelineStatistics describe(const MadePipeline& pipeline) {
+    PipelineStatistics statistics{pipeline.name, {}, {}, {}};
+    if (isKnown(pipeline.feedback)) {
+        statistics.creationMs = static_cast<double>(pipeline.feedback.duration) / kNanosecondsInMs;
+        statistics.cacheHit = isCacheHit(pipeline.feedback);
+    }
+    return statistics;
+}
+
 Renderer::PipelineMaking Renderer::pipelineMaking() const {
     const Pipelines& pipelines = state_->pipelines;
     PipelineMaking making{pipelines.threads, pipelines.creationMs, 0};
@@ -139,12 +148,8 @@ Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const {
         if (!executables) {
             return executables.error();
         }
-        PipelineStatistics statistics{pipeline.name, {}, {}, std::move(*executables)};
-        if (isKnown(pipeline.feedback)) {
-            statistics.creationMs = static_cast<double>(pipeline.feedback.duration) / kNanosecondsInMs;
-            statistics.cacheHit = isCacheHit(pipeline.feedback);
-        }
-        list.push_back(std::move(statistics));
+        list.push_back(describe(pipeline));
+        list.back().executables = std::move(*executables);
     }
     return list;
 }

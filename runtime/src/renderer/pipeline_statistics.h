@@ -2,6 +2,7 @@
 #pragma once
 
 #include "context/context_state.h"
+#include "renderer/pipeline_jobs.h"
 
 #include <glint/pipeline_statistics.h>
 
@@ -12,5 +13,8 @@ namespace glint {
 // Requires DeviceHandles::pipelineStatistics and a pipeline that was made with
 // VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Error "vulkan-call".
 Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline);
+
+// Returns how the pipeline was made, without its executables.
+PipelineStatistics describe(const MadePipeline& pipeline);
 
 }  // namespace glint

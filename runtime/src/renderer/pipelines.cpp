@@ -28,23 +28,14 @@ Status createLayout(Context::State& context, const LayoutSource& source, Pipelin
         pipelines.pushStages = source.givenPushStages;
         return okStatus();
     }
-    pipelines.pushStages = pushStages(context);
-    VkPushConstantRange range{};
-    range.stageFlags = pipelines.pushStages;
-    range.size = sizeof(gpu::PushConstants);
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = static_cast<std::uint32_t>(source.sets.size());
-    info.pSetLayouts = source.sets.data();
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    const VkResult result =
-        context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &pipelines.layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
+    Result<UniquePipelineLayout> layout =
+        createPipelineLayout(context, source.sets, sizeof(gpu::PushConstants));
+    if (!layout) {
+        return layout.error();
     }
-    pipelines.ownLayout =
-        std::make_shared<const UniquePipelineLayout>(UniquePipelineLayout(context, pipelines.layout));
+    pipelines.pushStages = pushStages(context);
+    pipelines.layout = layout->get();
+    pipelines.ownLayout = std::make_shared<const UniquePipelineLayout>(std::move(*layout));
     return okStatus();
 }
 
@@ -330,6 +321,24 @@ bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
 
 VkShaderStageFlags pushStages(const Context::State& context) {
     return VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
+}
+
+Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
+                                                  std::span<const VkDescriptorSetLayout> sets,
+                                                  std::uint32_t pushBytes) {
+    const VkPushConstantRange range{pushStages(context), 0, pushBytes};
+    VkPipelineLayoutCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
+    info.pSetLayouts = sets.data();
+    info.pushConstantRangeCount = 1;
+    info.pPushConstantRanges = &range;
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreatePipelineLayout", result);
+    }
+    return UniquePipelineLayout(context, layout);
 }
 
 std::string pipelineName(const Package& package, const package::ModuleKey& key) {

@@ -118,6 +118,11 @@ bool runsFallback(const PipelineChoice& choice, package::ModuleRole role);
 // Returns the stages that push constants are for.
 VkShaderStageFlags pushStages(const Context::State& context);
 
+// Makes a layout with push constants for all stages. Error "vulkan-call".
+Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
+                                                  std::span<const VkDescriptorSetLayout> sets,
+                                                  std::uint32_t pushBytes);
+
 // Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
 std::string pipelineName(const Package& package, const package::ModuleKey& key);
 

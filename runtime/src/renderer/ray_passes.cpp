@@ -157,6 +157,7 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
             const HitShaderRoles roles = hitShaderRoles(choice.strategy);
             if (choice.background) {
                 RayPass& fallback = passes.emplace_back(pass);
+                fallback.name = pipelineName(package, {roles.fallbackHit, 0, key.tracer});
                 fallback.turn = choice.draft ? PipelineTurn::Fixed : PipelineTurn::First;
                 fallback.source = hitFallbackSource(package, roles);
             }

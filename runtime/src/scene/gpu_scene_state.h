@@ -104,6 +104,15 @@ struct SceneSet {
     VkDescriptorSet set = VK_NULL_HANDLE;
 };
 Status createSetLayout(GpuScene::State& state);
+
+// How many textures and samplers the arrays of set 0 have, and whether some of them may be absent.
+struct SceneSetSize {
+    std::uint32_t textures = 1;
+    std::uint32_t samplers = 1;
+    bool hasRoom = false;
+};
+// Error "vulkan-call".
+Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const SceneSetSize& size);
 // `absent` is bound where a texture has no image, and where there is no texture at all.
 Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
                               VkImageView absent);

@@ -12,26 +12,28 @@ namespace {
 
 constexpr std::size_t kBindings = 3;
 
-std::array<VkDescriptorSetLayoutBinding, kBindings> makeBindings(const GpuScene::State& state) {
-    const std::uint32_t textures =
-        std::max(state.textureRoom, static_cast<std::uint32_t>(state.textures.size()));
-    const std::uint32_t samplers =
-        std::max(state.samplerRoom, static_cast<std::uint32_t>(state.samplers.size()));
-    const VkShaderStageFlags stages = VK_SHADER_STAGE_FRAGMENT_BIT | passStages(state.context);
-    return {
-        {{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, stages, nullptr},
-         {gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures, stages, nullptr},
-         {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers, stages, nullptr}}};
+SceneSetSize sizeOf(const GpuScene::State& state) {
+    return {std::max(state.textureRoom, static_cast<std::uint32_t>(state.textures.size())),
+            std::max(state.samplerRoom, static_cast<std::uint32_t>(state.samplers.size())),
+            state.textureRoom > 0};
+}
+
+std::array<VkDescriptorSetLayoutBinding, kBindings> makeBindings(const Context::State& context,
+                                                                 const SceneSetSize& size) {
+    const VkShaderStageFlags stages = VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
+    return {{{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, stages, nullptr},
+             {gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, size.textures, stages, nullptr},
+             {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, size.samplers, stages, nullptr}}};
 }
 
 }  // namespace
 
-Status createSetLayout(GpuScene::State& state) {
-    const auto bindings = makeBindings(state);
+Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const SceneSetSize& size) {
+    const auto bindings = makeBindings(context, size);
     // Update-after-bind gives higher limits: devices that otherwise see 16 textures then see 500,000. A scene
     // with room has places without a texture or sampler.
     VkDescriptorBindingFlags room = 0;
-    if (state.textureRoom > 0) {
+    if (size.hasRoom) {
         room = VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT;
     }
     const VkDescriptorBindingFlags arrays = VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT | room;
@@ -48,11 +50,19 @@ Status createSetLayout(GpuScene::State& state) {
     info.pBindings = bindings.data();
     VkDescriptorSetLayout layout = VK_NULL_HANDLE;
     const VkResult result =
-        state.context.vk.CreateDescriptorSetLayout(state.context.handles.device, &info, nullptr, &layout);
+        context.vk.CreateDescriptorSetLayout(context.handles.device, &info, nullptr, &layout);
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateDescriptorSetLayout", result);
     }
-    state.setLayout = UniqueSetLayout(state.context, layout);
+    return UniqueSetLayout(context, layout);
+}
+
+Status createSetLayout(GpuScene::State& state) {
+    Result<UniqueSetLayout> layout = createSceneSetLayout(state.context, sizeOf(state));
+    if (!layout) {
+        return layout.error();
+    }
+    state.setLayout = std::move(*layout);
     return okStatus();
 }
 
@@ -60,7 +70,7 @@ namespace {
 
 Result<SceneSet> allocateSet(const GpuScene::State& state) {
     std::array<VkDescriptorPoolSize, kBindings> sizes{};
-    const auto bindings = makeBindings(state);
+    const auto bindings = makeBindings(state.context, sizeOf(state));
     for (std::size_t i = 0; i < kBindings; ++i) {
         sizes[i] = {bindings[i].descriptorType, bindings[i].descriptorCount};
     }

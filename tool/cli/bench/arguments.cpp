@@ -57,12 +57,11 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
             "folder for index.html, bench.json, settings.json and\nimages/; with --calibrate for "
-            "calibration.json")
-        .required();
+            "calibration.json; required but for --device-report");
     addSceneOptions(command, arguments.render);
     // Without --calibrate, checkCalibrateOptions() requires it.
     command.get_option("SCENE")->required(false)->description(
-        "the scene, .gltf or .glb; none with --calibrate");
+        "the scene, .gltf or .glb; none with --calibrate, optional\nwith --device-report");
     const std::string sweep = "Sweep";
     addFlag(command, "--quick", arguments.quick,
             fmt::format("fewer values, pairs and rounds, a less certain reference,\n"
@@ -151,7 +150,10 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
         arguments.candidates.push_back(parseCandidate(text));
     }
     if (arguments.rounds == 0) {
-        arguments.rounds = arguments.quick || arguments.calibrate.enabled ? kQuickRounds : kRounds;
+        const bool isShort = !arguments.calibrate.deviceReport.empty() && arguments.quick;
+        arguments.rounds = isShort                                          ? 1
+                           : arguments.quick || arguments.calibrate.enabled ? kQuickRounds
+                                                                            : kRounds;
     }
     if (arguments.referenceError == 0.0) {
         arguments.referenceError = arguments.quick ? kQuickReferenceError : kReferenceError;

@@ -22,6 +22,9 @@ constexpr std::uint64_t kMaxRays = 64 * kMillion;
 
 // A calibration takes the options of these groups, and the options listed below. It decides everything else
 // itself.
+constexpr const char* kDeviceReport = "--device-report";
+// A report of the device takes a scene, and these besides the options of a calibration that are no settings.
+constexpr std::string_view kOfDeviceReport[] = {kDeviceReport, "SCENE", "--quick", "--rounds", "--seed"};
 constexpr std::string_view kTakenGroups[] = {kGroup, "Device", "Output", "Report"};
 constexpr std::string_view kTaken[] = {
     "--quick",       "--rounds",    "--output",     "--seed",
@@ -80,6 +83,13 @@ bool isTaken(const CLI::Option& option) {
            std::ranges::find(kTaken, option.get_name()) != std::end(kTaken);
 }
 
+bool isOfDeviceReport(const CLI::Option& option) {
+    const std::string group = option.get_group();
+    return std::ranges::find(kOfDeviceReport, option.get_name()) != std::end(kOfDeviceReport) ||
+           (group != kGroup && option.get_name() != "--output" &&
+            std::ranges::find(kTakenGroups, group) != std::end(kTakenGroups));
+}
+
 }  // namespace
 
 void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
@@ -116,6 +126,12 @@ void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
     addText(command, "--pictures", arguments.pictures, "DIR",
             "with --calibrate: write the smallest picture of each\nscene here, too")
         .group(kGroup);
+    addText(command, kDeviceReport, arguments.deviceReport, "FILE.json",
+            "write what Glint's makers need to know of this device:\n"
+            "times of the strategies on five generated scenes and on\n"
+            "SCENE, if there is one, and statistics of all pipelines.\n"
+            "It has no names of hosts, users or files (default: off)")
+        .group("Device report");
 }
 
 void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& arguments) {
@@ -124,6 +140,13 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
             continue;
         }
         const std::string name = option->get_name();
+        if (!arguments.deviceReport.empty()) {
+            if (!isOfDeviceReport(*option)) {
+                throw CLI::ValidationError(name,
+                                           "can't be combined with --device-report; leave out one of them");
+            }
+            continue;
+        }
         if (arguments.enabled && !isTaken(*option)) {
             throw CLI::ValidationError(name,
                                        option->get_positional()
@@ -134,8 +157,14 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
             throw CLI::ValidationError(name, "needs --calibrate");
         }
     }
+    if (!arguments.deviceReport.empty()) {
+        return;
+    }
     if (!arguments.enabled && command.get_option("SCENE")->count() == 0) {
         throw CLI::RequiredError("SCENE");
+    }
+    if (command.get_option("--output")->count() == 0) {
+        throw CLI::RequiredError("--output");
     }
     if (arguments.shadows && arguments.lights == 0) {
         throw CLI::ValidationError("--calibrate-shadows", "needs lights; give --calibrate-lights 1 or more");

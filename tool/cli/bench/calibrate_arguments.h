@@ -21,7 +21,8 @@ struct CalibrateArguments {
     std::string shares = "uniform";
     std::int64_t lights = 0;
     bool shadows = false;
-    std::string pictures;  // folder; empty: none are written
+    std::string pictures;      // folder; empty: none are written
+    std::string deviceReport;  // file; empty: none is made
 };
 
 void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments);

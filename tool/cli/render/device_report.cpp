@@ -5,70 +5,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <cctype>
+#include <cmath>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 namespace glint::cli {
 
 namespace {
-
-base::Json stagesToJson(VkShaderStageFlags stages) {
-    constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
-        {VK_SHADER_STAGE_VERTEX_BIT, "vertex"},       {VK_SHADER_STAGE_FRAGMENT_BIT, "fragment"},
-        {VK_SHADER_STAGE_COMPUTE_BIT, "compute"},     {VK_SHADER_STAGE_RAYGEN_BIT_KHR, "ray-generation"},
-        {VK_SHADER_STAGE_ANY_HIT_BIT_KHR, "any-hit"}, {VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, "closest-hit"},
-        {VK_SHADER_STAGE_MISS_BIT_KHR, "miss"}};
-    base::Json list = base::Json::array();
-    for (const auto& [bit, name] : kNames) {
-        if ((stages & bit) != 0) {
-            list.push_back(name);
-        }
-    }
-    return list;
-}
-
-// The names match the alternatives of PipelineStatistic::value.
-constexpr std::array kFormats{"bool", "int64", "uint64", "float64"};
-static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
-
-base::Json toJson(const PipelineExecutable& executable) {
-    base::Json statistics = base::Json::array();
-    for (const PipelineStatistic& statistic : executable.statistics) {
-        statistics.push_back(
-            {{"name", statistic.name},
-             {"description", statistic.description},
-             {"format", kFormats[statistic.value.index()]},
-             {"value", std::visit([](auto value) { return base::Json(value); }, statistic.value)}});
-    }
-    return {{"name", executable.name},
-            {"description", executable.description},
-            {"stages", stagesToJson(executable.stages)},
-            {"subgroupSize", executable.subgroupSize},
-            {"statistics", std::move(statistics)}};
-}
-
-base::Json toJson(const std::vector<PipelineStatistics>& pipelines) {
-    base::Json list = base::Json::array();
-    for (const PipelineStatistics& pipeline : pipelines) {
-        base::Json executables = base::Json::array();
-        for (const PipelineExecutable& executable : pipeline.executables) {
-            executables.push_back(toJson(executable));
-        }
-        list.push_back({{"name", pipeline.name},
-                        {"creationMs", base::orNull(pipeline.creationMs)},
-                        {"cacheHit", base::orNull(pipeline.cacheHit)},
-                        {"executables", std::move(executables)}});
-    }
-    return list;
-}
-
-std::string textOf(const PipelineStatistic& statistic) {
-    return std::visit([](auto value) { return fmt::format("{}", value); }, statistic.value);
-}
 
 const char* nameOf(MemoryUse use) {
     switch (use) {
@@ -112,7 +55,14 @@ base::Json cacheToJson(const PipelineReport& report) {
 }
 
 base::Json statisticsToJson(const PipelineReport& report) {
-    return report.statistics ? toJson(*report.statistics) : base::Json(nullptr);
+    if (!report.statistics) {
+        return nullptr;
+    }
+    base::Json list = base::Json::array();
+    for (const PipelineStatistics& pipeline : *report.statistics) {
+        list.push_back(inspect::toJson(pipeline));
+    }
+    return list;
 }
 
 std::string toText(const PipelineReport& report) {
@@ -142,50 +92,31 @@ std::string toText(const StartReport& start) {
         start.rendererMs, start.firstSampleMs);
 }
 
-// The words come from names that, among others, the drivers of NVIDIA, Mesa and AMD use.
-PipelineColumn columnOf(const std::string& statistic) {
-    std::string name = statistic;
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-    const auto hasAny = [&](std::initializer_list<std::string_view> words) {
-        return std::ranges::any_of(
-            words, [&](std::string_view word) { return name.find(word) != std::string::npos; });
-    };
-    if (hasAny({"spill", "fill count"})) {
-        return PipelineColumn::Spills;
-    }
-    if (hasAny({"register", "gpr"})) {
-        return PipelineColumn::Registers;
-    }
-    if (hasAny({"local memory", "scratch", "stack"})) {
-        return PipelineColumn::LocalMemory;
-    }
-    if (hasAny({"binary size", "code size", "size of code"})) {
-        return PipelineColumn::CodeBytes;
-    }
-    return hasAny({"instruction"}) ? PipelineColumn::Instructions : PipelineColumn::None;
-}
-
 std::string tableOf(std::span<const PipelineStatistics> pipelines) {
-    std::vector<std::vector<std::string>> rows{{"pipeline", "executable", "subgroup", "registers", "spills",
-                                                "local memory", "instructions", "code bytes"}};
+    std::vector<std::vector<std::string>> rows{{"pipeline", "executable", "subgroup"}};
+    for (const inspect::FactInfo& info : inspect::factTable()) {
+        rows.front().emplace_back(info.column);
+    }
     for (const PipelineStatistics& pipeline : pipelines) {
         for (const PipelineExecutable& executable : pipeline.executables) {
-            constexpr std::size_t kFirstColumn = 2;  // that of PipelineColumn::None
-            std::vector<std::string> row(rows.front().size(), "-");
-            for (const PipelineStatistic& statistic : executable.statistics) {
-                const PipelineColumn column = columnOf(statistic.name);
-                if (column != PipelineColumn::None) {
-                    std::string& cell = row[kFirstColumn + static_cast<std::size_t>(column)];
-                    cell = cell == "-" ? textOf(statistic) : fmt::format("{} + {}", cell, textOf(statistic));
-                }
+            const inspect::PipelineFacts facts = inspect::factsOf(executable);
+            std::vector<std::string>& row = rows.emplace_back();
+            row = {pipeline.name, executable.name,
+                   executable.subgroupSize > 0 ? std::to_string(executable.subgroupSize) : "-"};
+            for (const inspect::FactInfo& info : inspect::factTable()) {
+                row.push_back(factText(info, facts));
             }
-            row[0] = pipeline.name;
-            row[1] = executable.name;
-            row[kFirstColumn] = executable.subgroupSize > 0 ? std::to_string(executable.subgroupSize) : "-";
-            rows.push_back(std::move(row));
         }
     }
     return formatTable(rows, Detail::Whole);
+}
+
+std::string factText(const inspect::FactInfo& info, const inspect::PipelineFacts& facts) {
+    const std::optional<double>& value = facts.*info.member;
+    if (!value) {
+        return "-";
+    }
+    return info.isLeast ? fmt::format("{:.0f} %", 100.0 * *value) : fmt::format("{}", std::round(*value));
 }
 
 std::uint64_t bytesOf(const std::vector<MemoryItem>& items) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cli/report.h"
+#include "inspect/pipelines.h"
 
 #include <glint/memory_report.h>
 #include <glint/pipeline_statistics.h>
@@ -51,11 +52,10 @@ std::string toText(const PipelineReport& report);
 base::Json toJson(const StartReport& start);
 std::string toText(const StartReport& start);
 
-// The kinds of statistics that a column of tableOf() collects. Drivers name their statistics as they like.
-enum class PipelineColumn { None, Registers, Spills, LocalMemory, Instructions, CodeBytes };
-PipelineColumn columnOf(const std::string& statistic);
-// Returns a table with a row for each executable. A column has each statistic that columnOf() assigns to it.
+// Returns a table with a row for each executable, and the facts that inspect::factsOf() finds.
 std::string tableOf(std::span<const PipelineStatistics> pipelines);
+// Returns a cell of tables: "72", "38 %", or "-".
+std::string factText(const inspect::FactInfo& info, const inspect::PipelineFacts& facts);
 
 struct MemoryReport {
     std::vector<MemoryItem> frame;

@@ -72,6 +72,9 @@ public:
     bool ordersHits() const {
         return ordersHits_;
     }
+    const Package& package() const {
+        return *package_->package;
+    }
     std::uint32_t cases() const {
         return package_->package->caseCount();
     }

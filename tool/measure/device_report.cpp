@@ -1,0 +1,225 @@
+#include "measure/device_report.h"
+
+#include "inspect/pipelines.h"
+#include "measure/calibration_group.h"
+#include "measure/calibration_measure.h"
+#include "measure/commit.h"
+#include "measure/report_json.h"
+
+#include <glint/measure/bed.h>
+#include <glint/measure/machine.h>
+#include <glint/measure/render_settings.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint::measure {
+
+namespace {
+
+// Scenes that share a package: as many cases, as costly, and one scene for each coherence.
+struct Group {
+    int cases = 1;
+    synthetic::Cost cost{};
+    std::vector<synthetic::Coherence> coherences;
+};
+
+// Five scenes: one case, some, and many, whose rays are those of a mirror or go anywhere.
+std::vector<Group> groupsOf(bool quick) {
+    using enum synthetic::Coherence;
+    return {{1, synthetic::Cost::Expensive, {Incoherent}},
+            {quick ? 2 : 16, synthetic::Cost::Cheap, {Coherent, Incoherent}},
+            {quick ? 3 : 64, synthetic::Cost::Expensive, {Coherent, Incoherent}}};
+}
+
+std::uint64_t raysOf(bool quick, bool onCpu) {
+    return quick ? 1024 : onCpu ? 16'000 : 1'000'000;
+}
+
+Result<std::unique_ptr<Context>> open(const compiler::Settings& render, bool positionFetch, bool float16) {
+    HeadlessOptions options = deviceOptions(render);
+    options.pipelineStatistics = true;
+    options.positionFetch = positionFetch;
+    options.shaderFloat16 = float16;
+    return Context::createHeadless(options);
+}
+
+base::Json featuresToJson(const compiler::Settings& render, const Context& context) {
+    const DeviceHandles& handles = context.handles();
+    return {{"rayQuery", (handles.tracers & package::kTracerRayQuery) != 0},
+            {"rayPipeline", (handles.tracers & package::kTracerRayPipeline) != 0},
+            {"positionFetch", open(render, true, false).ok()},
+            {"shaderFloat16", open(render, false, true).ok()},
+            {"opacityMicromaps", handles.opacityMicromaps},
+            {"pipelineStatistics", handles.pipelineStatistics},
+            {"subgroupSize", context.subgroupSize()}};
+}
+
+class DeviceReport {
+public:
+    DeviceReport(const Observer& observer, const DeviceReportSettings& settings, compiler::ModuleCache* cache,
+                 compiler::CacheStore* store)
+        : observer_(observer), settings_(settings), cache_(cache), store_(store) {}
+
+    Result<base::Json> make(const gltf::Scene* scene) {
+        Result<std::unique_ptr<Context>> context = open(settings_.render, false, false);
+        if (!context) {
+            return context.error();
+        }
+        context_ = std::move(*context);
+        for (const Group& group : groupsOf(settings_.quick)) {
+            if (Status measured = measureGroup(group); !measured) {
+                return measured.error();
+            }
+        }
+        base::Json picture = nullptr;
+        if (scene != nullptr) {
+            Result<base::Json> measured = measureScene(*scene);
+            if (!measured) {
+                return measured.error();
+            }
+            picture = std::move(*measured);
+        }
+        if (Status valid = checkValidation(observer_, *context_); !valid) {
+            return valid.error();
+        }
+        return base::Json{{"format", "glint-device-report"},
+                          {"version", 1},
+                          {"tool", GLINT_VERSION},
+                          {"commit", sourceCommit()},
+                          {"date", utcNow()},
+                          {"quick", settings_.quick},
+                          {"rounds", settings_.rounds},
+                          {"machine", toJson(machineOf(*context_))},
+                          {"features", featuresToJson(settings_.render, *context_)},
+                          {"scene", std::move(picture)},
+                          {"generated", std::move(points_)},
+                          {"pipelines", std::move(pipelines_)}};
+    }
+
+private:
+    // Reports carry no folder, so `name` says what the package is of.
+    Status addPipelines(const Package& package, const std::string& name) {
+        observer_.progress("making the pipelines of " + name);
+        inspect::Manifest manifest;
+        manifest.merge = compiler::nameOf(compiler::MergePolicy::None);
+        const Result<inspect::PipelineReport> report =
+            inspect::reportPipelines(*context_, package, manifest, name);
+        if (!report) {
+            return report.error();
+        }
+        pipelines_.push_back(inspect::toJson(*report));
+        return okStatus();
+    }
+
+    Status measureGroup(const Group& group) {
+        CalibrationSettings settings;
+        settings.render = settings_.render;
+        std::vector<synthetic::CasesOptions> scenes;
+        for (const synthetic::Coherence coherence : group.coherences) {
+            synthetic::CasesOptions& options = scenes.emplace_back();
+            options.cases = group.cases;
+            options.cost = group.cost;
+            options.coherence = coherence;
+        }
+        const std::string name = fmt::format("{} {} cases", group.cases, synthetic::nameOf(group.cost));
+        observer_.progress("compiling " + name);
+        const Result<CompiledGroup> compiled =
+            compileGroup(settings, context_->handles().tracers, std::move(scenes), cache_);
+        if (!compiled) {
+            return compiled.error();
+        }
+        Result<CalibrationGroup> uploaded = uploadGroup(*context_, *compiled);
+        if (!uploaded) {
+            return uploaded.error();
+        }
+        for (const CalibrationScene& scene : uploaded->scenes) {
+            observer_.progress(fmt::format("{}, {}", name, synthetic::nameOf(scene.options.coherence)));
+            PointOptions options;
+            options.rays = raysOf(settings_.quick, isOnCpu(*context_));
+            options.rounds = settings_.rounds;
+            options.seed = settings_.seed;
+            const Result<CalibrationEntry> entry =
+                measurePoint(*context_, *uploaded, scene, settings, options);
+            if (!entry) {
+                return entry.error();
+            }
+            points_.push_back(toJson(*entry));
+        }
+        return addPipelines(*uploaded->package, name);
+    }
+
+    // Times the picture of the user's scene with each strategy. A strategy that the device can't run is left
+    // out with its reason.
+    Result<base::Json> measureScene(const gltf::Scene& scene) {
+        observer_.progress("timing the scene");
+        const Result<std::unique_ptr<BenchBed>> bed =
+            BenchBed::create(observer_, settings_.render, scene, cache_, store_);
+        if (!bed) {
+            return bed.error();
+        }
+        base::Json strategies = base::Json::array();
+        for (const package::StrategyInfo& info : package::strategyTable()) {
+            Result<base::Json> measured = measureStrategy(**bed, std::string(info.name));
+            if (!measured) {
+                return measured.error();
+            }
+            strategies.push_back(std::move(*measured));
+        }
+        return base::Json{
+            {"triangles", (*bed)->sceneSize().triangles}, {"instances", (*bed)->sceneSize().instances},
+            {"materials", scene.materials.size()},        {"width", settings_.render.renderer.width},
+            {"height", settings_.render.renderer.height}, {"samples", settings_.render.samples},
+            {"strategies", std::move(strategies)}};
+    }
+
+    Result<base::Json> measureStrategy(BenchBed& bed, const std::string& strategy) {
+        const Result<Mount> mount = bed.mount({{"strategy", strategy}});
+        if (!mount) {
+            return base::Json{{"strategy", strategy}, {"skipped", mount.error().message}};
+        }
+        std::vector<double> times;
+        std::vector<double> hits;
+        // The first picture may include what the driver compiles late.
+        for (std::uint32_t round = 0; round <= settings_.rounds; ++round) {
+            const Result<Exposure> exposure = mount->expose(settings_.seed + round);
+            if (!exposure) {
+                return exposure.error();
+            }
+            if (round > 0) {
+                times.push_back(exposure->milliseconds);
+                hits.push_back(exposure->hitMs);
+            }
+        }
+        if (Status added = addPipelines(mount->package(), "scene, " + strategy); !added) {
+            return added.error();
+        }
+        return base::Json{{"strategy", strategy},
+                          {"cases", mount->cases()},
+                          {"time", toJson(intervalOf(times))},
+                          {"hitTime", toJson(intervalOf(hits))}};
+    }
+
+    const Observer& observer_;
+    const DeviceReportSettings& settings_;
+    compiler::ModuleCache* cache_;
+    compiler::CacheStore* store_;
+    std::unique_ptr<Context> context_;
+    base::Json points_ = base::Json::array();
+    base::Json pipelines_ = base::Json::array();
+};
+
+}  // namespace
+
+Result<base::Json> makeDeviceReport(const Observer& observer, const DeviceReportSettings& settings,
+                                    const gltf::Scene* scene, compiler::ModuleCache* cache,
+                                    compiler::CacheStore* store) {
+    return DeviceReport(observer, settings, cache, store).make(scene);
+}
+
+}  // namespace glint::measure
