@@ -78,12 +78,14 @@ double widthOf(const PipelineExecutable& executable) {
 // is that of 64 lanes, whatever the subgroup; "Latency" is that of one subgroup.
 PipelineFacts radvFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a SIMD, from RDNA 2 on
+    constexpr double kCounted = 32.0;        // lanes
     PipelineFacts facts;
     facts.registers = named("VGPRs");
     facts.spills = named.withWord({"spilled"});
     facts.scratchBytes = scaled(named("Scratch size"), 1.0 / width);
     facts.codeBytes = named("Code size");
-    const std::optional<double> subgroups = named("Subgroups per SIMD");
+    // Subgroups of 64 lanes count twice (radv_get_max_waves()).
+    const std::optional<double> subgroups = scaled(named("Subgroups per SIMD"), kCounted / width);
     facts.occupancy = scaled(subgroups, 1.0 / kMostSubgroups);
     const std::optional<double> busy = named("Inverse Throughput");
     const std::optional<double> latency = named("Latency");

@@ -312,8 +312,7 @@ std::vector<std::string> featuresOf(std::span<const std::uint32_t> words) {
         }
     }
     std::ranges::sort(features);
-    const auto rest = std::ranges::unique(features);
-    features.erase(rest.begin(), rest.end());
+    features.erase(std::unique(features.begin(), features.end()), features.end());
     return features;
 }
 
