@@ -187,7 +187,7 @@ report_of() {
     local checks=()
     [[ $4 == novalidate=0 ]] || checks=(NIR_DEBUG=novalidate)
     # The shims print to standard output before the report.
-    on_gpu "$1" env "${checks[@]}" nice "$glint" inspect "$packages/$2" --pipelines --json \
+    on_gpu "$1" env "${checks[@]}" "$glint" inspect "$packages/$2" --pipelines --json \
         2>"${3%.json}.log" | sed -n '/^{/,$p' >"$3" || true
     grep -q '"format": *"glint-pipelines"' "$3" && return
     rm -f "$3"

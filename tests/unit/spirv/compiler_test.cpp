@@ -85,6 +85,7 @@ TEST(CompileShader, EachRayQueryLoadsItsStructureDirectlyBefore) {
     const auto shader = [](const std::string& structure) {
         return R"(#version 460
 #extension GL_EXT_ray_query : require
+#extension GL_EXT_nonuniform_qualifier : require
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0) uniform accelerationStructureEXT one;
 layout(set = 0, binding = 1) uniform accelerationStructureEXT several[];
