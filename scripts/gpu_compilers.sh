@@ -188,10 +188,9 @@ report_of() {
     [[ $4 == novalidate=0 ]] || checks=(NIR_DEBUG=novalidate)
     # The shims print to standard output before the report.
     on_gpu "$1" env "${checks[@]}" "$glint" inspect "$packages/$2" --pipelines --json \
-        2>"${3%.json}.log" | sed -n '/^{/,$p' >"$3" || true
-    grep -q '"format": *"glint-pipelines"' "$3" && return
-    rm -f "$3"
-    return 1
+        2>"${3%.json}.log" | sed -n '/^{/,$p' >"$3.part" || true
+    grep -q '"format": *"glint-pipelines"' "$3.part" || return 1
+    mv "$3.part" "$3"
 }
 
 measure() {

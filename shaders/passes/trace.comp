@@ -15,9 +15,8 @@
 
 GLINT_RAY_WORKGROUP
 
-#if GLINT_RAY_GENERATION
-
-// Neighbours store the other keys of the word.
+// Neighbours store the other keys of the word. Collecting them in shared memory, which many drivers need for the stacks
+// of their traversal, would cost more than two atomics that return nothing.
 void storeKey(uint index, uint key) {
     KeyWordArray words = KeyWordArray(GLINT_FRAME.bucketKeys);
     uint shift = index % kKeysOfWord * kKeyBits;
@@ -25,30 +24,8 @@ void storeKey(uint index, uint key) {
     atomicOr(words.data[index / kKeysOfWord], key << shift);
 }
 
-#else
-
-shared uint keysOfGroup[kRayGroupSize];
-
-// One thread stores all keys of a word. All threads of the workgroup have to call, those beyond the list with key 0.
-void storeKey(uint index, uint key) {
-    keysOfGroup[gl_LocalInvocationIndex] = key;
-    barrier();
-    uint firstKey = gl_LocalInvocationIndex * kKeysOfWord;
-    uint firstIndex = index - gl_LocalInvocationIndex + firstKey;
-    if (firstKey < kRayGroupSize && firstIndex < GLINT_FRAME.rayDispatch.data[0].elementCount) {
-        uint word = 0u;
-        for (uint i = 0u; i < kKeysOfWord; ++i) {
-            word |= keysOfGroup[firstKey + i] << i * kKeyBits;
-        }
-        KeyWordArray(GLINT_FRAME.bucketKeys).data[firstIndex / kKeysOfWord] = word;
-    }
-}
-
-#endif
-
 void main() {
     uint index = listIndex();
-    uint key = 0u;
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
         RayRecord ray = listedRay(index);
         GLINT_CLOCK_START
@@ -57,8 +34,7 @@ void main() {
         keepTracedHit(ray, hit);
 #endif
         storeHit(index, recordOf(hit));
-        key = bucketOfGeometry(hit.geometry);
+        storeKey(index, bucketOfGeometry(hit.geometry));
         GLINT_CLOCK_STOP
     }
-    storeKey(index, key);
 }
