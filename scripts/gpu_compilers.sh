@@ -257,7 +257,7 @@ if [[ $tables == 0 ]]; then
     case " ${gpus[*]} " in *" a"* | *" dg2 "*) build_mesa ;; esac
     [[ $given_packages == 1 ]] || compile_packages
     measure
-    python3 -B benchmarks/gpu_compilers.py reduce "$reports" "benchmarks/data/gpu_compilers/$label.csv"
+    python3 -B scripts/gpu_compilers.py reduce "$reports" "benchmarks/data/gpu_compilers/$label.csv"
 fi
-python3 -B benchmarks/gpu_compilers.py tables benchmarks/data/gpu_compilers docs/gpu_compilers.md
+python3 -B scripts/gpu_compilers.py tables benchmarks/data/gpu_compilers docs/gpu_compilers.md
 exit "$failed"

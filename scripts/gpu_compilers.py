@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Reduces the reports of scripts/gpu_compilers.sh, and writes the tables of docs/gpu_compilers.md from them.
 
-    benchmarks/gpu_compilers.py reduce REPORTS OUT.csv    REPORTS has GPU.PACKAGE.json of `glint inspect --pipelines`
-    benchmarks/gpu_compilers.py tables FOLDER DOCUMENT    FOLDER has before.csv and after.csv
+    scripts/gpu_compilers.py reduce REPORTS OUT.csv    REPORTS has GPU.PACKAGE.json of `glint inspect --pipelines`
+    scripts/gpu_compilers.py tables FOLDER DOCUMENT    FOLDER has before.csv and after.csv
 
 A row of the CSV is a pipeline on a GPU. The facts are those of `glint inspect --pipelines`; `valid` says whether Mesa's
 checks of its own intermediate code passed for the package, `instructions` is the driver's count.
