@@ -23,7 +23,7 @@ fs::path radvManifest() {
     return {};
 }
 
-class PipelineBudgets : public CommandTest {
+class PackageBudgets : public CommandTest {
 protected:
     // Radeon RX 7900.
     Outcome inspect(const std::string& budget) const {
@@ -42,7 +42,7 @@ protected:
     }
 };
 
-TEST_F(PipelineBudgets, OfTheGalleryHold) {
+TEST_F(PackageBudgets, OfTheGalleryHold) {
     const fs::path scene = fs::path(GLINT_BINARY_DIR) / "tests/render/gallery/gallery.gltf";
     if (radvManifest().empty() || !fs::exists(scene)) {
         GTEST_SKIP() << "needs RADV and the gallery";
@@ -54,7 +54,7 @@ TEST_F(PipelineBudgets, OfTheGalleryHold) {
     EXPECT_EQ(inspect("tight.json").exit, 1);
 }
 
-TEST_F(PipelineBudgets, OfSheenChairHold) {
+TEST_F(PackageBudgets, OfSheenChairHold) {
     const fs::path scene = test::modelsFolder() / "features/SheenChair/SheenChair.gltf";
     if (!fs::exists(scene)) {
         GTEST_SKIP() << test::noModels(scene);
@@ -65,7 +65,7 @@ TEST_F(PipelineBudgets, OfSheenChairHold) {
     expectWithinBudget(scene.string(), {});
 }
 
-TEST_F(PipelineBudgets, OfManyCasesHold) {
+TEST_F(PackageBudgets, OfManyCasesHold) {
     const std::string script = std::string(GLINT_SOURCE_DIR) + "/benchmarks/make_synthetic_scene.py";
     if (radvManifest().empty() ||
         runProgram({"/usr/bin/python3", "-B", script, "scene", "--materials", "64", "--keys", "64"}).exit !=
