@@ -1,10 +1,12 @@
 // Tests glint bench --calibrate with few cases and tiny pictures: its file, and what it refuses.
 #include "cli/command.h"
 #include "cli/schemas.h"
+#include "cli/tiny_scene.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 namespace glint::testing {
@@ -127,6 +129,39 @@ TEST_F(Calibrate, KeepsWhatElseIsInTheFolder) {
     EXPECT_TRUE(has(outcome.err, "bench-folder")) << outcome.err;
     EXPECT_EQ(readText(path("out/bench.json")), "{}");
     EXPECT_FALSE(std::filesystem::exists(path("out/calibration.json")));
+}
+
+// What a person sends must not tell who it is.
+TEST_F(Calibrate, ReportsTheDeviceWithoutNamesOfPeople) {
+    writeTinyScene(path("secret"));
+    const Outcome outcome = run({"bench", "secret/scene.gltf", "--device-report", "report.json", "--quick",
+                                 "--size", "16x16", "--spp", "1", "--json"},
+                                {{"USER", "somebody"}, {"LOGNAME", "somebody"}});
+    ASSERT_EQ(outcome.exit, 2) << "sizes of pictures are fixed";
+    const Outcome made =
+        run({"bench", "secret/scene.gltf", "--device-report", "report.json", "--quick", "--json"},
+            {{"USER", "somebody"}, {"LOGNAME", "somebody"}});
+    ASSERT_EQ(made.exit, 0) << made.err;
+    Json report = made.json();
+    expectFits("device-report", report);
+    const std::string text = readText(path("report.json"));
+    report.erase("diagnostics");
+    EXPECT_EQ(Json::parse(text), report);
+    char host[256] = {};
+    ASSERT_EQ(gethostname(host, sizeof(host) - 1), 0);
+    for (const std::string& name : {std::string("somebody"), std::string("secret"), std::string(host),
+                                    path("").parent_path().string(), std::string("scene.gltf")}) {
+        EXPECT_EQ(text.find(name), std::string::npos) << name;
+    }
+    ASSERT_EQ(report.at("generated").size(), 5U);
+    for (const Json& point : report.at("generated")) {
+        EXPECT_EQ(point.at("strategies").size(), 4U);
+        EXPECT_FALSE(point.at("fastest").empty());
+    }
+    EXPECT_EQ(report.at("scene").at("strategies").size(), 4U);
+    EXPECT_EQ(report.at("pipelines").size(), 7U) << "of three generated packages and four of the scene";
+    expectRefused({"bench", "--device-report", "report.json", "--calibrate"}, "--device-report");
+    expectRefused({"bench"}, "SCENE");
 }
 
 }  // namespace

@@ -6,30 +6,79 @@
 namespace glint {
 namespace {
 
-TEST(PipelineColumns, AreFoundInNamesOfSeveralDrivers) {
-    using enum cli::PipelineColumn;
-    const std::pair<const char*, cli::PipelineColumn> kExpected[] = {
-        {"Register Count", Registers},
-        {"Binary Size", CodeBytes},
-        {"Stack Size", LocalMemory},
-        {"Local Memory Size", LocalMemory},  // NVIDIA
-        {"SGPRs", Registers},
-        {"VGPRs", Registers},
-        {"Spilled VGPRs", Spills},
-        {"Code size", CodeBytes},
-        {"Scratch size", LocalMemory},
-        {"Instructions", Instructions},
-        {"LDS size", None},  // RADV
-        {"Instruction Count", Instructions},
-        {"Spill Count", Spills},
-        {"Fill Count", Spills},
-        {"Scratch Memory Size", LocalMemory},
-        {"Max live registers", Registers},
-        {"Loop Count", None},  // ANV
-    };
-    for (const auto& [name, column] : kExpected) {
-        EXPECT_EQ(cli::columnOf(name), column) << name;
-    }
+PipelineStatistic number(const char* name, double value) {
+    return {name, "", value};
+}
+
+// The names are those of the drivers.
+TEST(PipelineFacts, MeanTheSameOnEveryDevice) {
+    using inspect::factsOf;
+    const PipelineExecutable radv{
+        "compute",
+        "",
+        VK_SHADER_STAGE_COMPUTE_BIT,
+        64,
+        {number("SGPRs", 128), number("VGPRs", 192), number("Spilled SGPRs", 1), number("Spilled VGPRs", 2),
+         number("Code size", 4096), number("LDS size", 512), number("Scratch size", 640),
+         number("Subgroups per SIMD", 8), number("Latency", 4000), number("Inverse Throughput", 1000)}};
+    const inspect::PipelineFacts amd = factsOf(radv);
+    EXPECT_EQ(amd.registers, 192.0);
+    EXPECT_EQ(amd.spills, 3.0);
+    EXPECT_EQ(amd.scratchBytes, 10.0);
+    EXPECT_EQ(amd.codeBytes, 4096.0);
+    EXPECT_EQ(amd.occupancy, 0.25);  // 4 of 16 subgroups of 64 lanes
+    EXPECT_EQ(amd.cost, 1000.0);
+
+    const PipelineExecutable turnip{
+        "main",
+        "",
+        VK_SHADER_STAGE_COMPUTE_BIT,
+        128,
+        {number("Max Waves Per Core", 8), number("Instruction Count", 1000), number("Code size", 500),
+         number("Registers used", 24), number("STP Count", 3), number("LDP Count", 4),
+         number("Estimated cycles stalled on SS", 800), number("Estimated cycles stalled on SY", 1600)}};
+    const inspect::PipelineFacts adreno = factsOf(turnip);
+    EXPECT_EQ(adreno.registers, 96.0);
+    EXPECT_EQ(adreno.spills, 7.0);
+    EXPECT_FALSE(adreno.scratchBytes);
+    EXPECT_EQ(adreno.codeBytes, 4.0 * (500 + 65536)) << "the driver's number wraps";
+    EXPECT_EQ(adreno.occupancy, 0.5);
+    EXPECT_EQ(adreno.cost, 650.0);
+
+    const PipelineExecutable anv{
+        "SIMD16 compute",
+        "",
+        VK_SHADER_STAGE_COMPUTE_BIT,
+        16,
+        {number("Instruction Count", 100), number("Cycle Count", 500), number("Spill Count", 7),
+         number("Fill Count", 9), number("Scratch Memory Size", 1024), number("Max live registers", 120)}};
+    const inspect::PipelineFacts arc = factsOf(anv);
+    EXPECT_EQ(arc.registers, 60.0);
+    EXPECT_EQ(arc.spills, 7.0);
+    EXPECT_EQ(arc.scratchBytes, 64.0);
+    EXPECT_EQ(arc.codeBytes, 1600.0);
+    EXPECT_EQ(arc.occupancy, 0.5);
+    EXPECT_EQ(arc.cost, 2000.0);
+
+    const PipelineExecutable nvidia{"main",
+                                    "",
+                                    VK_SHADER_STAGE_COMPUTE_BIT,
+                                    32,
+                                    {number("Register Count", 96), number("Binary Size", 5000),
+                                     number("Stack Size", 0), number("Local Memory Size", 16)}};
+    const inspect::PipelineFacts other = factsOf(nvidia);
+    EXPECT_EQ(other.registers, 96.0);
+    EXPECT_EQ(other.codeBytes, 5000.0);
+    EXPECT_EQ(other.scratchBytes, 16.0);
+    EXPECT_FALSE(other.spills);
+    EXPECT_FALSE(other.occupancy);
+    EXPECT_FALSE(other.cost);
+
+    const PipelineExecutable parts[] = {radv, radv};
+    const inspect::PipelineFacts pipeline = factsOf(parts);
+    EXPECT_EQ(pipeline.registers, 192.0);
+    EXPECT_EQ(pipeline.spills, 6.0);
+    EXPECT_EQ(pipeline.occupancy, 0.25);
 }
 
 PipelineStatistics sample() {
@@ -42,12 +91,11 @@ PipelineStatistics sample() {
     return {"ShadeCase Glass", 1.5, true, {executable}};
 }
 
-TEST(PipelineTable, GathersWhatFitsAColumn) {
+TEST(PipelineTable, HasTheFacts) {
     const PipelineStatistics pipelines[] = {sample()};
-    EXPECT_EQ(
-        cli::tableOf(pipelines),
-        "pipeline         executable  subgroup  registers  spills  local memory  instructions  code bytes\n"
-        "ShadeCase Glass  main              32    48 + 16  true               -  -1                     -\n");
+    EXPECT_EQ(cli::tableOf(pipelines),
+              "pipeline         executable  subgroup  registers  spills  scratch  code  occupancy  cost\n"
+              "ShadeCase Glass  main              32         48       1        -     -          -     -\n");
 }
 
 TEST(PipelineJson, HasEveryStatisticWithItsType) {

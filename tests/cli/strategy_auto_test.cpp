@@ -175,5 +175,30 @@ TEST_F(StrategyAuto, BadDeviceFilesAreRefused) {
     EXPECT_FALSE(std::filesystem::exists(path("package")));
 }
 
+TEST_F(StrategyAuto, GoesByTheCodeOfAGpu) {
+    const Json explained =
+        run({"explain", "scene.gltf", "--gpu", "navi31", "--merge", "auto", "--json"}).json();
+    expectFits("explain", explained);
+    const Json& gpu = explained.at("gpu");
+    EXPECT_EQ(gpu.at("name"), "navi31");
+    EXPECT_GE(gpu.at("branchFactor"), 1.0);
+    EXPECT_GE(gpu.at("strategies").size(), 3U);
+    EXPECT_NE(
+        explained.at("strategies").at("estimates"),
+        run({"explain", "scene.gltf", "--merge", "auto", "--json"}).json().at("strategies").at("estimates"));
+    EXPECT_TRUE(has(run({"explain", "scene.gltf", "--gpu", "navi31"}).out, "navi31 (")) << "says why";
+    for (const auto& entry : std::filesystem::directory_iterator(GLINT_SOURCE_DIR "/benchmarks/data/gpus")) {
+        expectFits("gpu", Json::parse(readText(entry.path())));
+    }
+    const Outcome unknown = run({"explain", "scene.gltf", "--gpu", "navi3"});
+    EXPECT_EQ(unknown.exit, 1);
+    EXPECT_TRUE(has(unknown.err, "navi31")) << unknown.err;
+    EXPECT_TRUE(has(unknown.err, "[gpu-unknown]")) << unknown.err;
+    writeText(path("gpu.json"), R"({"format": "glint-gpu", "version": 1, "name": "x"})");
+    const Outcome wrong = run({"explain", "scene.gltf", "--gpu", "gpu.json"});
+    EXPECT_EQ(wrong.exit, 1);
+    EXPECT_TRUE(has(wrong.err, "gpu.json: error: has no member \"device\"")) << wrong.err;
+}
+
 }  // namespace
 }  // namespace glint::testing

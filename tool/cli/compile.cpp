@@ -208,7 +208,7 @@ Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptio
     if (!settings.advisesStrategy) {
         return okStatus();
     }
-    const Result<measure::KnownCosts> costs = measure::knownCosts(settings.calibration, false);
+    const Result<measure::KnownCosts> costs = measure::knownCosts(settings, false);
     if (!costs) {
         return costs.error();
     }

@@ -13,6 +13,7 @@
 #include "cli/table.h"
 #include "emit/package/json.h"
 #include "gltf/import.h"
+#include "plan/gpu_costs.h"
 
 #include <glint/measure/profile.h>
 #include <glint/measure/strategy_advice.h>
@@ -122,6 +123,43 @@ Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const 
         measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
 }
 
+// Returns what the table of --gpu says; null without one.
+base::Json gpuToJson(const measure::KnownCosts& costs) {
+    if (!costs.gpu) {
+        return nullptr;
+    }
+    base::Json strategies = base::Json::array();
+    for (const compiler::StrategyFactor& factor : strategyFactors(*costs.gpu)) {
+        strategies.push_back({{"strategy", factor.strategy},
+                              {"factor", factor.factor},
+                              {"occupancy", factor.module->leastOccupancy},
+                              {"spills", factor.module->spills}});
+    }
+    base::Json choices = base::Json::array();
+    for (const compiler::GpuChoice& choice : chooseSettings(*costs.gpu)) {
+        choices.push_back({{"setting", choice.setting}, {"value", choice.value}, {"why", choice.why}});
+    }
+    return {{"name", costs.gpu->name},
+            {"device", costs.gpu->device},
+            {"driver", costs.gpu->driver},
+            {"branchFactor", branchFactor(*costs.gpu)},
+            {"strategies", std::move(strategies)},
+            {"choices", std::move(choices)}};
+}
+
+std::string gpuText(const measure::KnownCosts& costs) {
+    if (!costs.gpu) {
+        return {};
+    }
+    const compiler::GpuCosts& gpu = *costs.gpu;
+    std::string text = fmt::format("{} ({}): {} In a case that branches it costs {:.2f} times as much.",
+                                   gpu.name, gpu.device, describe(gpu), branchFactor(gpu));
+    for (const compiler::GpuChoice& choice : chooseSettings(gpu)) {
+        text += fmt::format("\n--{} {}: {}", choice.setting, choice.value, choice.why);
+    }
+    return wrapped(text) + "\n\n";
+}
+
 int explain(const Console& console, const ExplainArguments& arguments) {
     CompileCache known(CacheArguments{}, "");
     const Result<gltf::ImportOptions> import =
@@ -136,7 +174,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
         return kExitFailed;
     }
     console.report(scene->warnings);
-    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.settings.calibration, false);
+    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.settings, false);
     if (!costs) {
         console.report(costs.error());
         return kExitFailed;
@@ -194,6 +232,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
             result["sameImages"] = sameImagesToJson(*scene);
             result["effects"] = effectsToJson(effects);
             result["strategies"] = strategyChoiceToJson(*advice);
+            result["gpu"] = gpuToJson(*costs);
             result["motion"] = motionToJson(*scene);
             result["materials"] = base::Json::array();
             for (const int material : *materials) {
@@ -207,6 +246,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     if (arguments.material.empty()) {
         console.print(effectsText(effects));
         console.print(strategiesText(*advice));
+        console.print(gpuText(*costs));
         console.print(motionText(*scene));
         console.print(sameImagesText(*scene));
     }

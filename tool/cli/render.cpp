@@ -77,7 +77,7 @@ Result<Package> obtainPackage(const Console& console, const RenderArguments& arg
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
                                              const std::optional<Result<Package>>& given) {
     HeadlessOptions options = measure::deviceOptions(arguments);
-    options.pipelineStatistics = arguments.pipelineStatistics;
+    options.pipelineStatistics = options.pipelineStatistics || arguments.pipelineStatistics;
     if (given && *given) {
         inspect::requirePackage(**given, options);
     }
@@ -113,7 +113,7 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 }
 
 // Replaces --strategy auto by the strategy that is expected to be fastest.
-Status settleStrategy(const Console& console, const compiler::PlanOptions& plan, const Context& context,
+Status settleStrategy(const Console& console, const compiler::PlanOptions& plan, Context& context,
                       const gltf::Scene& scene, const std::optional<Result<Package>>& given,
                       RenderArguments& arguments, RenderReport& report) {
     if (arguments.strategy) {

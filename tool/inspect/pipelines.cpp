@@ -74,24 +74,20 @@ double widthOf(const PipelineExecutable& executable) {
     return executable.subgroupSize > 0 ? executable.subgroupSize : kLanes;
 }
 
-// RADV (Mesa 25.0: src/amd/vulkan/radv_shader.c, src/amd/compiler/aco_statistics.cpp). "Inverse Throughput"
-// is that of 64 lanes, whatever the subgroup; "Latency" is that of one subgroup.
+// RADV (Mesa 25.0: src/amd/vulkan/radv_shader.c, src/amd/compiler/aco_statistics.cpp). "Subgroups per SIMD"
+// counts a subgroup of 64 lanes twice. "Inverse Throughput" is that of 64 lanes, whatever the subgroup; it is
+// "Latency" over the subgroups in flight where that is more.
 PipelineFacts radvFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a SIMD, from RDNA 2 on
-    constexpr double kCounted = 32.0;        // lanes
+    constexpr double kSmallestWidth = 32.0;
     PipelineFacts facts;
     facts.registers = named("VGPRs");
     facts.spills = named.withWord({"spilled"});
     facts.scratchBytes = scaled(named("Scratch size"), 1.0 / width);
     facts.codeBytes = named("Code size");
-    // Subgroups of 64 lanes count twice (radv_get_max_waves()).
-    const std::optional<double> subgroups = scaled(named("Subgroups per SIMD"), kCounted / width);
+    const std::optional<double> subgroups = scaled(named("Subgroups per SIMD"), kSmallestWidth / width);
     facts.occupancy = scaled(subgroups, 1.0 / kMostSubgroups);
-    const std::optional<double> busy = named("Inverse Throughput");
-    const std::optional<double> latency = named("Latency");
-    if (busy && latency && subgroups.value_or(0.0) > 0.0) {
-        facts.cost = std::max(*busy, *latency * (kLanes / width) / *subgroups);
-    }
+    facts.cost = named("Inverse Throughput");
     return facts;
 }
 
@@ -647,20 +643,6 @@ compiler::GpuCosts readGpu(base::JsonReader& reader, const base::Json& json) {
 
 }  // namespace
 
-base::Json toJson(const compiler::GpuCosts& gpu) {
-    base::Json packages = base::Json::array();
-    for (const compiler::PackageCosts& costs : gpu.packages) {
-        packages.push_back({{"package", costs.package},
-                            {"merge", costs.merge},
-                            {"shadows", costs.shadows},
-                            {"precision", costs.precision},
-                            {"summary", summaryToJson(costs)}});
-    }
-    return {{"format", "glint-gpu"},          {"version", 1},         {"name", gpu.name},
-            {"device", gpu.device},           {"driver", gpu.driver}, {"subgroupSize", gpu.subgroupSize},
-            {"packages", std::move(packages)}};
-}
-
 compiler::GpuCosts gpuOf(std::string name, std::span<const PipelineReport> reports) {
     compiler::GpuCosts gpu;
     gpu.name = std::move(name);
@@ -684,7 +666,7 @@ std::vector<std::string> builtInGpus() {
 Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
     base::JsonReader reader(
         nameOrFile, "gpu-table",
-        "give a table that benchmarks/gpu_table.py wrote, or one of: " + base::join(builtInGpus()));
+        "give a table that scripts/gpu_table.py wrote, or one of: " + base::join(builtInGpus()));
     for (const base::BuiltinFile& file : gpuTables()) {
         if (file.name == nameOrFile + ".json") {
             return readGpu(reader, base::Json::parse(file.text));
@@ -770,8 +752,8 @@ std::string titleOf(const ReportedPipeline& pipeline) {
                                     : fmt::format("{} ({})", pipeline.name, pipeline.modules.front().file);
 }
 
-Diagnostic overBudget(const PipelineReport& report, const PipelineBudget& budget,
-                      const ReportedPipeline& pipeline, const FactInfo& fact, double limit) {
+Diagnostic exceeded(const PipelineReport& report, const PipelineBudget& budget,
+                    const ReportedPipeline& pipeline, const FactInfo& fact, double limit) {
     const std::optional<double>& value = pipeline.facts.*fact.member;
     const std::string what =
         value ? fmt::format("{} is {}, and the budget is {} {:g}", fact.name, fmt::format("{:g}", *value),
@@ -806,7 +788,7 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file) {
     return reader.ok() ? Result<PipelineBudget>(std::move(budget)) : Result<PipelineBudget>(reader.error());
 }
 
-std::vector<Diagnostic> checkBudget(const PipelineReport& report, const PipelineBudget& budget) {
+std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget) {
     std::vector<Diagnostic> found;
     // Rules for other devices count as used, unless all are for others.
     std::vector<bool> used;
@@ -839,7 +821,7 @@ std::vector<Diagnostic> checkBudget(const PipelineReport& report, const Pipeline
             const std::optional<double>& limit = limits.*fact.member;
             const std::optional<double>& value = pipeline.facts.*fact.member;
             if (limit && (!value || (fact.isLeast ? *value < *limit : *value > *limit))) {
-                found.push_back(overBudget(report, budget, pipeline, fact, *limit));
+                found.push_back(exceeded(report, budget, pipeline, fact, *limit));
             }
         }
     }

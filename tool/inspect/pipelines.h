@@ -100,7 +100,6 @@ compiler::PackageCosts summarize(const PipelineReport& report);
 
 // Joins reports of one device into the table of a GPU. Requires at least one report.
 compiler::GpuCosts gpuOf(std::string name, std::span<const PipelineReport> reports);
-base::Json toJson(const compiler::GpuCosts& gpu);
 // Returns the names of the GPUs whose tables are built in.
 std::vector<std::string> builtInGpus();
 // Reads the table of a GPU: one that is built in, or a file. Errors: those of readFile(), "gpu-unknown",
@@ -141,6 +140,6 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file);
 
 // Returns an error "pipeline-budget" for each fact that exceeds its limit or that the driver does not report,
 // and a warning "pipeline-budget-unused" for each rule that fits no pipeline of its device.
-std::vector<Diagnostic> checkBudget(const PipelineReport& report, const PipelineBudget& budget);
+std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget);
 
 }  // namespace glint::inspect

@@ -2,6 +2,7 @@
 #include "base/json.h"
 #include "base/suggest.h"
 #include "base/text.h"
+#include "inspect/pipelines.h"
 
 #include <glint/measure/profile.h>
 
@@ -279,6 +280,13 @@ Result<Profile> readProfile(const std::filesystem::path& path) {
 Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes) {
     PlanChoice choice;
     choice.options = settings.compile.plan;
+    if (!settings.gpu.empty() && settings.gpu != compiler::kThisDevice) {
+        const Result<compiler::GpuCosts> gpu = inspect::readGpuCosts(settings.gpu);
+        if (!gpu) {
+            return gpu.error();
+        }
+        choice.options.branchFactor = branchFactor(*gpu);
+    }
     chooseAlpha(settings, scenes, choice);
     if (Status kept = keepPackLobes(settings, scenes, choice.options.keys); !kept) {
         return kept.error();

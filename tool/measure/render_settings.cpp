@@ -105,6 +105,7 @@ HeadlessOptions deviceOptions(const compiler::Settings& settings) {
     HeadlessOptions options;
     options.validation = settings.validate ? Validation::Synchronization : Validation::Off;
     options.deviceName = settings.device;
+    options.pipelineStatistics = settings.gpu == compiler::kThisDevice;
     options.positionFetch = settings.compile.positionFetch;
     options.shaderClock =
         std::ranges::find(settings.compile.layers, "clocks") != settings.compile.layers.end();

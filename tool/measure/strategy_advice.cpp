@@ -1,5 +1,6 @@
 #include "emit/effects.h"
 #include "gltf/import.h"
+#include "inspect/pipelines.h"
 #include "plan/built_in_costs.h"
 
 #include <glint/measure/device_file.h>
@@ -43,17 +44,51 @@ std::vector<compiler::Round> roundsOf(const Package& package, const gltf::Scene&
     return frameRounds(scene.materials, primitives, roundCases(cases, hits), shape);
 }
 
+// Makes the pipelines of the package, and lets what the device's compiler says of them count.
+Status askDevice(const compiler::Settings& render, Context& context, const Package* package,
+                 KnownCosts& costs, std::vector<Diagnostic>& warnings) {
+    if (package == nullptr || !context.handles().pipelineStatistics) {
+        warnings.push_back(makeWarning(
+            "gpu-device", context.deviceName(),
+            package == nullptr ? "is asked for statistics of shaders that are not compiled yet"
+                               : "has no VK_KHR_pipeline_executable_properties: there are no statistics",
+            package == nullptr ? "give --package, or the name of a GPU" : "leave out --gpu device"));
+        return okStatus();
+    }
+    const Result<inspect::Manifest> manifest = inspect::readManifest(render.package);
+    if (!manifest) {
+        return manifest.error();
+    }
+    const Result<inspect::PipelineReport> report = inspect::reportPipelines(
+        context, *package, *manifest, render.package, render.renderer.pipelineThreads);
+    if (!report) {
+        return report.error();
+    }
+    costs.gpu = inspect::gpuOf(std::string(compiler::kThisDevice), {&*report, 1});
+    costs.device = withGpu(std::move(costs.device), *costs.gpu);
+    return okStatus();
+}
+
 }  // namespace
 
-Result<KnownCosts> knownCosts(const std::string& file, bool onCpu) {
-    if (file.empty()) {
-        return KnownCosts{compiler::builtInCosts(onCpu), true};
+Result<KnownCosts> knownCosts(const compiler::Settings& settings, bool onCpu) {
+    KnownCosts costs{compiler::builtInCosts(onCpu), true};
+    if (!settings.calibration.empty()) {
+        Result<DeviceFile> read = readDeviceFile(settings.calibration);
+        if (!read) {
+            return read.error();
+        }
+        costs = {std::move(read->costs), false};
     }
-    Result<DeviceFile> read = readDeviceFile(file);
-    if (!read) {
-        return read.error();
+    if (!settings.gpu.empty() && settings.gpu != compiler::kThisDevice) {
+        Result<compiler::GpuCosts> gpu = inspect::readGpuCosts(settings.gpu);
+        if (!gpu) {
+            return gpu.error();
+        }
+        costs.device = withGpu(std::move(costs.device), *gpu);
+        costs.gpu = std::move(*gpu);
     }
-    return KnownCosts{std::move(read->costs), false};
+    return costs;
 }
 
 std::vector<std::string> runnableStrategies(std::uint32_t deviceTracers,
@@ -106,21 +141,25 @@ Result<compiler::StrategyAdvice> adviseStrategy(const KnownCosts& costs,
 }
 
 Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& render,
-                                              const compiler::PlanOptions& plan, const Context& context,
+                                              const compiler::PlanOptions& plan, Context& context,
                                               const gltf::Scene& scene, const Package* package,
                                               std::vector<Diagnostic>& warnings) {
-    Result<KnownCosts> costs =
-        knownCosts(render.calibration, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU);
+    Result<KnownCosts> costs = knownCosts(render, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU);
     if (!costs) {
         return costs.error();
     }
-    if (costs->builtIn && context.subgroupSize() > 0) {
+    if (costs->builtIn && !costs->gpu && context.subgroupSize() > 0) {
         costs->device.subgroupSize = context.subgroupSize();
     } else if (!costs->builtIn && costs->device.device != context.deviceName()) {
         warnings.push_back(makeWarning("calibration-device", render.calibration,
                                        fmt::format("was measured on {}, but this device is {}",
                                                    costs->device.device, context.deviceName()),
                                        "measure this device with glint bench --calibrate"));
+    }
+    if (render.gpu == compiler::kThisDevice) {
+        if (Status asked = askDevice(render, context, package, *costs, warnings); !asked) {
+            return asked.error();
+        }
     }
     const std::uint32_t tracers = context.handles().tracers;
     const gltf::SceneList scenes({&scene, 1});

@@ -63,6 +63,32 @@ double surplus(const materials::MaterialModel& model, double share, materials::F
     return share * cost;
 }
 
+// Returns the instructions that the hits of keys run if each key has a shader of its own, times their share.
+template <typename ShareWith>
+double ownCode(const materials::MaterialModel& model, double share, materials::FeatureMask any,
+               const ShareWith& shareWith) {
+    double code = share * (fitted::kUnlitInstructions + fitted::kLitInstructions);
+    forEachFeature(model, any, [&](const materials::Feature& feature) {
+        const bool isUnlit = (feature.mask() & model.unlit) != 0;
+        code += shareWith(static_cast<std::size_t>(feature.bit)) *
+                (feature.cost.instructions + kFetchCost * feature.cost.fetches -
+                 (isUnlit ? fitted::kLitInstructions : 0.0));
+    });
+    return code;
+}
+
+template <typename ShareWith>
+double mergingCost(const KeySet& like, double share, materials::FeatureMask always,
+                   materials::FeatureMask any, const ShareWith& shareWith) {
+    const materials::FeatureMask sometimes = any & ~always;
+    const double inVain = surplus(*like.model, share, sometimes, shareWith);
+    if (like.branchFactor <= 1.0 || sometimes == 0) {
+        return inVain;
+    }
+    return like.branchFactor * inVain +
+           (like.branchFactor - 1.0) * ownCode(*like.model, share, any, shareWith);
+}
+
 }  // namespace
 
 KeySet toSet(const WeightedKey& key) {
@@ -71,6 +97,7 @@ KeySet toSet(const WeightedKey& key) {
     set.always = key.mask;
     set.any = key.mask;
     set.model = key.model;
+    set.branchFactor = key.branchFactor;
     forEachBit(key.mask, [&](std::size_t place) { set.shareWith[place] = key.share; });
     return set;
 }
@@ -80,6 +107,7 @@ KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys) {
     KeySet set;
     set.always = ~materials::FeatureMask{0};
     set.model = keys[static_cast<std::size_t>(indices.front())].model;
+    set.branchFactor = keys[static_cast<std::size_t>(indices.front())].branchFactor;
     for (const int index : indices) {
         const WeightedKey& key = keys[static_cast<std::size_t>(index)];
         set.share += key.share;
@@ -96,6 +124,7 @@ KeySet unionOf(const KeySet& a, const KeySet& b) {
     set.always = a.always & b.always;
     set.any = a.any | b.any;
     set.model = a.model;
+    set.branchFactor = a.branchFactor;
     for (std::size_t place = 0; place < set.shareWith.size(); ++place) {
         set.shareWith[place] = a.shareWith[place] + b.shareWith[place];
     }
@@ -103,13 +132,13 @@ KeySet unionOf(const KeySet& a, const KeySet& b) {
 }
 
 double mergingCost(const KeySet& keys) {
-    return surplus(*keys.model, keys.share, keys.any & ~keys.always,
-                   [&](std::size_t place) { return keys.shareWith[place]; });
+    return mergingCost(keys, keys.share, keys.always, keys.any,
+                       [&](std::size_t place) { return keys.shareWith[place]; });
 }
 
 double mergingCost(const KeySet& a, const KeySet& b) {
-    return surplus(*a.model, a.share + b.share, (a.any | b.any) & ~(a.always & b.always),
-                   [&](std::size_t place) { return a.shareWith[place] + b.shareWith[place]; });
+    return mergingCost(a, a.share + b.share, a.always & b.always, a.any | b.any,
+                       [&](std::size_t place) { return a.shareWith[place] + b.shareWith[place]; });
 }
 
 double branchCost(const KeySet& keys, const materials::Feature& feature) {

@@ -1,5 +1,7 @@
 #include "plan/gpu_costs.h"
 
+#include "plan/cost.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -56,6 +58,13 @@ GpuChoice chooseShadows(const GpuCosts& gpu, double nowCost, double deferredCase
 }
 
 }  // namespace
+
+double ModuleCost::costOfInstruction() const {
+    if (weight <= 0.0 || occupancy <= 0.0 || modules == 0) {
+        return 0.0;
+    }
+    return (1.0 + kFetchCost * spills / modules / weight) / occupancy;
+}
 
 const ModuleCost* findModule(const PackageCosts& package, std::string_view role) {
     const ModuleCost* found = nullptr;

@@ -1,10 +1,14 @@
 // What the compiler of a GPU makes of Glint's modules, and the choices that follow. The numbers are static:
 // nothing runs, so they also come from GPUs that are not there. They describe code, not memory.
 //
-// The cost of a module is that of inspect::PipelineFacts: cycles of a processor for 64 lanes. Its weight is
-// the SPIR-V that it has, instructions + kFetchCost * fetches. The quotient k = cost / weight is what an
-// instruction costs in such a module: registers, spills and missing occupancy make it larger. Of k only
-// ratios of modules of one GPU and package are used.
+// The weight of a module is the SPIR-V that it has, instructions + kFetchCost * fetches. Shading waits for
+// memory and for its own results, and the other subgroups of a processor hide that. So an instruction costs
+//
+//     k = (1 + kFetchCost * spills / weight) / occupancy
+//
+// in a module; a spill counts as a fetch. Of k only ratios of modules of one GPU are used. The compiler's own
+// cycles would not do: most of them are those of the loop that traverses the scene, which compilers weigh as
+// they like, and a switch has one such loop for all of its cases.
 #pragma once
 
 #include "plan/strategy_cost.h"
@@ -33,9 +37,8 @@ struct ModuleCost {
     double scratchBytes = 0.0;  // the most
     double codeBytes = 0.0;     // sum
 
-    double costOfInstruction() const {
-        return weight > 0.0 ? cost / weight : 0.0;
-    }
+    // Returns k of the formula above, or 0 where the compiler does not say enough.
+    double costOfInstruction() const;
 };
 
 struct PackageCosts {

@@ -170,7 +170,7 @@ void nameCases(Plan& plan) {
 void makeCases(const PlanOptions& options, Plan& plan) {
     std::vector<WeightedKey> weighted;
     for (const Key& key : plan.keys) {
-        weighted.push_back({key.mask, key.share, plan.model});
+        weighted.push_back({key.mask, key.share, plan.model, options.branchFactor});
     }
     std::vector<CaseKeys> merged = mergeKeys(weighted, options.merge, budgetOf(options));
     const std::vector<int> ids = assignShaderIds(weighted, merged, options.lockedIds);

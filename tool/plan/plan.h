@@ -29,6 +29,7 @@ struct PlanOptions {
     // Counted hits by key. Profile needs them, and Auto uses them if there are any. A key that is not in the
     // map was never hit.
     std::map<materials::FeatureMask, std::uint64_t> hits{};
+    double branchFactor = 1.0;  // of WeightedKey
     // Shader IDs that keys had in earlier builds; their cases keep them.
     LockedIds lockedIds{};
 };

@@ -78,7 +78,7 @@ PlanCost costPlan(const Plan& plan, const PlanOptions& options) {
     std::vector<WeightedKey> keys;
     keys.reserve(plan.keys.size());
     for (const Key& key : plan.keys) {
-        keys.push_back({key.mask, key.share, plan.model});
+        keys.push_back({key.mask, key.share, plan.model, options.branchFactor});
     }
     PlanCost cost;
     std::vector<KeySet> sets;

@@ -59,12 +59,16 @@ struct Settings {
     std::string package;      // a folder; empty: one is compiled
     std::string profile;      // hit counts, for the merge policies profile and auto
     std::string calibration;  // a device file; empty: constants that are built in
+    std::string gpu;          // name or file of a table of a GPU's code, or kThisDevice; empty: none
     std::string variant;      // of KHR_materials_variants; empty: none
     bool strictPaths = false;
     std::vector<std::string> materials;  // folders of packs: material features of a user's own
     std::vector<std::string> packLobes;  // lobes of these that hits keep besides those of compile.plan.keys
     bool validate = false;
 };
+
+// The value of Settings::gpu that stands for the device that renders.
+inline constexpr std::string_view kThisDevice = "device";
 
 // Returns the lobes that hits keep with "base": the base models, and what is declared as part of the base.
 materials::FeatureMask baseLobes();

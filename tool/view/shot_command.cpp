@@ -39,6 +39,7 @@ std::vector<std::string> shotWords(const compiler::Settings& settings, const Sho
         {"variant", settings.variant},
         {"profile", settings.profile},
         {"calibration", settings.calibration},
+        {"gpu", settings.gpu},
         {"host", settings.compile.host},
         {"camera", options.camera},
         {"time", options.time},

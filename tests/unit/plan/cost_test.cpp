@@ -51,6 +51,20 @@ TEST(Cost, IsThatOfTheFormula) {
     EXPECT_DOUBLE_EQ(mergingCost(plain, coated), mergingCost(coated, plain));
 }
 
+// Where branches cost occupancy, they cost it for all code of the case.
+TEST(Cost, CountsSlowerInstructionsOfCasesThatBranch) {
+    using compiler::fitted::kUnlitInstructions;
+    compiler::WeightedKey plain{kBase, 0.6};
+    compiler::WeightedKey coated{kBase | bit("clearcoat"), 0.2};
+    const double inVain = mergingCost(compiler::toSet(plain), compiler::toSet(coated));
+    plain.branchFactor = 1.5;
+    coated.branchFactor = 1.5;
+    const double own = 0.8 * (kUnlitInstructions + kLitInstructions + instructionsOf("normals")) +
+                       0.2 * instructionsOf("clearcoat");
+    EXPECT_NEAR(mergingCost(compiler::toSet(plain), compiler::toSet(coated)), 1.5 * inVain + 0.5 * own, 1e-9);
+    EXPECT_EQ(mergingCost(compiler::toSet(coated)), 0.0) << "a case of one key does not branch";
+}
+
 TEST(Cost, UnlitHitsWaitForLitOnes) {
     const compiler::KeySet lit = compiler::toSet({kBase, 0.1});
     const compiler::KeySet unlit = compiler::toSet({bit("unlit"), 0.9});

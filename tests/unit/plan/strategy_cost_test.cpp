@@ -2,6 +2,7 @@
 #include "plan/strategy_cost.h"
 
 #include "plan/cost.h"
+#include "plan/gpu_costs.h"
 #include "plan/strategy_choice.h"
 
 #include <gtest/gtest.h>
@@ -165,6 +166,97 @@ TEST(StrategyCost, SaysWhyInNumbers) {
     ASSERT_TRUE(nothing);
     EXPECT_EQ(nothing->strategy, "uber");
     EXPECT_NE(nothing->why.find("No effect sends rays"), std::string::npos);
+}
+
+compiler::ModuleCost moduleOf(const char* role, double cost, double occupancy, double spills = 0.0) {
+    compiler::ModuleCost module;
+    module.role = role;
+    module.tracer = "ray-query";
+    module.modules = 1;
+    module.cost = cost;
+    module.weight = 2000.0;
+    module.occupancy = occupancy;
+    module.leastOccupancy = occupancy;
+    module.spills = spills;
+    return module;
+}
+
+// A GPU on which the switch of uber has a quarter of the occupancy that cases have.
+compiler::GpuCosts someGpu() {
+    compiler::GpuCosts gpu{"some", "Some GPU", "driver", 64.0, {}};
+    gpu.packages.push_back({"none",
+                            "none",
+                            "inline",
+                            32,
+                            {moduleOf("ShadeCase", 1000.0, 0.8), moduleOf("UberShade", 3000.0, 0.2),
+                             moduleOf("SortedShade", 2000.0, 0.4, 100.0)}});
+    return gpu;
+}
+
+double constantOf(const compiler::DeviceCosts& device, const char* strategy, compiler::CostTerm term) {
+    return findCosts(device, strategy)->constants[static_cast<std::size_t>(term)];
+}
+
+TEST(GpuCosts, MakeInstructionsCostWhatOccupancyAndSpillsSay) {
+    const auto factors = strategyFactors(someGpu());
+    ASSERT_EQ(factors.size(), 3U);
+    for (const compiler::StrategyFactor& factor : factors) {
+        const double expected = factor.strategy == "uber"          ? 4.0
+                                : factor.strategy == "sorted-uber" ? 4.0
+                                                                   : 1.0;
+        EXPECT_NEAR(factor.factor, expected, 1e-12) << factor.strategy;  // 100 spills double an instruction
+    }
+    const compiler::DeviceCosts measured = someDevice();
+    const compiler::DeviceCosts costs = withGpu(measured, someGpu());
+    EXPECT_EQ(costs.subgroupSize, 64.0);
+    using enum compiler::CostTerm;
+    const double ofCases = constantOf(measured, "visibility", Instructions);
+    EXPECT_NEAR(constantOf(costs, "visibility", Instructions), ofCases, 1e-12);
+    EXPECT_NEAR(constantOf(costs, "uber", Instructions), 4.0 * ofCases, 1e-12);
+    EXPECT_NEAR(constantOf(costs, "uber", Divergence) / constantOf(costs, "uber", Instructions),
+                constantOf(measured, "uber", Divergence) / constantOf(measured, "uber", Instructions), 1e-12);
+    EXPECT_EQ(constantOf(costs, "uber", Rays), constantOf(measured, "uber", Rays));
+    EXPECT_EQ(constantOf(costs, "hit-shaders", Instructions),
+              constantOf(measured, "hit-shaders", Instructions));
+}
+
+TEST(GpuCosts, TurnAChoice) {
+    // Coherent hits of two cases gain little by being ordered, unless uber has few subgroups in flight.
+    const compiler::Round round = makeRound(2, 4000, 0.9);
+    const std::vector<std::string> some{"uber", "visibility"};
+    const auto before = chooseStrategy({&round, 1}, someDevice(), some);
+    const auto after = chooseStrategy({&round, 1}, withGpu(someDevice(), someGpu()), some);
+    ASSERT_TRUE(before && after);
+    EXPECT_EQ(before->strategy, "uber") << before->why;
+    EXPECT_EQ(after->strategy, "visibility") << after->why;
+}
+
+TEST(GpuCosts, SayWhatSettingsSave) {
+    compiler::GpuCosts gpu = someGpu();
+    EXPECT_TRUE(chooseSettings(gpu).empty());
+    EXPECT_EQ(branchFactor(gpu), 1.0);
+    gpu.packages.push_back({"family", "family", "inline", 32, {moduleOf("ShadeCase", 1500.0, 0.5)}});
+    gpu.packages.push_back({"deferred",
+                            "none",
+                            "deferred",
+                            32,
+                            {moduleOf("ShadeCase", 400.0, 1.0), moduleOf("ShadowTrace", 300.0, 1.0)}});
+    gpu.packages.push_back({"half", "none", "inline", 16, {moduleOf("ShadeCase", 950.0, 0.8)}});
+    EXPECT_NEAR(branchFactor(gpu), 1.6, 1e-12);
+    const auto choices = chooseSettings(gpu);
+    ASSERT_EQ(choices.size(), 2U);
+    EXPECT_EQ(choices[0].setting, "shadows");
+    EXPECT_EQ(choices[0].value, "deferred");
+    EXPECT_EQ(choices[1].setting, "precision");
+    EXPECT_EQ(choices[1].value, "32") << "a twentieth is not worth an error";
+}
+
+TEST(GpuCosts, OfNoModulesChangeNothing) {
+    compiler::GpuCosts gpu{"none", "", "", 32.0, {{"none", "none", "inline", 32, {}}}};
+    EXPECT_TRUE(strategyFactors(gpu).empty());
+    EXPECT_EQ(branchFactor(gpu), 1.0);
+    EXPECT_EQ(withGpu(someDevice(), gpu).strategies.front().constants,
+              someDevice().strategies.front().constants);
 }
 
 }  // namespace

@@ -190,6 +190,9 @@ std::vector<std::filesystem::path> furtherInputs(const CompileArguments& argumen
             files.emplace_back(file);
         }
     }
+    if (std::error_code error; std::filesystem::exists(arguments.settings.gpu, error)) {
+        files.emplace_back(arguments.settings.gpu);
+    }
     // Where the folders can't be listed, reading them says so.
     if (const Result<std::vector<std::filesystem::path>> packs =
             materials::packFiles(arguments.settings.materials);

@@ -162,7 +162,7 @@ bool judge(const Console& console, const inspect::PipelineReport& report,
                         "use another device"});
     }
     if (budget) {
-        std::ranges::for_each(checkBudget(report, *budget), tell);
+        std::ranges::for_each(overBudget(report, *budget), tell);
     }
     return good;
 }

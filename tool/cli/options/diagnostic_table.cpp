@@ -143,6 +143,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"glb-version", kError, "A GLB is of another version."},
     {"glsl", kError, "A generated shader does not compile: a defect of Glint."},
     {"gltf", kError, "A scene can't be read, for a reason that has no id of its own."},
+    {"gpu-device", kWarning, "`--gpu device` can't ask the device's compiler."},
     {"gpu-table", kError, "The table of `--gpu` is not valid."},
     {"gpu-unknown", kError, "`--gpu` names neither a file nor a GPU that Glint has a table of."},
     {"half-precision", kError, "A package computes in 16-bit float, which the device does not support."},

@@ -195,6 +195,12 @@ void addCalibration(CLI::App& command, compiler::Settings& settings) {
             "device.json of `glint bench --calibrate`: what strategies\n"
             "cost on a device (default: constants that are built in)")
         .group("Shaders");
+    addText(command, "--gpu", settings.gpu, "NAME|FILE",
+            "what the compiler of a GPU makes of the shaders, for\n"
+            "--strategy auto and --merge auto: a name such as navi31,\n"
+            "or a table; device: this one, with --package (default:\n"
+            "nothing)")
+        .group("Shaders");
 }
 
 void addReadingOptions(CLI::App& command, compiler::Settings& settings) {

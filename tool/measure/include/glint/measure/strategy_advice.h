@@ -4,6 +4,7 @@
 
 #include "gltf/scene_list.h"
 #include "plan/frame_rounds.h"
+#include "plan/gpu_costs.h"
 #include "plan/plan.h"
 #include "plan/strategy_choice.h"
 
@@ -22,10 +23,11 @@ namespace glint::measure {
 struct KnownCosts {
     compiler::DeviceCosts device;
     bool builtIn = true;
+    std::optional<compiler::GpuCosts> gpu{};  // `device` is what withGpu() makes of the measured one
 };
-// Returns the costs in the file, or the built-in costs for the type of device if no file is named. Has the
-// errors of readDeviceFile().
-Result<KnownCosts> knownCosts(const std::string& file, bool onCpu);
+// Returns the costs in the file of --calibration, or the built-in costs for the type of device if none is
+// named, with what the table of --gpu says. Has the errors of readDeviceFile() and readGpuCosts().
+Result<KnownCosts> knownCosts(const compiler::Settings& settings, bool onCpu);
 
 // Returns the strategies that can be chosen for a device with these tracers (bits), traced by `tracer` if it
 // is given, and contained in the package if there is one. The names are in the order of simplestFirst().
@@ -47,7 +49,7 @@ Result<compiler::StrategyAdvice> adviseStrategy(const KnownCosts& costs,
 // `package` if it is not null, else of a package that would be compiled by `plan`. Warns "calibration-device"
 // if the calibration is for another device. Has the errors of knownCosts() and adviseStrategy().
 Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& arguments,
-                                              const compiler::PlanOptions& plan, const Context& context,
+                                              const compiler::PlanOptions& plan, Context& context,
                                               const gltf::Scene& scene, const Package* package,
                                               std::vector<Diagnostic>& warnings);
 
