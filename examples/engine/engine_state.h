@@ -43,7 +43,7 @@ struct FrameData {
     Vec3 cameraUp;
     float pixelSpread;
     Vec3 skyZenith;
-    std::uint32_t tlas;
+    std::uint32_t pad;
     Vec3 skyHorizon;
     float anisotropy;
     Vec3 skyGround;
@@ -89,6 +89,7 @@ struct Slot {
     Buffer transforms;
     Buffer instances;  // of the TLAS
     AccelerationStructure tlas;
+    VkDescriptorSet worldSet = VK_NULL_HANDLE;  // with that structure
 };
 
 struct Engine::State {
@@ -116,7 +117,7 @@ struct Engine::State {
     std::uint32_t frames = 0;
 
     VkDescriptorSetLayout imageLayout = VK_NULL_HANDLE, worldLayout = VK_NULL_HANDLE;
-    VkDescriptorSet imageSet = VK_NULL_HANDLE, worldSet = VK_NULL_HANDLE;
+    VkDescriptorSet imageSet = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline gbuffer = VK_NULL_HANDLE, compose = VK_NULL_HANDLE;
     std::optional<PrimaryPass> primary;

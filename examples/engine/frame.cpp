@@ -60,7 +60,6 @@ void Engine::State::writeSlot(std::uint32_t number, const std::vector<std::array
     data.skyZenith = sky.zenith;
     data.skyHorizon = sky.horizon;
     data.skyGround = sky.ground;
-    data.tlas = number;
     data.compact = world.format == Format::Compact ? 1 : 0;
     data.geometries = geometryData.address;
     data.transforms = slot.transforms.address;
@@ -132,7 +131,7 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
     gpu.barrier(commands);
     draw(commands, slot);
     gpu.barrier(commands);
-    const VkDescriptorSet sets[] = {imageSet, worldSet};
+    const VkDescriptorSet sets[] = {imageSet, slot.worldSet};
     std::vector points{VK_PIPELINE_BIND_POINT_COMPUTE};
     if (settings.tracer == glint::package::kTracerRayPipeline) {
         points.push_back(VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR);
@@ -148,7 +147,6 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
     batch.rays = rays.address;
     batch.countBuffer = rayCount.handle;
     batch.answers = answers.address;
-    batch.tlasIndex = number;
     expect(steps->record(commands, batch));
 
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compose);

@@ -183,7 +183,7 @@ void Engine::State::makeSets() {
     const VkDescriptorSetLayoutBinding ofImages{0, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, kStages, nullptr};
     // The numbers are those of the package's --bindings.
     const VkDescriptorSetLayoutBinding ofWorld[] = {
-        {package.bindings().tlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kInFlight, kStages, nullptr},
+        {package.bindings().tlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, kStages, nullptr},
         {package.bindings().textures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textureCount, kStages, nullptr},
         {package.bindings().samplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplerCount, kStages, nullptr}};
     const auto makeLayout = [&](std::span<const VkDescriptorSetLayoutBinding> bindings) {
@@ -207,26 +207,27 @@ void Engine::State::makeSets() {
     worldLayout = makeLayout(ofWorld);
     const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1},
                                           {VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kInFlight},
-                                          {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textureCount},
-                                          {VK_DESCRIPTOR_TYPE_SAMPLER, samplerCount}};
+                                          {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textureCount * kInFlight},
+                                          {VK_DESCRIPTOR_TYPE_SAMPLER, samplerCount * kInFlight}};
     VkDescriptorPoolCreateInfo poolInfo{};
     poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.maxSets = 2;
+    poolInfo.maxSets = 1 + kInFlight;
     poolInfo.poolSizeCount = std::size(sizes);
     poolInfo.pPoolSizes = sizes;
     VkDescriptorPool pool = VK_NULL_HANDLE;
     check(vkCreateDescriptorPool(gpu.device, &poolInfo, nullptr, &pool), "vkCreateDescriptorPool");
     gpu.later([device = gpu.device, pool] { vkDestroyDescriptorPool(device, pool, nullptr); });
-    const VkDescriptorSetLayout layouts[] = {imageLayout, worldLayout};
-    VkDescriptorSetAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    allocation.descriptorPool = pool;
-    allocation.descriptorSetCount = 2;
-    allocation.pSetLayouts = layouts;
-    VkDescriptorSet sets[2]{};
-    check(vkAllocateDescriptorSets(gpu.device, &allocation, sets), "vkAllocateDescriptorSets");
-    imageSet = sets[0];
-    worldSet = sets[1];
+    const auto allocate = [&](VkDescriptorSetLayout setLayout) {
+        VkDescriptorSetAllocateInfo allocation{};
+        allocation.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+        allocation.descriptorPool = pool;
+        allocation.descriptorSetCount = 1;
+        allocation.pSetLayouts = &setLayout;
+        VkDescriptorSet set = VK_NULL_HANDLE;
+        check(vkAllocateDescriptorSets(gpu.device, &allocation, &set), "vkAllocateDescriptorSets");
+        return set;
+    };
+    imageSet = allocate(imageLayout);
 
     const auto write = [&](VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
                            std::size_t count, const VkDescriptorImageInfo* images, const void* next) {
@@ -244,26 +245,29 @@ void Engine::State::makeSets() {
     };
     const VkDescriptorImageInfo image{VK_NULL_HANDLE, seen.view, VK_IMAGE_LAYOUT_GENERAL};
     write(imageSet, 0, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, &image, nullptr);
-    const VkAccelerationStructureKHR structures[] = {slots[0].tlas.handle, slots[1].tlas.handle};
-    VkWriteDescriptorSetAccelerationStructureKHR tlases{};
-    tlases.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
-    tlases.accelerationStructureCount = kInFlight;
-    tlases.pAccelerationStructures = structures;
-    write(worldSet, package.bindings().tlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kInFlight,
-          nullptr, &tlases);
     std::vector<VkDescriptorImageInfo> images;
     for (const Image& texture : textures) {
         images.push_back({VK_NULL_HANDLE, texture.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
     }
-    write(worldSet, package.bindings().textures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, images.size(),
-          images.data(), nullptr);
     std::vector<VkDescriptorImageInfo> filters;
     for (const VkSampler sampler : samplers) {
         filters.push_back({sampler, VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED});
     }
-    write(worldSet, package.bindings().samplers, VK_DESCRIPTOR_TYPE_SAMPLER, filters.size(), filters.data(),
-          nullptr);
+    for (Slot& slot : slots) {
+        slot.worldSet = allocate(worldLayout);
+        VkWriteDescriptorSetAccelerationStructureKHR structure{};
+        structure.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
+        structure.accelerationStructureCount = 1;
+        structure.pAccelerationStructures = &slot.tlas.handle;
+        write(slot.worldSet, package.bindings().tlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1,
+              nullptr, &structure);
+        write(slot.worldSet, package.bindings().textures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, images.size(),
+              images.data(), nullptr);
+        write(slot.worldSet, package.bindings().samplers, VK_DESCRIPTOR_TYPE_SAMPLER, filters.size(),
+              filters.data(), nullptr);
+    }
 
+    const VkDescriptorSetLayout layouts[] = {imageLayout, worldLayout};
     // One layout for the engine's pipelines and for Glint's: the engine's push constants, then Glint's.
     const VkPushConstantRange range{kStages, 0, kPushOffset + glint::RaySteps::kPushBytes};
     VkPipelineLayoutCreateInfo layoutInfo{};

@@ -333,7 +333,7 @@ struct FrameConstants {
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
     // The bucket of a hit is 0 for a miss, 1 + shaderId otherwise. Keys are the buckets of all hits, in 1, 2 or 4
-    // bytes, depending on the number of buckets. The next three lists hold for each bucket: its number of hits, its
+    // bytes of a word, depending on the number of buckets. The next three lists hold for each bucket: its number of hits, its
     // first slot in the ordered list, and how many of its slots have been taken while hits are copied.
     GLINT_ADDRESS(Key) bucketKeys;
     GLINT_ADDRESS(Counter) bucketCounts;   // bucketCount
@@ -405,15 +405,14 @@ GLINT_INTEROP_BEGIN
 
 struct PushConstants {
     GLINT_ADDRESS(Frame) frame;
-    uint tlasIndex;  // into the array of acceleration structures; uniform in a dispatch
-    uint bucket;     // shading passes: which bucket this dispatch shades
-    uint geometry;   // G-buffer pass: GeometryRecord index of this draw's first instance
+    uint bucket;    // shading passes: which bucket this dispatch shades
+    uint geometry;  // G-buffer pass: GeometryRecord index of this draw's first instance
     uint geometryStride;  // and from one instance's GeometryRecord to the next one's
 };
 
 // Descriptor set 0: the scene.
 GLINT_CONSTANT(kSetScene, 0u);
-GLINT_CONSTANT(kBindingTlas, 0u);      // accelerationStructureEXT[]
+GLINT_CONSTANT(kBindingTlas, 0u);      // accelerationStructureEXT
 GLINT_CONSTANT(kBindingTextures, 1u);  // texture2D[]
 GLINT_CONSTANT(kBindingSamplers, 2u);  // sampler[]
 // Descriptor set 1: the images of a frame, all storage images. Half pictures have rgba16f for rgba32f.

@@ -4,37 +4,28 @@
 const uint kBuckets = GLINT_CASE_COUNT + 1u;
 
 #if GLINT_CASE_COUNT < 256
-#extension GL_EXT_shader_8bit_storage : require
-#define GLINT_KEY uint8_t
 const uint kKeyBytes = 1u;
 #elif GLINT_CASE_COUNT < 65536
-#extension GL_EXT_shader_16bit_storage : require
-#define GLINT_KEY uint16_t
 const uint kKeyBytes = 2u;
 #else
-#define GLINT_KEY uint
 const uint kKeyBytes = 4u;
 #endif
-
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer KeyPieces { GLINT_KEY data[]; };
-
-void storeKey(uint index, uint bucket) {
-    KeyPieces(GLINT_FRAME.bucketKeys).data[index] = GLINT_KEY(bucket);
-}
-
-uint storedKey(uint index) {
-    return uint(KeyPieces(GLINT_FRAME.bucketKeys).data[index]);
-}
-
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer KeyPairArray { uvec2 data[]; };
-
+const uint kKeyBits = 8u * kKeyBytes;
 const uint kKeysOfWord = 4u / kKeyBytes;
 const uint kKeysOfVector = 16u / kKeyBytes;
 
+// Memory is accessed by words alone: not every device can store a byte.
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer KeyWordArray { uint data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer KeyPairArray { uvec2 data[]; };
+
 // Returns key `index` of those in a word.
 uint keyOfWord(uint word, uint index) {
-    const int bits = int(8u * kKeyBytes);
-    return bitfieldExtract(word, int(index) * bits, bits);
+    return bitfieldExtract(word, int(index * kKeyBits), int(kKeyBits));
+}
+
+// Returns the key of the hit `index`.
+uint storedKey(uint index) {
+    return keyOfWord(KeyWordArray(GLINT_FRAME.bucketKeys).data[index / kKeysOfWord], index % kKeysOfWord);
 }
 
 // Returns key `index` of those in a vector.

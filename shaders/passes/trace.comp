@@ -15,6 +15,15 @@
 
 GLINT_RAY_WORKGROUP
 
+// Neighbours store the other keys of the word. Collecting them in shared memory, which many drivers need for the stacks
+// of their traversal, would cost more than two atomics that return nothing.
+void storeKey(uint index, uint key) {
+    KeyWordArray words = KeyWordArray(GLINT_FRAME.bucketKeys);
+    uint shift = index % kKeysOfWord * kKeyBits;
+    atomicAnd(words.data[index / kKeysOfWord], ~(0xFFFFFFFFu >> (32u - kKeyBits) << shift));
+    atomicOr(words.data[index / kKeysOfWord], key << shift);
+}
+
 void main() {
     uint index = listIndex();
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {

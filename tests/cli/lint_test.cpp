@@ -64,6 +64,7 @@ cat <<END
  "shaders": [{
   "filename": "x", "hardware": {"architecture": "Valhall", "core": "$*", "revision": "r0p0"},
   "shader": {"api": "Vulkan", "type": "Compute"},
+  "properties": [{"name": "has_side_effects", "value": true}, {"name": "has_slow_ray_traversal", "value": true}],
   "variants": [{
    "name": "Main",
    "performance": {
@@ -231,12 +232,14 @@ TEST_F(LintCommand, MaliocEstimatesComputeShaders) {
     EXPECT_EQ(estimate.at("workRegisters"), 42);
     EXPECT_EQ(estimate.at("spills"), true);
     EXPECT_EQ(estimate.at("spillBytes"), 16);
+    EXPECT_EQ(estimate.at("slowRayTraversal"), true);
     EXPECT_TRUE(estimate.at("occupancy").is_null());
     EXPECT_EQ(estimate.at("core"),
               "--vulkan --compute --format json --core Mali-G710 " + path("compute.spv").string());
     EXPECT_TRUE(json.at("modules").at(1).at("malioc").is_null());
     const Outcome text = run(arguments, {{"PATH", variable}});
     EXPECT_TRUE(has(text.out, "7.25")) << text.out;
+    EXPECT_TRUE(has(text.out, "traversal") && has(text.out, "slow")) << text.out;
     EXPECT_FALSE(has(text.out, "malioc not found")) << text.out;
     const Outcome named = runWithout({"lint", "compute.spv", "--malioc", path("bin/malioc").string()});
     // The script's own cat is not in that PATH, so malioc is found but prints no report.

@@ -44,7 +44,8 @@ base::Json toJson(const inspect::MaliocReport& report) {
             {"workRegisters", base::orNull(report.workRegisters)},
             {"occupancy", base::orNull(report.occupancy)},
             {"spills", base::orNull(report.spills)},
-            {"spillBytes", base::orNull(report.spillBytes)}};
+            {"spillBytes", base::orNull(report.spillBytes)},
+            {"slowRayTraversal", base::orNull(report.slowRayTraversal)}};
 }
 
 base::Json toJson(const compiler::SpirvStatistics& statistics) {
@@ -78,14 +79,15 @@ std::vector<std::string> countsOf(const inspect::LintedModule& module) {
 
 std::vector<std::string> cyclesOf(const inspect::LintedModule& module) {
     if (!module.malioc) {
-        return {"-", "-", "-", "-"};
+        return {"-", "-", "-", "-", "-"};
     }
     const inspect::MaliocReport& it = *module.malioc;
     const std::string spills = it.spillBytes ? fmt::format("{}", *it.spillBytes)
                                : it.spills   ? (*it.spills ? "yes" : "no")
                                              : "-";
     return {it.longestCycles ? fmt::format("{:.2f}", *it.longestCycles) : "-", base::join(it.boundPipelines),
-            it.workRegisters ? fmt::format("{}", *it.workRegisters) : "-", spills};
+            it.workRegisters ? fmt::format("{}", *it.workRegisters) : "-", spills,
+            it.slowRayTraversal ? (*it.slowRayTraversal ? "slow" : "fast") : "-"};
 }
 
 // Returns "-" for 0, so that other numbers stand out.
@@ -122,7 +124,7 @@ std::string toText(const inspect::LintReport& report, Detail detail) {
         rows[0].insert(rows[0].begin(), "module");
     }
     if (hasCycles) {
-        rows[0].insert(rows[0].end(), {"cycles", "bound by", "registers", "spilled"});
+        rows[0].insert(rows[0].end(), {"cycles", "bound by", "registers", "spilled", "traversal"});
     }
     for (const inspect::LintedModule& module : report.modules) {
         std::vector<std::string> row;

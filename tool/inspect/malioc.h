@@ -23,6 +23,7 @@ struct MaliocReport {
     std::optional<std::int64_t> occupancy;  // threads, in percent
     std::optional<bool> spills;
     std::optional<std::int64_t> spillBytes;  // of stack, a thread
+    std::optional<bool> slowRayTraversal;    // ray queries leave the fast path of the hardware
 };
 
 // Returns `program` as given if it contains a slash, else the first executable file of that name in PATH.

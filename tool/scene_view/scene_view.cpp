@@ -133,9 +133,9 @@ glm::dvec3 halfOf(const Bounds& box) {
 
 // Returns the box of a mesh in its own space, as the file gives it.
 Bounds boxOf(const gltf::Mesh& mesh) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    glm::dvec3 lower(kFar);
-    glm::dvec3 upper(-kFar);
+    constexpr double kEndless = std::numeric_limits<double>::infinity();
+    glm::dvec3 lower(kEndless);
+    glm::dvec3 upper(-kEndless);
     for (const gltf::Primitive& primitive : mesh.primitives) {
         for (const gltf::Float3& position : primitive.positions) {
             lower = glm::min(lower, base::toVector(position));

@@ -82,7 +82,7 @@ std::set<std::uint32_t> removedResults(std::span<const std::uint32_t> words,
     return removed;
 }
 
-void append(Words& to, std::span<const std::uint32_t> from) {
+void appendWords(Words& to, std::span<const std::uint32_t> from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
@@ -92,9 +92,9 @@ void addLinkage(Words& decorations, std::uint32_t function, const std::string& n
         text[i / 4] |= std::uint32_t{static_cast<std::uint8_t>(name[i])} << (8 * (i % 4));
     }
     const auto length = static_cast<std::uint32_t>(4 + text.size());
-    append(decorations, std::vector<std::uint32_t>{length << spv::WordCountShift | spv::OpDecorate, function,
-                                                   spv::DecorationLinkageAttributes});
-    append(decorations, text);
+    appendWords(decorations, std::vector<std::uint32_t>{length << spv::WordCountShift | spv::OpDecorate,
+                                                        function, spv::DecorationLinkageAttributes});
+    appendWords(decorations, text);
     decorations.push_back(static_cast<std::uint32_t>(type));
 }
 
@@ -123,28 +123,28 @@ Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint
         }
         if (inFunction) {
             if (stays(fate, opcode)) {
-                append(fate == Fate::Declared ? parts.declarations : parts.definitions, instruction);
+                appendWords(fate == Fate::Declared ? parts.declarations : parts.definitions, instruction);
             }
             inFunction = opcode != spv::OpFunctionEnd;
         } else if (opcode == spv::OpCapability) {
-            append(parts.capabilities, instruction);
+            appendWords(parts.capabilities, instruction);
         } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
             if (keepNames && !removed.contains(words[at + 1])) {
-                append(parts.names, instruction);
+                appendWords(parts.names, instruction);
             }
         } else if (isSetting(opcode)) {
-            append(parts.settings, instruction);
+            appendWords(parts.settings, instruction);
         } else if (isDecoration(opcode)) {
             if (!removed.contains(words[at + 1])) {
-                append(parts.decorations, instruction);
+                appendWords(parts.decorations, instruction);
             }
         } else if (opcode == spv::OpEntryPoint || opcode == spv::OpExecutionMode ||
                    opcode == spv::OpExecutionModeId) {
             if (keepsEntryPoint) {
-                append(parts.settings, instruction);
+                appendWords(parts.settings, instruction);
             }
         } else {
-            append(parts.globals, instruction);
+            appendWords(parts.globals, instruction);
         }
     });
     return parts;
@@ -162,8 +162,8 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
         }
     }
     Parts parts = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
-    append(parts.capabilities,
-           std::vector<std::uint32_t>{2U << spv::WordCountShift | spv::OpCapability, spv::CapabilityLinkage});
+    appendWords(parts.capabilities, std::vector<std::uint32_t>{2U << spv::WordCountShift | spv::OpCapability,
+                                                               spv::CapabilityLinkage});
     for (const SpirvFunction& function : functions) {
         if (std::ranges::find(names.exported, function.name) != names.exported.end()) {
             addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeExport);
@@ -174,7 +174,7 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
     Words module(words.begin(), words.begin() + kSpirvHeaderWords);
     for (const Words* const part : {&parts.capabilities, &parts.settings, &parts.names, &parts.decorations,
                                     &parts.globals, &parts.declarations, &parts.definitions}) {
-        append(module, *part);
+        appendWords(module, *part);
     }
     return module;
 }

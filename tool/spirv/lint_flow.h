@@ -28,9 +28,13 @@ enum class QueryAct {
 
 struct QueryEvent {
     QueryAct act = QueryAct::Other;
-    std::size_t object = 0;   // index into FlowFunction::objects
-    std::size_t origin = 0;   // offset of the instruction in the original module
-    std::uint32_t flags = 0;  // ID of the ray flags, for Initialize only
+    std::size_t object = 0;  // index into FlowFunction::objects
+    std::size_t origin = 0;  // offset of the instruction in the original module
+    // For Initialize only:
+    std::uint32_t flags = 0;          // ID of the ray flags
+    std::uint32_t structure = 0;      // ID of the loaded acceleration structure
+    bool structureIndexed = false;    // it is an element of an array, chosen at run time
+    bool structureElsewhere = false;  // it is loaded in another block
 };
 
 struct FlowBlock {

@@ -8,6 +8,7 @@
 #include <map>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 namespace glint::compiler {
 
@@ -84,8 +85,20 @@ private:
                 module_.constants.emplace_back(it.operands[1], 0);
                 constants_[it.operands[1]] = 0;
                 break;
+            case spv::OpSpecConstantOp:
+                fixed_.insert(it.operands[1]);
+                break;
             case spv::OpTypeRayQueryKHR:
                 queryTypes_.insert(it.operands[0]);
+                break;
+            case spv::OpTypeAccelerationStructureKHR:
+                structureType_ = it.operands[0];
+                break;
+            case spv::OpLoad:
+            case spv::OpConvertUToAccelerationStructureKHR:
+                if (it.operands[0] == structureType_) {
+                    structures_[it.operands[1]] = {it.operands[2], function_.blocks.size()};
+                }
                 break;
             case spv::OpTypeArray:
             case spv::OpTypePointer:
@@ -98,6 +111,8 @@ private:
             case spv::OpCopyObject:
                 if (queryTypes_.contains(it.operands[0])) {
                     chains_[it.operands[1]] = it.operands;
+                } else if (it.opcode != spv::OpCopyObject && isIndexed(it.operands)) {
+                    indexed_.insert(it.operands[1]);
                 }
                 break;
             case spv::OpVariable:
@@ -112,6 +127,13 @@ private:
             default:
                 visitFlow(it);
         }
+    }
+
+    // Whether an access chain has an index that is no constant.
+    bool isIndexed(Operands chain) const {
+        return std::ranges::any_of(chain.subspan(3), [this](std::uint32_t index) {
+            return !constants_.contains(index) && !fixed_.contains(index);
+        });
     }
 
     void visitFlow(const SpirvInstruction& it) {
@@ -160,6 +182,11 @@ private:
             case spv::OpRayQueryInitializeKHR:
                 event.act = QueryAct::Initialize;
                 event.flags = it.operands[2];
+                event.structure = it.operands[1];
+                if (const auto load = structures_.find(event.structure); load != structures_.end()) {
+                    event.structureIndexed = indexed_.contains(load->second.first);
+                    event.structureElsewhere = load->second.second != function_.blocks.size();
+                }
                 [[fallthrough]];
             case spv::OpRayQueryTerminateKHR:
             case spv::OpRayQueryConfirmIntersectionKHR:
@@ -235,6 +262,11 @@ private:
                                                           // to either
     std::unordered_map<std::uint32_t, Operands> chains_;  // pointers to ray queries; a variable has no
                                                           // operands here
+    std::unordered_set<std::uint32_t> fixed_;             // results of operations on specialisation constants
+    std::unordered_set<std::uint32_t> indexed_;           // pointers with an index that is no constant
+    std::uint32_t structureType_ = 0;
+    // By ID of a loaded acceleration structure: what it is loaded from, and the number of blocks until then.
+    std::unordered_map<std::uint32_t, std::pair<std::uint32_t, std::size_t>> structures_;
     std::map<std::uint32_t, std::size_t> labels_;
     std::vector<std::pair<std::size_t, SpirvInstruction>> terminators_;
     std::size_t line_ = 0;

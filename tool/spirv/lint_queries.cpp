@@ -67,6 +67,7 @@ private:
         }
         judgeProceeds(function, start, proceeds);
         judgeFlags(function, start, after);
+        judgeStructure(at(function, start));
     }
 
     void judgeProceeds(const FlowFunction& function, EventPlace start,
@@ -126,6 +127,26 @@ private:
                                "only whether there is a hit",
                                *flags),
                    "add gl_RayFlagsTerminateOnFirstHitEXT if any hit will do");
+        }
+    }
+
+    void judgeStructure(const QueryEvent& initialize) {
+        constexpr const char* kLoadBeside =
+            "load it directly before each OpRayQueryInitializeKHR; optimisers merge such loads";
+        if (initialize.structureIndexed) {
+            report(Severity::Warning, "query-structure-index", initialize,
+                   "the acceleration structure is an element of an array, and its index is no constant",
+                   "bind it by itself, or make the index a specialisation constant: where a compiler can't "
+                   "prove that the index is the same for all threads, traversal is slow");
+        }
+        if (!loads_.insert(initialize.structure).second) {
+            report(Severity::Warning, "query-structure-load", initialize,
+                   "several ray queries share one load of the acceleration structure", kLoadBeside);
+        } else if (initialize.structureElsewhere) {
+            report(Severity::Warning, "query-structure-load", initialize,
+                   "the acceleration structure is loaded in another block than the one that initialises the "
+                   "query",
+                   kLoadBeside);
         }
     }
 
@@ -237,6 +258,7 @@ private:
     const std::map<std::size_t, SpirvPlace>& places_;
     std::vector<LintFinding>& findings_;
     std::set<std::tuple<std::string, std::size_t, std::string>> reported_;
+    std::set<std::uint32_t> loads_;  // of acceleration structures
 };
 
 }  // namespace

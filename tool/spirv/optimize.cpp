@@ -1,6 +1,7 @@
 #include "spirv/optimize.h"
 
 #include "spirv/call_graph.h"
+#include "spirv/finish.h"
 #include "spirv/half.h"
 
 #include <glslang/SPIRV/spirv.hpp>
@@ -198,6 +199,7 @@ Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name
     if (status) {
         // Drivers may inline as they like, so the marks are removed.
         keepApart(words, findFunctions(words), {});
+        status = finishSpirv(words, name);
     }
     return status;
 }

@@ -48,7 +48,7 @@ struct EngineFrame {
     vec3 cameraUp;     // to its top edge
     float pixelSpread;
     vec3 skyZenith;
-    uint tlas;
+    uint pad;
     vec3 skyHorizon;
     float anisotropy;  // of the filter of textures; 1 for none
     vec3 skyGround;

@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, structures[FRAME.tlas], gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT, 0xFFu,
+    rayQueryInitializeEXT(query, structure, gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT, 0xFFu,
                           origin, 0.0, direction, distance);
     rayQueryProceedEXT(query);
     return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT;

@@ -5,7 +5,7 @@
 #include "engine.glsl"
 
 layout(set = 0, binding = 0, rg32ui) uniform readonly uimage2D seenImage;
-layout(set = 1, binding = 4) uniform accelerationStructureEXT structures[2];
+layout(set = 1, binding = 4) uniform accelerationStructureEXT structure;
 layout(set = 1, binding = 5) uniform texture2D textures[];
 layout(set = 1, binding = 6) uniform sampler samplers[];
 

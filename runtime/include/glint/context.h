@@ -88,7 +88,8 @@ struct PositionFetchFeatures {
 };
 
 // The extensions and features that a device must be created with for Glint to use it. Chain `features.pNext`
-// into VkDeviceCreateInfo. The structure points into static memory and into itself, so it can be neither
+// into VkDeviceCreateInfo. Some of the features are needed by some modules only; leaveOutLacking() clears
+// those that a device lacks. The structure points into static memory and into itself, so it can be neither
 // copied nor moved.
 struct DeviceRequirements {
     // `tracers` are the bits to enable, a subset of deviceTracers(). The device then runs packages that have
@@ -99,6 +100,10 @@ struct DeviceRequirements {
                                 bool opacityMicromaps = false, bool shaderClock = false);
     DeviceRequirements(const DeviceRequirements&) = delete;
     DeviceRequirements& operator=(const DeviceRequirements&) = delete;
+
+    // Clears the features that only some modules need and that `device` lacks. Renderers whose package has
+    // such a module name it and the feature.
+    void leaveOutLacking(VkPhysicalDevice device);
 
     static constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;
     std::vector<const char*> extensions;

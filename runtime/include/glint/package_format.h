@@ -15,7 +15,7 @@
 namespace glint::package {
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 19;
+inline constexpr std::uint32_t kVersion = 20;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -79,7 +79,7 @@ enum class HitAnswer : std::uint32_t {
 // Where shaders find a host's bindings. Renderer accepts only the defaults.
 struct Bindings {
     std::uint32_t sceneSet = 0;        // descriptor set of the next three
-    std::uint32_t tlas = 0;            // accelerationStructureEXT[]
+    std::uint32_t tlas = 0;            // accelerationStructureEXT
     std::uint32_t textures = 1;        // texture2D[]
     std::uint32_t samplers = 2;        // sampler[]
     std::uint32_t environmentSet = 1;  // descriptor set of the next

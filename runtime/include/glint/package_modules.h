@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <iterator>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -208,5 +209,9 @@ bool hasPaths(const PackageShape& shape);
 
 // Returns every module of a package, in the order of role, index, tracer.
 std::vector<ModuleKey> requiredModules(const PackageShape& shape);
+
+// Returns what a module demands of a device beyond Vulkan 1.3, as the capabilities of its SPIR-V say: names
+// of features, and of subgroup operations (VK_SUBGROUP_FEATURE_…), each once and sorted. `words` is a module.
+std::vector<std::string> featuresOf(std::span<const std::uint32_t> words);
 
 }  // namespace glint::package

@@ -80,9 +80,8 @@ struct RayBatch {
     VkDeviceAddress answers = 0;    // EngineRadiance[] (16-byte aligned) or EngineSurface[], by slot
     std::uint32_t sampleIndex = 0;  // random numbers differ by slot, sample and seed
     std::uint32_t seed = 0;
-    std::uint8_t mask = 0xFF;     // instances that share no bit with it are not hit
-    std::uint32_t tlasIndex = 0;  // which of the structures of Bindings::tlas
-    VkDeviceAddress tlas = 0;     // the structure itself, if Bindings::tlas is kByAddress
+    std::uint8_t mask = 0xFF;  // instances that share no bit with it are not hit
+    VkDeviceAddress tlas = 0;  // the acceleration structure, if Bindings::tlas is kByAddress
     // The light for rays that leave the scene, with HitAnswer::Radiance.
     SkyView sky{};
     // With a package that reads an environment map. The host binds Environment's image at

@@ -42,12 +42,13 @@ namespace {
 // This keeps textures sharp down to a cosine of 1 / 16.
 constexpr float kMaxAnisotropy = 16.0F;
 
-// Fills the limit `multiprocessors`. Error "vulkan-call".
-Status queryMultiprocessors(Context::State& state) {
+// Fills the limit `multiprocessors` and the features. Error "vulkan-call".
+Status queryReport(Context::State& state) {
     DeviceReport report;
     if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
         return status;
     }
+    state.features = moduleFeatures(report, state.handles);
     if (hasExtension(report, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME)) {
         VkPhysicalDeviceShaderSMBuiltinsPropertiesNV builtins{};
         builtins.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV;
@@ -202,7 +203,7 @@ Status finishContext(Context::State& state) {
         }
     }
     queryLimits(state);
-    if (Status status = queryMultiprocessors(state); !status) {
+    if (Status status = queryReport(state); !status) {
         return status;
     }
     if (Status status = checkQueueFamily(state); !status) {

@@ -73,6 +73,8 @@ struct Context::State {
     ValidationLog log;
     DeviceLimits limits;
     LeafOrder leafOrder = nullptr;  // null: halvingOrder()
+    // What modules may use of the device: moduleFeatures().
+    std::vector<std::string> features;
     // The renderers of this context share this cache.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;
 };

@@ -112,6 +112,13 @@ std::vector<std::string> missingRequirements(VkPhysicalDevice device) {
     return missing.empty() ? missingFrom(report) : missing;
 }
 
+void DeviceRequirements::leaveOutLacking(VkPhysicalDevice device) {
+    DeviceReport report;
+    if (askLoader(device, report).empty()) {
+        glint::leaveOutLacking(report, *this);
+    }
+}
+
 std::uint32_t deviceTracers(VkPhysicalDevice device) {
     DeviceReport report;
     const bool complete = askLoader(device, report).empty() && missingFrom(report).empty();

@@ -236,11 +236,14 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
                                     state.handles.shaderFloat16, state.handles.pipelineStatistics,
                                     state.handles.opacityMicromaps, state.handles.shaderClock);
-    VkPhysicalDeviceFeatures2 available{};
-    available.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2;
-    state.instance.GetPhysicalDeviceFeatures2(state.handles.physicalDevice, &available);
-    requirements.features.features.samplerAnisotropy = available.features.samplerAnisotropy;
-    state.handles.samplerAnisotropy = available.features.samplerAnisotropy == VK_TRUE;
+    DeviceReport report;
+    if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
+        return status;
+    }
+    leaveOutLacking(report, requirements);
+    const VkBool32 anisotropy = report.features.features.features.samplerAnisotropy;
+    requirements.features.features.samplerAnisotropy = anisotropy;
+    state.handles.samplerAnisotropy = anisotropy == VK_TRUE;
     state.handles.queueFamily = chooseQueueFamily(state);
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{};

@@ -23,24 +23,46 @@ struct RequiredFeature {
 #name, [](DeviceRequirements & requirements) -> VkBool32& { return requirements.member.name; } \
     }
 
+// What the runtime or all modules need.
 constexpr RequiredFeature kFeatures[] = {
-    GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
-    GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),
-    // Bucket keys of hits have one or two bytes.
-    GLINT_FEATURE(vulkan11, storageBuffer16BitAccess),
-    GLINT_FEATURE(vulkan12, storageBuffer8BitAccess),
     GLINT_FEATURE(vulkan12, bufferDeviceAddress),
     GLINT_FEATURE(vulkan12, scalarBlockLayout),
-    GLINT_FEATURE(vulkan12, runtimeDescriptorArray),
-    GLINT_FEATURE(vulkan12, shaderSampledImageArrayNonUniformIndexing),
     GLINT_FEATURE(vulkan12, descriptorBindingPartiallyBound),
     GLINT_FEATURE(vulkan12, descriptorBindingSampledImageUpdateAfterBind),
-    GLINT_FEATURE(vulkan12, descriptorBindingVariableDescriptorCount),
     GLINT_FEATURE(vulkan12, hostQueryReset),
     GLINT_FEATURE(vulkan13, dynamicRendering),
     GLINT_FEATURE(vulkan13, synchronization2),
     GLINT_FEATURE(accelerationStructure, accelerationStructure),
 };
+
+// What some modules need. A device without them runs the packages whose modules do not.
+constexpr RequiredFeature kModuleFeatures[] = {
+    GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
+    GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),
+    GLINT_FEATURE(vulkan12, runtimeDescriptorArray),
+    GLINT_FEATURE(vulkan12, shaderSampledImageArrayNonUniformIndexing),
+    // An umbrella of the two above. Modules do not name it.
+    GLINT_FEATURE(vulkan12, descriptorIndexing),
+};
+
+struct SubgroupOperation {
+    const char* name;
+    VkSubgroupFeatureFlagBits bit;
+};
+#define GLINT_SUBGROUP(bit) \
+    SubgroupOperation {     \
+#bit, bit           \
+    }
+constexpr SubgroupOperation kSubgroupOperations[] = {
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_VOTE_BIT),
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_ARITHMETIC_BIT),
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_BALLOT_BIT),
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_SHUFFLE_BIT),
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT),
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_CLUSTERED_BIT),
+    GLINT_SUBGROUP(VK_SUBGROUP_FEATURE_QUAD_BIT),
+};
+#undef GLINT_SUBGROUP
 
 constexpr RequiredFeature kRayQueryFeatures[] = {GLINT_FEATURE(rayQuery, rayQuery)};
 // Lists of rays are dispatched by their length, which only the device knows.
@@ -146,9 +168,10 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         demand(clock, clock.shaderSubgroupClock, VK_KHR_SHADER_CLOCK_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
-    // This is an umbrella bit. The specification requires it if its parts are used with SPIR-V 1.5 modules.
-    vulkan12.descriptorIndexing = VK_TRUE;
     for (const RequiredFeature& feature : kFeatures) {
+        feature.bit(*this) = VK_TRUE;
+    }
+    for (const RequiredFeature& feature : kModuleFeatures) {
         feature.bit(*this) = VK_TRUE;
     }
     for (const TracerNeeds& needs : kTracerNeeds) {
@@ -161,12 +184,52 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
     }
 }
 
+void leaveOutLacking(const DeviceReport& report, DeviceRequirements& requirements) {
+    for (const RequiredFeature& feature : kModuleFeatures) {
+        feature.bit(requirements) = hasFeature(report, feature) ? VK_TRUE : VK_FALSE;
+    }
+}
+
+std::vector<std::string> moduleFeatures(const DeviceReport& report, const DeviceHandles& handles) {
+    std::vector<std::string> features;
+    for (const RequiredFeature& feature : kFeatures) {
+        features.emplace_back(feature.name);
+    }
+    for (const RequiredFeature& feature : kModuleFeatures) {
+        if (hasFeature(report, feature)) {
+            features.emplace_back(feature.name);
+        }
+    }
+    for (const TracerNeeds& needs : kTracerNeeds) {
+        if ((handles.tracers & needs.tracer) != 0) {
+            features.emplace_back(needs.features.front().name);
+        }
+    }
+    for (const SubgroupOperation& operation : kSubgroupOperations) {
+        if ((report.subgroupOperations & operation.bit) != 0) {
+            features.emplace_back(operation.name);
+        }
+    }
+    const std::pair<bool, const char*> chosen[] = {{handles.positionFetch, "rayTracingPositionFetch"},
+                                                   {handles.shaderFloat16, "shaderFloat16"},
+                                                   {handles.shaderClock, "shaderSubgroupClock"}};
+    for (const auto& [enabled, name] : chosen) {
+        if (enabled) {
+            features.emplace_back(name);
+        }
+    }
+    return features;
+}
+
 bool hasExtension(const DeviceReport& report, const char* name) {
     return std::ranges::find(report.extensions, name) != report.extensions.end();
 }
 
 void clearFeatures(DeviceReport& report) {
     for (const RequiredFeature& feature : kFeatures) {
+        feature.bit(report.features) = VK_FALSE;
+    }
+    for (const RequiredFeature& feature : kModuleFeatures) {
         feature.bit(report.features) = VK_FALSE;
     }
     for (const TracerNeeds& needs : kTracerNeeds) {
@@ -209,12 +272,6 @@ std::vector<std::string> missingFrom(const DeviceReport& report) {
     }
     if ((report.subgroupStages & VK_SHADER_STAGE_COMPUTE_BIT) == 0) {
         missing.emplace_back("subgroup operations in compute shaders");
-    }
-    if ((report.subgroupOperations & VK_SUBGROUP_FEATURE_BALLOT_BIT) == 0) {
-        missing.emplace_back("VK_SUBGROUP_FEATURE_BALLOT_BIT");
-    }
-    if ((report.subgroupOperations & VK_SUBGROUP_FEATURE_ARITHMETIC_BIT) == 0) {
-        missing.emplace_back("VK_SUBGROUP_FEATURE_ARITHMETIC_BIT");
     }
     if (report.maxPushConstantBytes < sizeof(gpu::PushConstants)) {
         missing.push_back(std::to_string(sizeof(gpu::PushConstants)) + " bytes of push constants");

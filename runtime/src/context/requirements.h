@@ -31,6 +31,13 @@ struct DeviceReport {
 // Glint runs on such a device.
 std::vector<std::string> missingFrom(const DeviceReport& report);
 
+// Clears the features that only some modules need and that the device lacks.
+void leaveOutLacking(const DeviceReport& report, DeviceRequirements& requirements);
+
+// Returns the features and subgroup operations that modules may use on a device, by the names of
+// package::featuresOf(). Those of DeviceRequirements that the physical device has count as enabled.
+std::vector<std::string> moduleFeatures(const DeviceReport& report, const DeviceHandles& handles);
+
 // Returns the package::Tracer bits whose extensions and features `report` has in full.
 std::uint32_t tracersOf(const DeviceReport& report);
 

@@ -2,9 +2,55 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 
 namespace glint::package {
 namespace {
+
+// The feature that a capability of SPIR-V needs (Vulkan specification, "Capabilities"). Every device with
+// Vulkan 1.3 has those without a name.
+struct CapabilityFeature {
+    std::uint32_t capability;
+    const char* feature;
+};
+constexpr CapabilityFeature kCapabilities[] = {
+    {0, ""},  // Matrix
+    {1, ""},  // Shader
+    {9, "shaderFloat16"},
+    {10, "shaderFloat64"},
+    {11, "shaderInt64"},
+    {22, "shaderInt16"},
+    {25, "shaderImageGatherExtended"},
+    {29, "shaderSampledImageArrayDynamicIndexing"},
+    {31, "shaderStorageImageArrayDynamicIndexing"},
+    {39, "shaderInt8"},
+    {49, "shaderStorageImageExtendedFormats"},
+    {50, ""},  // ImageQuery
+    {55, "shaderStorageImageReadWithoutFormat"},
+    {56, "shaderStorageImageWriteWithoutFormat"},
+    {61, ""},  // GroupNonUniform: the basic operations
+    {62, "VK_SUBGROUP_FEATURE_VOTE_BIT"},
+    {63, "VK_SUBGROUP_FEATURE_ARITHMETIC_BIT"},
+    {64, "VK_SUBGROUP_FEATURE_BALLOT_BIT"},
+    {65, "VK_SUBGROUP_FEATURE_SHUFFLE_BIT"},
+    {66, "VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT"},
+    {67, "VK_SUBGROUP_FEATURE_CLUSTERED_BIT"},
+    {68, "VK_SUBGROUP_FEATURE_QUAD_BIT"},
+    {4433, "storageBuffer16BitAccess"},
+    {4434, "uniformAndStorageBuffer16BitAccess"},
+    {4448, "storageBuffer8BitAccess"},
+    {4472, "rayQuery"},
+    {4478, ""},  // RayTraversalPrimitiveCullingKHR: part of rayQuery and of rayTraversalPrimitiveCulling
+    {4479, "rayTracingPipeline"},
+    {5055, "shaderSubgroupClock"},
+    {5301, ""},  // ShaderNonUniform: comes with a capability that says which resources
+    {5302, "runtimeDescriptorArray"},
+    {5307, "shaderSampledImageArrayNonUniformIndexing"},
+    {5336, "rayTracingPositionFetch"},
+    {5391, "rayTracingPositionFetch"},
+    {5345, "vulkanMemoryModel"},
+    {5347, "bufferDeviceAddress"},
+};
 
 // The numbers of a strategy's roles begin at a multiple of this.
 constexpr std::uint32_t kRolesOfStrategy = 64;
@@ -248,6 +294,26 @@ std::vector<ModuleKey> requiredModules(const PackageShape& shape) {
         }
     }
     return keys;
+}
+
+std::vector<std::string> featuresOf(std::span<const std::uint32_t> words) {
+    // Capabilities come first in a module (SPIR-V 2.4).
+    constexpr std::size_t kHeaderWords = 5;
+    constexpr std::uint32_t kOpCapability = 2U << 16U | 17U;
+    std::vector<std::string> features;
+    for (std::size_t at = kHeaderWords; at + 1 < words.size() && words[at] == kOpCapability; at += 2) {
+        const auto* const known =
+            std::ranges::find(kCapabilities, words[at + 1], &CapabilityFeature::capability);
+        const std::string feature = known == std::end(kCapabilities)
+                                        ? "SPIR-V capability " + std::to_string(words[at + 1])
+                                        : known->feature;
+        if (!feature.empty()) {
+            features.push_back(feature);
+        }
+    }
+    std::ranges::sort(features);
+    features.erase(std::unique(features.begin(), features.end()), features.end());
+    return features;
 }
 
 }  // namespace glint::package

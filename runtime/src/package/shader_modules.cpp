@@ -60,7 +60,7 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
     if (!module) {
         return module.error();
     }
-    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, 1);
     VkComputePipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
     info.pNext = &feedback;
@@ -87,10 +87,13 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
     return createComputePipeline(context, words, layout, creation);
 }
 
-VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation) {
+VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation, std::size_t stageCount) {
+    creation.stageFeedbacks.resize(stageCount);
     VkPipelineCreationFeedbackCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO;
     info.pPipelineCreationFeedback = &creation.feedback;
+    info.pipelineStageCreationFeedbackCount = static_cast<std::uint32_t>(stageCount);
+    info.pPipelineStageCreationFeedbacks = creation.stageFeedbacks.data();
     return info;
 }
 

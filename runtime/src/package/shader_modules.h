@@ -27,6 +27,7 @@ struct PipelineCreation {
     std::uint32_t threads = 0;
     bool halfPicture = false;  // the shader's images of light have 16-bit floats: withHalfImages()
     VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
+    std::vector<VkPipelineCreationFeedback> stageFeedbacks{};
 };
 
 // Makes a compute pipeline from SPIR-V words. Error "vulkan-call".
@@ -36,7 +37,8 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
                                              VkPipelineLayout layout);
 
 // Returns a structure for the chain of a pipeline's creation. The driver writes to `creation`, which must
-// outlive the structure.
-VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation);
+// outlive the structure. It has a place for each of the pipeline's stages: Mesa's driver of Adreno (25.0)
+// writes to the first without looking at their number.
+VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation, std::size_t stageCount);
 
 }  // namespace glint

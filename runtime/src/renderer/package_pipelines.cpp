@@ -180,13 +180,11 @@ Result<UniqueSetLayout> hostSetLayout(Context::State& context,
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     std::vector<VkDescriptorBindingFlags> bindingFlags;
     for (const auto& [binding, descriptor] : descriptors) {
-        const bool isStructure = descriptor.type == VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR;
-        const std::uint32_t count = !descriptor.isArray ? 1U : isStructure ? kTlasCapacity : kArrayLength;
+        const std::uint32_t count = descriptor.isArray ? kArrayLength : 1U;
         bindings.push_back({binding, descriptor.type, count, passStages(context), nullptr});
-        bindingFlags.push_back(descriptor.isArray && !isStructure
-                                   ? VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT |
-                                         VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT
-                                   : 0);
+        bindingFlags.push_back(descriptor.isArray ? VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT |
+                                                        VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT
+                                                  : 0);
     }
     VkDescriptorSetLayoutBindingFlagsCreateInfo flags{};
     flags.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO;

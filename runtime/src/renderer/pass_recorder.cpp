@@ -19,7 +19,6 @@ PassRecorder::PassRecorder(PassState& state, VkCommandBuffer commands, Timing ti
       timesPasses_(timing == Timing::Passes),
       rows_(state.size.height) {
     pushed_.frame = state.frame.constants.address;
-    pushed_.tlasIndex = state.tlasIndex;
 }
 
 void PassRecorder::barrier(const MemoryDependency& dependency) {

@@ -35,7 +35,6 @@ struct PassState {
     Timer timer;
     FrameResources frame;
     Pipelines pipelines;
-    std::uint32_t tlasIndex = 0;
     std::uint32_t pushOffset = 0;  // bytes
     std::vector<PassLabel> timed;  // the last recording's label of each stretch of the timer
     bool recorded = false;

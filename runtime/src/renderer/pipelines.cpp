@@ -93,7 +93,7 @@ Result<UniquePipeline> createGBuffer(Context::State& context, const Package& pac
     rendering.pColorAttachmentFormats = &kSurfaceFormat;
     rendering.depthAttachmentFormat = kDepthFormat;
 
-    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, stages.size());
     rendering.pNext = &feedback;
 
     VkGraphicsPipelineCreateInfo info{};
@@ -171,6 +171,27 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
         planned.keys.push_back(key);
         planned.turn = std::min(planned.turn, turnOf(choice, key.role));
     }
+}
+
+// Error "module-features" for the first module that the choice runs and the device can't.
+Status checkFeatures(const Context::State& context, const Package& package, const PipelineChoice& choice) {
+    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
+        const package::RoleInfo& info = *package::findRole(key.role);
+        const bool compute = !isGraphics(info) && key.tracer != package::kTracerRayPipeline;
+        if (compute && !runs(choice, info, key)) {
+            continue;
+        }
+        for (const std::string& feature : package::featuresOf(package.spirv(key))) {
+            if (std::ranges::find(context.features, feature) == context.features.end()) {
+                return makeError("module-features", "",
+                                 "the module " + pipelineName(package, key) + " needs " + feature +
+                                     ", which the device lacks or was not created with",
+                                 "use another device, or compile the package without what needs it; "
+                                 "manifest.json has the features of each module");
+            }
+        }
+    }
+    return okStatus();
 }
 
 }  // namespace
@@ -346,6 +367,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& source) {
     const auto start = std::chrono::steady_clock::now();
+    if (Status status = checkFeatures(context, package, choice); !status) {
+        return status.error();
+    }
     Pipelines pipelines(context);
     if (Status status = createLayout(context, source, pipelines); !status) {
         return status.error();

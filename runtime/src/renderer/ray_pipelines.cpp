@@ -164,7 +164,7 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
     if (!parts) {
         return parts.error();
     }
-    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation);
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts->stages.size());
     VkRayTracingPipelineCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
     info.pNext = &feedback;

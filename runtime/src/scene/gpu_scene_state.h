@@ -26,10 +26,6 @@
 
 namespace glint {
 
-// The number of structures that the array of set 0 has room for: the scene's, and those that a host
-// application adds.
-inline constexpr std::uint32_t kTlasCapacity = 4;
-
 // Where a geometry record has its positions.
 struct GeometryPositions {
     VkDeviceAddress positions = 0;

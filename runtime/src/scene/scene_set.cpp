@@ -1,4 +1,4 @@
-// Descriptor set 0: acceleration structures, textures, samplers.
+// Descriptor set 0: the acceleration structure, textures, samplers.
 #include "context/vulkan_error.h"
 #include "interop/frame.h"
 #include "scene/gpu_scene_state.h"
@@ -21,10 +21,9 @@ SceneSetSize sizeOf(const GpuScene::State& state) {
 std::array<VkDescriptorSetLayoutBinding, kBindings> makeBindings(const Context::State& context,
                                                                  const SceneSetSize& size) {
     const VkShaderStageFlags stages = VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
-    return {
-        {{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, kTlasCapacity, stages, nullptr},
-         {gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, size.textures, stages, nullptr},
-         {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, size.samplers, stages, nullptr}}};
+    return {{{gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1, stages, nullptr},
+             {gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, size.textures, stages, nullptr},
+             {gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, size.samplers, stages, nullptr}}};
 }
 
 }  // namespace
@@ -38,8 +37,7 @@ Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const Scen
         room = VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT;
     }
     const VkDescriptorBindingFlags arrays = VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT | room;
-    const VkDescriptorBindingFlags bindingFlags[kBindings] = {VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT,
-                                                              arrays, arrays};
+    const VkDescriptorBindingFlags bindingFlags[kBindings] = {0, arrays, arrays};
     VkDescriptorSetLayoutBindingFlagsCreateInfo flags{};
     flags.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO;
     flags.bindingCount = kBindings;

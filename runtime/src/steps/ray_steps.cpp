@@ -191,7 +191,6 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
     }
     state_->timed.clear();
     state_->timing = batch.timing;
-    state_->tlasIndex = batch.tlasIndex;
     if (batch.environment != nullptr) {
         state_->environment = batch.environment->state();
     }

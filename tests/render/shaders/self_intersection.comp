@@ -30,7 +30,7 @@ vec3 offsetByUnits(vec3 position, vec3 n) {
 // the triangle is farther from the origin than `reach`.
 bool meets(TracedHit record, vec3 origin, vec3 direction, float reach) {
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex], gl_RayFlagsNoOpaqueEXT | gl_RayFlagsSkipAABBEXT, 0xFFu,
+    rayQueryInitializeEXT(query, sceneTlas, gl_RayFlagsNoOpaqueEXT | gl_RayFlagsSkipAABBEXT, 0xFFu,
                           origin, 0.0, direction, reach);
     bool found = false;
     while (rayQueryProceedEXT(query)) {

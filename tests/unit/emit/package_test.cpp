@@ -1,5 +1,6 @@
 #include "emit/compile.h"
 #include "emit/modules.h"
+#include "spirv/reader.h"
 #include "support/features.h"
 #include "unit/emit/sample_scene.h"
 
@@ -169,6 +170,90 @@ TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
         ++casesSeen;
     }
     EXPECT_EQ(casesSeen, 4);
+}
+
+// A package of everything that traces: each strategy, tracer and effect, with tests of alpha, deferred shadow
+// rays and paths.
+const compiler::CompiledPackage& everythingThatTraces() {
+    static const compiler::CompiledPackage kPackage = [] {
+        compiler::CompileSettings settings;
+        settings.plan.merge = compiler::MergePolicy::None;
+        settings.plan.fallback = true;
+        settings.strategies = package::allStrategies();
+        settings.tracers = package::kAllTracers;
+        settings.effects = {
+            false, compiler::builtinEffects({"shadow", "reflection", "refraction", "indirect-diffuse"})};
+        settings.shadowThrough = package::ShadowThrough::Glass;
+        settings.maxBounces = 4;
+        settings.skyLight = compiler::SkyLight::On;
+        return compileSample(settings);
+    }();
+    return kPackage;
+}
+
+// Mesa's driver of Adreno makes invalid code of queries that share a load, and SPIRV-Tools merges loads.
+TEST(CompilePackage, EachRayQueryHasItsOwnLoadOfAPlainStructure) {
+    constexpr std::uint32_t kOpLoad = 61;
+    constexpr std::uint32_t kOpRayQueryInitialize = 4473;
+    std::size_t queries = 0;
+    for (const compiler::CompiledModule& module : everythingThatTraces().modules) {
+        std::set<std::uint32_t> loads;
+        std::set<std::uint32_t> variables;
+        compiler::SpirvInstruction before;
+        ASSERT_TRUE(compiler::visitSpirv(module.spirv, [&](const compiler::SpirvInstruction& it) {
+            if (it.opcode == kOpRayQueryInitialize) {
+                ASSERT_EQ(before.opcode, kOpLoad) << module.name;
+                EXPECT_EQ(before.operands[1], it.operands[1]) << module.name;
+                EXPECT_TRUE(loads.insert(it.operands[1]).second) << module.name;
+                variables.insert(before.operands[2]);
+            }
+            before = it;
+        }));
+        // An access chain would be another pointer for each query.
+        EXPECT_LE(variables.size(), 1U) << module.name;
+        EXPECT_EQ(loads.size(), module.statistics.rayQueries);
+        queries += loads.size();
+    }
+    EXPECT_GT(queries, 10U);
+}
+
+// These are all that a module of Glint's own may ask of a device.
+TEST(CompilePackage, ModulesNameTheFeaturesThatTheyNeed) {
+    const compiler::CompiledPackage& package = everythingThatTraces();
+    const std::set<std::string> known{"VK_SUBGROUP_FEATURE_ARITHMETIC_BIT",
+                                      "VK_SUBGROUP_FEATURE_BALLOT_BIT",
+                                      "VK_SUBGROUP_FEATURE_SHUFFLE_RELATIVE_BIT",
+                                      "bufferDeviceAddress",
+                                      "rayQuery",
+                                      "rayTracingPipeline",
+                                      "runtimeDescriptorArray",
+                                      "shaderSampledImageArrayNonUniformIndexing",
+                                      "shaderStorageImageExtendedFormats"};
+    std::map<std::string, std::vector<std::string>> listed;
+    const auto list = [&](const nlohmann::json& module) {
+        listed[module.at("file")] = module.at("features").get<std::vector<std::string>>();
+    };
+    const nlohmann::json manifest = manifestOf(package);
+    for (const nlohmann::json& pass : manifest.at("passes")) {
+        list(pass);
+    }
+    for (const nlohmann::json& shader : manifest.at("shaders")) {
+        std::ranges::for_each(shader.at("stages"), list);
+    }
+    for (const compiler::CompiledModule& module : package.modules) {
+        const std::vector<std::string>& features = listed.at(module.file);
+        EXPECT_EQ(features, package::featuresOf(module.spirv)) << module.file;
+        for (const std::string& feature : features) {
+            EXPECT_TRUE(known.contains(feature)) << module.file << " needs " << feature;
+        }
+        // Neither keys of buckets nor what a module declares and does not use ask for more.
+        const bool ordersHits = module.key.role == ModuleRole::BucketCount ||
+                                module.key.role == ModuleRole::BucketOffset ||
+                                module.key.role == ModuleRole::OrderCheck;
+        EXPECT_TRUE(!ordersHits || std::ranges::find(features, "runtimeDescriptorArray") == features.end());
+        EXPECT_EQ(std::ranges::find(features, "rayQuery") != features.end(), module.statistics.rayQueries > 0)
+            << module.file;
+    }
 }
 
 TEST(CompilePackage, IsTheSameToTheByteWhateverTheJobs) {

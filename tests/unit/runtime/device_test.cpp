@@ -1,4 +1,5 @@
 // Tests contexts, uploads and what upload refuses.
+#include "context/context_state.h"
 #include "device_fixture.h"
 #include "host_device.h"
 #include "interop/scene.h"
@@ -46,6 +47,83 @@ TEST_F(ContextTest, MemoryThatTheHostReachesIsMapped) {
         ASSERT_TRUE(buffer) << toString(buffer.error());
         EXPECT_NE(buffer->mapped, nullptr);
     }
+}
+
+// Each pipeline of a renderer is made with these functions in the place of the device's.
+struct SeenPipelines {
+    DeviceTable real;
+    std::size_t pipelines = 0;
+    std::size_t withoutPlaces = 0;  // for the feedback of each stage
+
+    void look(const void* next, std::uint32_t stageCount) {
+        ++pipelines;
+        const auto* it = static_cast<const VkBaseInStructure*>(next);
+        for (; it != nullptr; it = it->pNext) {
+            if (it->sType == VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO) {
+                const auto* const feedback =
+                    reinterpret_cast<const VkPipelineCreationFeedbackCreateInfo*>(it);
+                withoutPlaces += feedback->pipelineStageCreationFeedbackCount != stageCount ||
+                                         feedback->pPipelineStageCreationFeedbacks == nullptr
+                                     ? 1
+                                     : 0;
+            }
+        }
+    }
+};
+SeenPipelines seen;
+
+// Mesa's driver of Adreno writes to the first stage's place, whatever number is given.
+TEST_F(ContextTest, PipelinesHaveAPlaceForTheFeedbackOfEachStage) {
+    DeviceTable& vk = context().state().vk;
+    seen = {};
+    seen.real = vk;
+    vk.CreateComputePipelines = [](VkDevice device, VkPipelineCache cache, std::uint32_t count,
+                                   const VkComputePipelineCreateInfo* infos,
+                                   const VkAllocationCallbacks* callbacks, VkPipeline* pipelines) {
+        seen.look(infos->pNext, 1);
+        return seen.real.CreateComputePipelines(device, cache, count, infos, callbacks, pipelines);
+    };
+    vk.CreateGraphicsPipelines = [](VkDevice device, VkPipelineCache cache, std::uint32_t count,
+                                    const VkGraphicsPipelineCreateInfo* infos,
+                                    const VkAllocationCallbacks* callbacks, VkPipeline* pipelines) {
+        seen.look(infos->pNext, infos->stageCount);
+        return seen.real.CreateGraphicsPipelines(device, cache, count, infos, callbacks, pipelines);
+    };
+    vk.CreateRayTracingPipelinesKHR = [](VkDevice device, VkDeferredOperationKHR operation,
+                                         VkPipelineCache cache, std::uint32_t count,
+                                         const VkRayTracingPipelineCreateInfoKHR* infos,
+                                         const VkAllocationCallbacks* callbacks, VkPipeline* pipelines) {
+        seen.look(infos->pNext, infos->stageCount);
+        return seen.real.CreateRayTracingPipelinesKHR(device, operation, cache, count, infos, callbacks,
+                                                      pipelines);
+    };
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene = test::squareScene();
+    const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
+    ASSERT_NE(uploaded, nullptr);
+    RendererOptions options{package::kStrategyVisibility, 8, 8};
+    options.pipelineThreads = 1;
+    const auto renderer = Renderer::create(context(), package, *uploaded, options);
+    vk = seen.real;
+    ASSERT_TRUE(renderer) << toString(renderer.error());
+    EXPECT_GT(seen.pipelines, 5U);
+    EXPECT_EQ(seen.withoutPlaces, 0U);
+}
+
+TEST_F(ContextTest, RenderersNameTheModuleAndTheFeatureThatTheDeviceLacks) {
+    const Package package = load(test::makeDeviceSpec());
+    TestScene scene = test::squareScene();
+    const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
+    ASSERT_NE(uploaded, nullptr);
+    std::erase(context().state().features, "shaderStorageImageExtendedFormats");
+    const auto renderer =
+        Renderer::create(context(), package, *uploaded, {package::kStrategyVisibility, 8, 8});
+    ASSERT_FALSE(renderer);
+    EXPECT_EQ(renderer.error().id, "module-features");
+    EXPECT_NE(
+        renderer.error().message.find(" needs shaderStorageImageExtendedFormats, which the device lacks"),
+        std::string::npos)
+        << renderer.error().message;
 }
 
 class AdoptedContextTest : public ContextTest, public ::testing::WithParamInterface<std::uint32_t> {};

@@ -334,14 +334,39 @@ TEST(RequirementsTest, EachMissingFeatureIsNamed) {
               "bufferDeviceAddress, synchronization2 and accelerationStructure");
     EXPECT_EQ(missing([](DeviceReport& r) { r.extensions.erase(r.extensions.begin() + 1); }),
               "VK_KHR_deferred_host_operations");
-    EXPECT_EQ(missing([](DeviceReport& r) { r.subgroupOperations = VK_SUBGROUP_FEATURE_BALLOT_BIT; }),
-              "VK_SUBGROUP_FEATURE_ARITHMETIC_BIT");
+    // These are for the modules that need them.
+    EXPECT_EQ(missing([](DeviceReport& r) {
+                  r.subgroupOperations = 0;
+                  r.features.features.features.shaderStorageImageExtendedFormats = VK_FALSE;
+                  r.features.vulkan12.runtimeDescriptorArray = VK_FALSE;
+              }),
+              "");
     EXPECT_EQ(missing([](DeviceReport& r) { r.subgroupStages = 0; }),
               "subgroup operations in compute shaders");
     EXPECT_EQ(missing([](DeviceReport& r) { r.maxWorkgroupThreads = 128; }), "workgroups of 256 threads");
     EXPECT_EQ(missing([](DeviceReport& r) { r.maxPushConstantBytes = 16; }), "24 bytes of push constants");
     EXPECT_EQ(missing([](DeviceReport& r) { r.hasQueue = false; }),
               "a queue family with graphics and compute");
+}
+
+// A device that has no bytes in storage buffers runs every package, as Adreno 740 has to.
+TEST(RequirementsTest, NoDeviceNeedsWhatOnlySomeModulesNeed) {
+    DeviceReport report;
+    fillReport(report);
+    EXPECT_EQ(report.features.vulkan12.storageBuffer8BitAccess, VK_FALSE);
+    EXPECT_EQ(report.features.vulkan11.storageBuffer16BitAccess, VK_FALSE);
+    report.features.features.features.shaderStorageImageExtendedFormats = VK_FALSE;
+    report.subgroupOperations = VK_SUBGROUP_FEATURE_BALLOT_BIT;
+    DeviceRequirements requirements;
+    leaveOutLacking(report, requirements);
+    EXPECT_EQ(requirements.features.features.shaderStorageImageExtendedFormats, VK_FALSE);
+    EXPECT_EQ(requirements.vulkan12.runtimeDescriptorArray, VK_TRUE);
+    EXPECT_EQ(requirements.vulkan12.bufferDeviceAddress, VK_TRUE);
+    const std::vector<std::string> features = moduleFeatures(report, DeviceHandles{});
+    const auto has = [&](const char* name) { return std::ranges::find(features, name) != features.end(); };
+    EXPECT_TRUE(has("bufferDeviceAddress") && has("rayQuery") && has("VK_SUBGROUP_FEATURE_BALLOT_BIT"));
+    EXPECT_FALSE(has("shaderStorageImageExtendedFormats") || has("rayTracingPipeline") ||
+                 has("VK_SUBGROUP_FEATURE_ARITHMETIC_BIT") || has("shaderFloat16"));
 }
 
 TEST(RequirementsTest, TracersAreThoseWithEveryFeature) {

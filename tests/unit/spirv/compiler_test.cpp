@@ -1,10 +1,14 @@
 #include "spirv/compiler.h"
 
 #include "spirv/optimize.h"
+#include "spirv/reader.h"
 #include "spirv/statistics.h"
+
+#include <glint/package_modules.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <thread>
 #include <vector>
@@ -58,11 +62,107 @@ TEST(CompileShader, FoldsDecidedFeaturesAway) {
     EXPECT_EQ(statistics->branches, 2U);
 }
 
+// Returns the IDs of the structures that ray queries are initialised with. Each must be the result of the
+// instruction directly before.
+std::vector<std::uint32_t> queriedStructures(const std::string& glsl) {
+    constexpr std::uint32_t kOpRayQueryInitialize = 4473;
+    std::vector<std::uint32_t> structures;
+    const auto words = compiler::compileShader({"query.comp", compiler::ShaderStage::Compute, glsl}, {});
+    EXPECT_TRUE(words) << toString(words.error());
+    std::uint32_t before = 0;
+    EXPECT_TRUE(words && compiler::visitSpirv(*words, [&](const compiler::SpirvInstruction& it) {
+                    if (it.opcode == kOpRayQueryInitialize) {
+                        structures.push_back(it.operands[1]);
+                        EXPECT_EQ(before, structures.back());
+                    }
+                    before = it.operands.size() > 1 ? it.operands[1] : 0;
+                }));
+    return structures;
+}
+
+// SPIRV-Tools finds that the loads are equal, in a block and across blocks.
+TEST(CompileShader, EachRayQueryLoadsItsStructureDirectlyBefore) {
+    const auto shader = [](const std::string& structure) {
+        return R"(#version 460
+#extension GL_EXT_ray_query : require
+#extension GL_EXT_nonuniform_qualifier : require
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform accelerationStructureEXT one;
+layout(set = 0, binding = 1) uniform accelerationStructureEXT several[];
+layout(set = 0, binding = 2) buffer Data { uint n; float t; } data;
+layout(push_constant) uniform Pushed { uint index; uvec2 address; } pushed;
+#define STRUCTURE )" +
+               structure + R"(
+float trace(float t) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, STRUCTURE, gl_RayFlagsOpaqueEXT, 0xFFu, vec3(t), 0.0, vec3(0, 0, 1), 1e9);
+    rayQueryProceedEXT(query);
+    return rayQueryGetIntersectionTEXT(query, true);
+}
+void main() {
+    float t = trace(trace(0.5));
+    for (uint i = 0u; i < data.n; ++i) {
+        t += trace(t);
+    }
+    data.t = t > 0.0 ? trace(t) : 0.0;
+}
+)";
+    };
+    for (const char* const structure :
+         {"one", "several[pushed.index]", "accelerationStructureEXT(pushed.address)"}) {
+        std::vector<std::uint32_t> structures = queriedStructures(shader(structure));
+        EXPECT_EQ(structures.size(), 4U) << structure;
+        std::ranges::sort(structures);
+        EXPECT_EQ(std::ranges::adjacent_find(structures), structures.end()) << structure;
+    }
+}
+
 std::string disassembled(const compiler::ShaderSource& source) {
     const auto words = compileShader(source, {});
     const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
     EXPECT_TRUE(text) << toString(text.error());
     return text ? *text : std::string();
+}
+
+// glslang declares what the source declares, and code that is folded away needs no feature of a device.
+TEST(CompileShader, DeclaresNoCapabilityThatNothingNeeds) {
+    const auto shader = [](const char* condition) {
+        return std::string(R"(#version 460
+#extension GL_EXT_ray_query : require
+#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_EXT_shader_8bit_storage : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) uniform accelerationStructureEXT structures[];
+layout(set = 0, binding = 1) buffer Data { uint n; float t; uint8_t bytes[]; } data;
+layout(set = 0, binding = 2) uniform sampler2D images[];
+layout(set = 0, binding = 3, rg32ui) uniform uimage2D pairs;
+void main() {
+    if ()") + condition +
+               R"() {
+        rayQueryEXT query;
+        rayQueryInitializeEXT(query, structures[0], gl_RayFlagsOpaqueEXT, 0xFFu, vec3(0), 0.0, vec3(0, 0, 1), 1e9);
+        rayQueryProceedEXT(query);
+        data.t = rayQueryGetIntersectionTEXT(query, true) + textureLod(images[nonuniformEXT(data.n)], vec2(0), 0.0).x;
+        data.bytes[data.n] = uint8_t(subgroupBallotBitCount(subgroupBallot(data.n > 3u)));
+        data.n = uint((uint64_t(data.n) * data.n) >> 32u) + subgroupAdd(data.n) + imageLoad(pairs, ivec2(0)).x;
+    }
+}
+)";
+    };
+    const auto featuresOf = [](const std::string& glsl) {
+        const auto words = compiler::compileShader({"wide.comp", compiler::ShaderStage::Compute, glsl}, {});
+        EXPECT_TRUE(words) << toString(words.error());
+        return words ? package::featuresOf(*words) : std::vector<std::string>{"none"};
+    };
+    EXPECT_EQ(featuresOf(shader("false")), std::vector<std::string>{});
+    EXPECT_EQ(featuresOf(shader("true")),
+              (std::vector<std::string>{
+                  "VK_SUBGROUP_FEATURE_ARITHMETIC_BIT", "VK_SUBGROUP_FEATURE_BALLOT_BIT", "rayQuery",
+                  "runtimeDescriptorArray", "shaderInt64", "shaderSampledImageArrayNonUniformIndexing",
+                  "shaderStorageImageExtendedFormats", "storageBuffer8BitAccess"}));
 }
 
 TEST(CompileShader, LeavesMembersThatAreReadAtTheirOffsets) {

@@ -249,5 +249,54 @@ TEST(LintQueries, NamesThePlace) {
     EXPECT_NE(toString(lined[0].place).find("in main (a.se:34, word "), std::string::npos);
 }
 
+// The head declares one structure; this shader has an array beside it.
+Rules rulesOfIndex(const std::string& index) {
+    return rules(compile(compiler::ShaderStage::Compute,
+                         std::string(kQueryHead) + R"(
+        layout(constant_id = 3) const uint kChosen = 1u;
+        layout(set = 0, binding = 2) uniform accelerationStructureEXT several[4];
+        void main() {
+            rayQueryEXT q;
+            rayQueryInitializeEXT(q, several[)" +
+                             index + R"(], kAny, 0xFFu, vec3(data.t), 0.0, vec3(0, 0, 1), 10.0);
+            rayQueryProceedEXT(q);
+            data.b = HIT(q);
+        })"));
+}
+
+TEST(LintQueries, StructuresChosenAtRunTimeAreAWarning) {
+    EXPECT_EQ(rulesOfIndex("data.a"), Rules{"warning query-structure-index"});
+    EXPECT_EQ(rulesOfIndex("gl_WorkGroupID.x"), Rules{"warning query-structure-index"});
+    EXPECT_EQ(rulesOfIndex("2"), Rules{});
+    EXPECT_EQ(rulesOfIndex("kChosen"), Rules{});
+    EXPECT_EQ(rulesOfIndex("kChosen + 1u"), Rules{});
+}
+
+// Optimisers make such modules.
+TEST(LintQueries, StructuresThatAreNotLoadedBesideTheQueryAreAWarning) {
+    const Words words = compileQuery(R"(
+        void main() {
+            rayQueryEXT q;
+            START(q, kAny);
+            rayQueryProceedEXT(q);
+            if (HIT(q) == 0u) {
+                START(q, kFast);
+                rayQueryProceedEXT(q);
+                data.t = DISTANCE(q);
+            }
+        })");
+    EXPECT_EQ(rules(words), Rules{});
+    Words shared = words;
+    std::uint32_t first = 0;
+    EXPECT_TRUE(compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& it) {
+        if (it.opcode == kOpRayQueryInitialize) {
+            first = first == 0 ? it.operands[1] : first;
+            shared[static_cast<std::size_t>(&it.operands[1] - words.data())] = first;
+        }
+    }));
+    EXPECT_EQ(rules(shared), Rules{"warning query-structure-load"});
+    EXPECT_NE(findings(shared).at(0).message.find("share"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace glint::testing

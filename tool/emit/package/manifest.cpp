@@ -154,6 +154,7 @@ ManifestJson moduleEntry(const CompiledModule& module) {
             {"textureFetches", module.statistics.textureFetches},
             {"rayQueries", module.statistics.rayQueries},
             {"branches", module.statistics.branches},
+            {"features", package::featuresOf(module.spirv)},
             {"hash", base::hexHash(module.hash)}};
 }
 

@@ -1,13 +1,13 @@
 #extension GL_EXT_ray_query : require
 #extension GL_EXT_ray_flags_primitive_culling : require
 
-layout(set = kSetScene, binding = kBindingTlas) uniform accelerationStructureEXT sceneTlas[];
+layout(set = kSetScene, binding = kBindingTlas) uniform accelerationStructureEXT sceneTlas;
 
 // The distance stands in the place of the cone's width.
 HitRecord traceRay(uint target) {
     vec3 direction = FRAME.sampleAims.data[target].direction;
     rayQueryEXT query;
-    rayQueryInitializeEXT(query, sceneTlas[pushed.tlasIndex],
+    rayQueryInitializeEXT(query, sceneTlas,
                           gl_RayFlagsOpaqueEXT | gl_RayFlagsSkipAABBEXT | gl_RayFlagsCullBackFacingTrianglesEXT, 0xFFu,
                           FRAME.sampleStarts.data[target].origin_orRadiance, 0.0, direction, 1e18);
     rayQueryProceedEXT(query);

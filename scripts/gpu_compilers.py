@@ -1,0 +1,223 @@
+#!/usr/bin/env python3
+"""Reduces the reports of scripts/gpu_compilers.sh, and writes the tables of docs/gpu_compilers.md from them.
+
+    scripts/gpu_compilers.py reduce REPORTS OUT.csv    REPORTS has GPU.PACKAGE.json of `glint inspect --pipelines`
+    scripts/gpu_compilers.py tables FOLDER DOCUMENT    FOLDER has before.csv and after.csv
+
+A row of the CSV is a pipeline on a GPU. The facts are those of `glint inspect --pipelines`; `valid` says whether Mesa's
+checks of its own intermediate code passed for the package, `instructions` is the driver's count.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import re
+
+FACTS = ["registers", "spills", "scratchBytes", "codeBytes", "occupancy", "cost"]
+COLUMNS = ["gpu", "package", "pipeline", "tracer", "strategies", "share", "valid", "failure", "subgroup", *FACTS]
+COLUMNS += ["instructions", "spirv"]
+GPUS = {
+    "navi21": "Radeon RX 6800 (RDNA 2)",
+    "navi31": "Radeon RX 7900 (RDNA 3)",
+    "gfx1200": "Radeon RX 9060 (RDNA 4)",
+    "a740": "Adreno 740",
+    "a750": "Adreno 750",
+    "dg2": "Arc A-series",
+}
+PACKAGES = {"gallery": "gallery", "sheenchair": "SheenChair", "cases64": "64 cases"}
+# A row of the tables: its name, and the pipelines that it is of.
+GROUPS = [
+    ("cases (visibility)", r"ShadeCase |shade \S"),
+    ("uber", r"UberShade"),
+    ("sorted uber", r"SortedShade"),
+    ("hit shaders", r"HitTrace"),
+    ("trace", r"Trace$"),
+    ("lighting", r"Lighting$"),
+    ("walk", r"EffectWalk"),
+    ("all others", r""),
+]
+
+
+def number(value):
+    """A number without digits that say nothing."""
+    return "" if value is None else f"{value:.6g}"
+
+
+def instructions_of(pipeline):
+    counts = [
+        statistic["value"]
+        for executable in pipeline["executables"]
+        for statistic in executable["statistics"]
+        if statistic["name"] in ("Instructions", "Instruction Count")
+    ]
+    return sum(counts) if counts else None
+
+
+def rows_of(path):
+    gpu, package = path.stem.split(".")
+    report = json.loads(path.read_text())
+    valid = "no" if path.with_suffix(".invalid").exists() else "yes"
+    for pipeline in report["pipelines"]:
+        modules = pipeline["modules"]
+        yield {
+            "gpu": gpu,
+            "package": package,
+            "pipeline": pipeline["name"],
+            "tracer": pipeline["tracer"] or "",
+            "strategies": " ".join(pipeline["strategies"]),
+            "share": number(sum(module["share"] for module in modules)),
+            "valid": valid,
+            "failure": pipeline["failure"] or "",
+            "subgroup": pipeline["subgroupSize"],
+            **{name: number(pipeline["facts"][name]) for name in FACTS},
+            "instructions": number(instructions_of(pipeline)),
+            "spirv": number(sum(module["instructions"] for module in modules)),
+        }
+
+
+def reduce(reports, target):
+    order = {name: i for i, name in enumerate([*GPUS, *PACKAGES])}
+    rows = [row for path in reports.glob("*.*.json") for row in rows_of(path)]
+    rows.sort(key=lambda row: (order[row["gpu"]], order[row["package"]], row["pipeline"], row["tracer"]))
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with target.open("w", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    print(f"{len(rows)} rows in {target}")
+
+
+def read(path):
+    """{(gpu, package): {group: [row]}}; a row's facts are numbers or None."""
+    measured = {}
+    if not path.exists():
+        return measured
+    with path.open(newline="") as file:
+        for row in csv.DictReader(file):
+            for name in [*FACTS, "instructions", "share"]:
+                row[name] = float(row[name]) if row[name] else None
+            group = next(name for name, pattern in GROUPS if re.match(pattern, row["pipeline"]))
+            measured.setdefault((row["gpu"], row["package"]), {}).setdefault(group, []).append(row)
+    return measured
+
+
+def span(rows, fact, show):
+    """The least and the most of a fact."""
+    values = [row[fact] for row in rows if row[fact] is not None]
+    if not values:
+        return "-"
+    low, high = show(min(values)), show(max(values))
+    return low if low == high else f"{low} to {high}"
+
+
+def whole(value):
+    return f"{value:.0f}"
+
+
+def percent(value):
+    return f"{100 * value:.0f} %"
+
+
+def kilobytes(value):
+    return f"{value / 1024:.0f}"
+
+
+# Heading, fact, text of a value.
+SHOWN = [
+    ("registers", "registers", whole),
+    ("occupancy", "occupancy", percent),
+    ("spills", "spills", whole),
+    ("scratch, bytes", "scratchBytes", whole),
+    ("instructions", "instructions", whole),
+    ("code, kB", "codeBytes", kilobytes),
+    ("cost", "cost", whole),
+]
+
+
+def cell(before, after, fact, show):
+    now = span(after, fact, show)
+    then = span(before, fact, show) if before else now
+    return now if then == now else f"{then} → {now}"
+
+
+def table(gpu, before, after):
+    lines = ["| package | pipelines | n | " + " | ".join(heading for heading, _, _ in SHOWN) + " |"]
+    lines.append("|---|---|---:|" + "---:|" * len(SHOWN))
+    for package, name in PACKAGES.items():
+        groups = after.get((gpu, package), {})
+        for group, _ in GROUPS:
+            rows = groups.get(group, [])
+            if rows:
+                old = before.get((gpu, package), {}).get(group, [])
+                made = sum(1 for row in rows if not row["failure"])
+                count = f"{made}" if made == len(rows) else f"{made} of {len(rows)}"
+                cells = [cell(old, rows, fact, show) for _, fact, show in SHOWN]
+                lines.append(f"| {name} | {group} | {count} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def weighted(rows, fact):
+    """The mean of a fact over the hits of the cases."""
+    known = [(row["share"] or 0, row[fact]) for row in rows if row[fact] is not None]
+    total = sum(share for share, _ in known)
+    return sum(share * value for share, value in known) / total if total else None
+
+
+def spilling(groups):
+    return sorted({row["pipeline"] for rows in groups.values() for row in rows if row["spills"]})
+
+
+def summary(before, after):
+    lines = ["| GPU | package | occupancy of a hit's case | least | cost of a hit | uber | pipelines that spill | invalid code |"]
+    lines.append("|---|---|---:|---:|---:|---:|---:|---|")
+    for gpu, title in GPUS.items():
+        for package, name in PACKAGES.items():
+            texts = []
+            for groups in (before.get((gpu, package)), after.get((gpu, package))):
+                if not groups:
+                    texts.append(None)
+                    continue
+                cases = groups.get("cases (visibility)", [])
+                uber = groups.get("uber", [])
+                occupancy = weighted(cases, "occupancy")
+                cost = weighted(cases, "cost")
+                rows = [row for rows in groups.values() for row in rows]
+                texts.append([
+                    "-" if occupancy is None else percent(occupancy),
+                    span(cases, "occupancy", percent).split(" to ")[0],
+                    "-" if cost is None else whole(cost),
+                    span(uber, "cost", whole),
+                    str(len(spilling(groups))),
+                    "no" if all(row["valid"] == "yes" for row in rows) else "yes",
+                ])
+            then, now = texts
+            if now:
+                cells = [b if a is None or a == b else f"{a} → {b}" for a, b in zip(then or [None] * len(now), now)]
+                lines.append(f"| {title} | {name} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def write_tables(folder, document):
+    before, after = read(folder / "before.csv"), read(folder / "after.csv")
+    text = document.read_text()
+    blocks = {"summary": summary(before, after), **{gpu: table(gpu, before, after) for gpu in GPUS}}
+    for name, lines in blocks.items():
+        begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
+        if begin not in text:
+            raise SystemExit(f"{document} has no {begin.strip()}")
+        head, rest = text.split(begin)
+        text = head + begin + "\n" + "\n".join(lines) + "\n\n" + end + rest.split(end, 1)[1]
+    document.write_text(text)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("what", choices=["reduce", "tables"])
+    parser.add_argument("source", type=pathlib.Path)
+    parser.add_argument("target", type=pathlib.Path)
+    arguments = parser.parse_args()
+    (reduce if arguments.what == "reduce" else write_tables)(arguments.source, arguments.target)
+
+
+if __name__ == "__main__":
+    main()
