@@ -1,6 +1,7 @@
 // glint bench: what each setting costs in time, and what it gains in accuracy.
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/staged_file.h"
 #include "cli/bench/arguments.h"
 #include "cli/bench/calibrate.h"
 #include "cli/bench/text.h"
@@ -113,10 +114,10 @@ int run(const Console& console, const BenchArguments& arguments) {
 
 int reportDevice(const Console& console, const BenchArguments& arguments) {
     const std::string& file = arguments.calibrate.deviceReport;
-    if (Status writable = checkOutputFile(file); !writable) {
+    if (Status writable = base::checkOutputFile(file); !writable) {
         return fail(console, writable.error());
     }
-    CompileCache cache(arguments.cache, "");
+    CompileCache cache(arguments.render.cache, "");
     std::optional<gltf::Scene> scene;
     if (!arguments.render.scene.empty()) {
         const Result<gltf::ImportOptions> import =

@@ -11,8 +11,6 @@ namespace glint::compiler {
 
 namespace {
 
-constexpr std::string_view kMeasuredCases = "visibility";
-
 const PackageCosts* findPackage(const GpuCosts& gpu, std::string_view merge, std::string_view shadows,
                                 std::uint32_t precision) {
     const auto found = std::ranges::find_if(gpu.packages, [&](const PackageCosts& package) {
@@ -21,14 +19,9 @@ const PackageCosts* findPackage(const GpuCosts& gpu, std::string_view merge, std
     return found == gpu.packages.end() ? nullptr : &*found;
 }
 
-// Returns the strategy with a module a case.
+// Returns the strategy that has a module for each case. The table has one.
 std::string_view caseStrategy() {
-    for (const package::StrategyInfo& info : package::strategyTable()) {
-        if (info.dispatchesCases) {
-            return info.name;
-        }
-    }
-    return kMeasuredCases;
+    return std::ranges::find_if(package::strategyTable(), &package::StrategyInfo::dispatchesCases)->name;
 }
 
 // Returns the cost of the cases of a package, for each hit; 0 if it has none.

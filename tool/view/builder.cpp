@@ -50,7 +50,7 @@ bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b) {
            });
 }
 
-Builder::Builder(const Request& request, const Context& context)
+Builder::Builder(const Request& request, Context& context)
     : request_(request), context_(context), thread_([this] { work(); }) {}
 
 Builder::~Builder() {

@@ -63,7 +63,7 @@ struct BuildOrder {
 class Builder {
 public:
     // What is given must outlive the builder.
-    Builder(const Request& request, const Context& context);
+    Builder(const Request& request, Context& context);
     // Waits for a build that is running.
     ~Builder();
     Builder(const Builder&) = delete;
@@ -96,7 +96,7 @@ private:
     void say(std::string text);
 
     const Request& request_;
-    const Context& context_;
+    Context& context_;
     compiler::WarmModules warm_;
     // The last scene and its textures, and what they were read with.
     std::shared_ptr<const gltf::Scene> scene_;

@@ -91,8 +91,8 @@ Json GltfBuilder::document() const {
     }
     std::set<std::string> names;
     collectExtensions(all, names);
-    for (const Json& buffer : otherBuffers) {
-        collectExtensions(buffer, names);
+    for (const Json& other : otherBuffers) {
+        collectExtensions(other, names);
     }
     if (all.contains("extensionsRequired") && all["extensionsRequired"].is_array()) {
         for (const Json& name : all["extensionsRequired"]) {
