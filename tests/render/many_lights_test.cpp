@@ -318,7 +318,7 @@ TEST(ManyLights, CoarseNumbersChooseNoLightThatIsNearlyImpossible) {
     gltf::Scene scene = hallOfLights();
     scene.lights.pop_back();  // the sun
     for (gltf::Light& light : scene.lights) {
-        light.intensity *= std::pow(10.0F, 3.0F * light.position[0]);
+        light.intensity *= static_cast<float>(std::pow(10.0, 3.0 * light.position[0]));
     }
     const LoadedScene loaded = load(scene, 1);
     ASSERT_TRUE(loaded.ok());

@@ -48,6 +48,8 @@ private:
     std::mt19937_64 numbers_;
 };
 
+}  // namespace
+
 // The attributes of a primitive besides its positions.
 struct Attributes {
     bool normals = false;
@@ -55,7 +57,7 @@ struct Attributes {
     bool colors = false;
 };
 constexpr int kAttributeChoices = 8;
-Attributes attributesOf(int choice) {
+static Attributes attributesOf(int choice) {
     return {(choice & 1) != 0, (choice & 2) != 0, (choice & 4) != 0};
 }
 
@@ -92,6 +94,8 @@ struct Lamp {
     double range = 0.0;
     double cone = 0.5;
 };
+
+namespace {
 
 constexpr int kMaterials = 8;
 
