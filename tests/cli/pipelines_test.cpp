@@ -46,9 +46,9 @@ protected:
         line.insert(line.end(), options.begin(), options.end());
         const Outcome outcome = run(line, variables);
         EXPECT_EQ(outcome.exit, 0) << outcome.err;
-        Json json = outcome.json();
-        expectFits("inspect", json);
-        return json;
+        Json printed = outcome.json();
+        expectFits("inspect", printed);
+        return printed;
     }
 };
 
@@ -56,17 +56,17 @@ protected:
 TEST_F(Pipelines, HaveEveryModuleOfThePackage) {
     writeTinyScene(path(""), {.masked = true, .animated = true});
     compile("scene.gltf", "package", {"--strategy", "all", "--tracer", "all", "--fallback"});
-    const Json json = report({"--validate"});
+    const Json all = report({"--validate"});
     std::set<std::string> made;
     std::set<std::string> names;
-    for (const Json& pipeline : json.at("pipelines")) {
+    for (const Json& pipeline : all.at("pipelines")) {
         EXPECT_TRUE(pipeline.at("failure").is_null()) << pipeline;
         names.insert(pipeline.at("name").get<std::string>() + " " + pipeline.at("tracer").dump());
         for (const Json& module : pipeline.at("modules")) {
             made.insert(module.at("file").get<std::string>());
         }
     }
-    EXPECT_EQ(names.size(), json.at("pipelines").size()) << "names and tracers tell pipelines apart";
+    EXPECT_EQ(names.size(), all.at("pipelines").size()) << "names and tracers tell pipelines apart";
     for (const Json& module : run({"inspect", "package", "--json"}).json().at("modules")) {
         const std::string file = module.at("file").get<std::string>();
         EXPECT_TRUE(made.contains(file) || file.ends_with("gbuffer.frag.spv")) << file;
@@ -76,8 +76,8 @@ TEST_F(Pipelines, HaveEveryModuleOfThePackage) {
 TEST_F(Pipelines, OfAHostNeedNoSceneEither) {
     writeTinyScene(path(""));
     compile("scene.gltf", "package", {"--passes", "steps", "--tracer", "all", "--strategy", "all"});
-    const Json json = report({"--validate"});
-    EXPECT_GT(json.at("pipelines").size(), 4U);
+    const Json all = report({"--validate"});
+    EXPECT_GT(all.at("pipelines").size(), 4U);
 }
 
 TEST_F(Pipelines, RefuseFilesThatAreNoReports) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 
 namespace glint::oracle {
@@ -18,9 +19,13 @@ inline double squared(double x) {
     return x * x;
 }
 
-template <typename Number>
-Vec3 toVec(const std::array<Number, 3>& v) {
-    return {v[0], v[1], v[2]};
+template <typename Number, std::size_t n>
+glm::vec<n, double> toVec(const std::array<Number, n>& v) {
+    glm::vec<n, double> result;
+    for (std::size_t i = 0; i < n; ++i) {
+        result[static_cast<int>(i)] = v[i];
+    }
+    return result;
 }
 
 // Returns the columns of a frame: two tangents and the axis, which must be a unit vector.

@@ -10,15 +10,6 @@ namespace {
 
 constexpr double kOwnSurface = 1e-9;  // share of the scene's size
 
-template <std::size_t n>
-glm::vec<n, double> toVec(const std::array<float, n>& v) {
-    glm::vec<n, double> result;
-    for (std::size_t i = 0; i < n; ++i) {
-        result[static_cast<int>(i)] = v[i];
-    }
-    return result;
-}
-
 glm::dmat4 toMatrix(const gltf::Matrix4& m) {
     glm::dmat4 matrix;
     for (std::size_t i = 0; i < m.size(); ++i) {
