@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Runs the commands of README.md as a reader would paste them, and compares what they print with what stands there.
 
-usage: scripts/readme.py [--only cheap|all] [--update] [--folder DIR] [README.md]
+usage: scripts/readme.py [--only cheap|built|all] [--update] [--folder DIR] [README.md]
 
 A block of commands is fenced as sh, and the block fenced as text right after it is what it prints. The blocks run from
 top to bottom in one shell, in the folder DIR (default: the repository). A comment before a block of commands says more:
 
-  <!-- once -->  it installs or builds, and is run with --only all alone
-  <!-- slow -->  it takes more than some seconds, and is run with --only all alone
+  <!-- once -->  it installs or builds, and is run with --only all, the default
+  <!-- gpu -->   it takes hours without a GPU, and is not run
+  <!-- slow -->  it takes more than some seconds, and is run with --only built and all
 
 In what is printed, times (12.3 ms, 4 s) may differ, and so may the width of gaps. A line of three dots stands for any
 number of lines, and three dots within a line for any text. --update writes what was printed into README.md, where it
@@ -67,7 +68,7 @@ class Shell:
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__.split("\n\n")[1].removeprefix("usage: "))
-    parser.add_argument("--only", choices=["cheap", "all"], default="all")
+    parser.add_argument("--only", choices=["cheap", "built", "all"], default="all")
     parser.add_argument("--update", action="store_true")
     parser.add_argument("--folder", type=pathlib.Path, default=ROOT)
     parser.add_argument("readme", nargs="?", type=pathlib.Path, default=ROOT / "README.md")
@@ -77,7 +78,7 @@ def main():
     failures = 0
     ran = 0
     for block in BLOCK.finditer(text):
-        if arguments.only == "cheap" and block["mark"]:
+        if block["mark"] in {"cheap": ("gpu", "once", "slow"), "built": ("gpu", "once"), "all": ("gpu",)}[arguments.only]:
             continue
         ran += 1
         start = time.monotonic()
