@@ -124,15 +124,21 @@ function(glint_add_materials)
   # The stamp has the time at which the last run began, so that a file that is edited while the tool runs is newer.
   # Files that did not change keep their time, so nothing that reads them is built again. A rule of their own has them
   # as products: Ninja before 1.12 takes a rule for as new as the newest of its outputs.
+  # A step with a lock may write that file, which it has read, so its stamp has the time at which it ended.
   set(stamp "${base}.stamp")
   set(written "${base}.written")
+  if(lock)
+    set(finish "${CMAKE_COMMAND}" -E touch "${stamp}")
+  else()
+    set(finish "${CMAKE_COMMAND}" -E rename "${base}.begun" "${stamp}")
+  endif()
   add_custom_command(
     OUTPUT "${stamp}"
     COMMAND "${CMAKE_COMMAND}" -E make_directory "${arg_OUTPUT_DIRECTORY}"
     COMMAND "${CMAKE_COMMAND}" -E touch "${base}.begun"
     COMMAND "${tool}" compile ${scenes} -o "${base}" ${options} ${arg_OPTIONS} --depfile "${base}.d" --depfile-target
             "${stamp}"
-    COMMAND "${CMAKE_COMMAND}" -E rename "${base}.begun" "${stamp}"
+    COMMAND ${finish}
     DEPENDS ${scenes} ${pack_files} "${tool}"
     DEPFILE "${base}.d"
     WORKING_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}"

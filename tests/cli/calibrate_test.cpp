@@ -133,6 +133,7 @@ TEST_F(Calibrate, KeepsWhatElseIsInTheFolder) {
 
 // What a person sends must not tell who it is.
 TEST_F(Calibrate, ReportsTheDeviceWithoutNamesOfPeople) {
+    std::filesystem::create_directory(path("secret"));
     writeTinyScene(path("secret"));
     const Outcome outcome = run({"bench", "secret/scene.gltf", "--device-report", "report.json", "--quick",
                                  "--size", "16x16", "--spp", "1", "--json"},

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -55,8 +56,20 @@ fs::path temporaryOf(const fs::path& path) {
     return path.string() + std::string(kTag) + std::to_string(getpid());
 }
 
-// Makes the temporary file of `path` and removes it. Returns 0, or errno.
+// Makes a file without a name in the folder of `path`, so that nothing is left even by a process that is
+// killed. Where the file system has none, it is the temporary file of `path`. Returns 0, or errno.
 int tryToWrite(const fs::path& path) {
+#ifdef O_TMPFILE
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    constexpr mode_t kOwner = 0600;
+    if (const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY, kOwner); file >= 0) {
+        close(file);
+        return 0;
+    }
+    if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
+        return errno;
+    }
+#endif
     const fs::path probe = temporaryOf(path);
     const int failure = writeNew(probe, {});
     std::error_code ignored;
@@ -136,7 +149,7 @@ Status checkOutputFile(const fs::path& path) {
 
 Status checkOutputFolder(const fs::path& folder) {
     std::error_code error;
-    fs::path present = fs::absolute(folder, error);
+    fs::path present = fs::absolute(folder.empty() ? fs::path(".") : folder, error);
     while (!fs::exists(present, error) && present.has_relative_path()) {
         present = present.parent_path();
     }

@@ -62,7 +62,7 @@ struct GpuCosts {
 // Returns null if the package has no module of the role. Ray queries come before ray tracing pipelines.
 const ModuleCost* findModule(const PackageCosts& package, std::string_view role);
 
-// Returns the role of the module that shades the hits of a strategy: "ShadeCase", for instance.
+// Returns the role of the module that shades the hits of a strategy.
 std::string_view shadingRole(std::string_view strategy);
 
 // Returns how much longer an instruction takes in a strategy's shading module than in one of a case, for each

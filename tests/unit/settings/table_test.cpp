@@ -122,7 +122,7 @@ TEST(Configurations, AreTheSettingsThatABenchSweeps) {
     EXPECT_EQ(changed.renderer.ordering, package::Ordering::TileSort);
     EXPECT_EQ(compiler::wordsOf(
                   compiler::Configuration{{"position-fetch", "on"}, {"batch-effects", "off"}, {"ssr", "8"}}),
-              (std::vector<std::string>{"--ssr", "8", "--position-fetch"}));
+              (std::vector<std::string>{"--ssr", "8", "--position-fetch", "--no-batch-effects"}));
 }
 
 }  // namespace
