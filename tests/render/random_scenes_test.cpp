@@ -132,6 +132,10 @@ public:
         submit();
         FrameOptions frame;
         frame.camera = camera->view;
+        // The editable scene counts its places from 0, and is given those of `data`, which have an origin.
+        for (std::size_t i = 0; i < data.origin.size(); ++i) {
+            frame.camera.position[i] -= data.origin[i];
+        }
         Picture first;
         first.camera = *camera;
         for (std::size_t i = 0; i < count; ++i) {
