@@ -6,7 +6,7 @@
                                    [--tracer auto|ray-query|ray-pipeline] [--device NAME] [--json FILE]
 
 The scene is that of measure_lights.py with lamps of two triangles in place of points: each shines down, and the flux of
-all does not depend on their number. `chance` has --emissive-lights off, and one bounce more, so that the mean is the
+all does not depend on their number. `chance` has --no-emissive-lights, and one bounce more, so that the mean is the
 same. The others have --emissive-lights and --lights K. The error is the relMse against --reference-spp samples of
 --lights 8, which falls as 1 / samples; it is given for one sample. The time is the median over the rounds of the device
 time of all passes of a sample. `time at equal error` is that of error / TARGET samples. --build renders one sample with so

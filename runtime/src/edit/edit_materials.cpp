@@ -251,7 +251,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     }
     if (state_->trustsTextures) {
         return makeError("texture-trusted", "", "the shaders of the package rely on what its textures hold",
-                         "compile it with --trust-textures off, or with --fallback");
+                         "compile it with --no-trust-textures, or with --fallback");
     }
     Result<DeviceImage> made = makeImage(*state_, image, entry->srgb, texture.index);
     if (!made) {
