@@ -128,8 +128,14 @@ bool isForWriting(int flags) {
     return (flags & O_ACCMODE) != O_RDONLY || (flags & O_CREAT) != 0;
 }
 
+// A file without a name changes nothing that anybody sees.
+bool isNameless(int flags) {
+    return (flags & O_TMPFILE) == O_TMPFILE;
+}
+
 bool isWritten(int file) {
-    return isInFolder(file) && isForWriting(fcntl(file, F_GETFL));
+    const int flags = fcntl(file, F_GETFL);
+    return isInFolder(file) && isForWriting(flags) && !isNameless(flags);
 }
 
 bool isForWriting(const char* mode) {
@@ -144,10 +150,9 @@ extern "C" {
 int open(const char* path, int flags, ...) {
     va_list list;
     va_start(list, flags);
-    const bool isNameless = (flags & O_TMPFILE) == O_TMPFILE;  // changes nothing that anybody sees
-    const mode_t mode = (flags & O_CREAT) != 0 || isNameless ? va_arg(list, mode_t) : 0;
+    const mode_t mode = (flags & O_CREAT) != 0 || isNameless(flags) ? va_arg(list, mode_t) : 0;
     va_end(list);
-    return !isForWriting(flags) || isNameless || allowPath(Call::Space, AT_FDCWD, path)
+    return !isForWriting(flags) || isNameless(flags) || allowPath(Call::Space, AT_FDCWD, path)
                ? GLINT_NEXT(open)(path, flags, mode)
                : -1;
 }

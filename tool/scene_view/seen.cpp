@@ -214,7 +214,11 @@ std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewD
         std::vector<std::string> shown;
     };
     std::map<Unseen, Group> groups;
-    Looker looker(scene, view, camera.view);
+    CameraView placed = camera.view;  // counted from the origin, as the instances are
+    for (std::size_t i = 0; i < view.origin.size(); ++i) {
+        placed.position[i] -= view.origin[i];
+    }
+    Looker looker(scene, view, placed);
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
         const Unseen reason = looker.instance(i);
         if (reason == Unseen::None && !isCertain) {
