@@ -141,7 +141,8 @@ TEST_F(Explain, ATextureWithoutItsUvsIsNamed) {
     file["textures"] = nlohmann::json::array({{{"source", 0}}});
     file["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
     writeText(scene_, file.dump());
-    const Outcome outcome = run({"explain", scene_, "--material", "Floor", "--no-trust-textures"});
+    const Outcome outcome = run(
+        {"explain", scene_, "--material", "Floor", "--trust-textures", "off" /* as --no-trust-textures */});
     EXPECT_NE(outcome.out.find("baseColorTexture: the primitive has no TEXCOORD_0"), std::string::npos)
         << outcome.out << outcome.err;
     EXPECT_NE(outcome.err.find("[input-missing]"), std::string::npos) << outcome.err;

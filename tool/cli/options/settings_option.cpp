@@ -41,6 +41,22 @@ std::optional<std::string> given(std::span<const char* const> arguments, std::st
     return std::nullopt;
 }
 
+// Takes "--sun off" for "--sun=off": boolean options have no value of their own, but people give one.
+std::vector<std::string> joinSwitches(const CLI::App& command, const std::vector<std::string>& words) {
+    std::vector<std::string> joined;
+    for (const std::string& word : words) {
+        const CLI::Option* const option =
+            joined.empty() ? nullptr : command.get_option_no_throw(joined.back());
+        const bool isValue = word == "on" || word == "off" || word == "auto";
+        if (isValue && option != nullptr && option->get_expected_max() == 0) {
+            joined.back() += "=" + word;
+        } else {
+            joined.push_back(word);
+        }
+    }
+    return joined;
+}
+
 }  // namespace
 
 void addSettingsFile(CLI::App& command, std::string& file) {
@@ -54,6 +70,9 @@ Result<CompletedLine> completeLine(const CLI::App& app, std::span<const char* co
     CompletedLine line;
     line.words.assign(arguments.begin(), arguments.end());
     const CLI::App* const command = arguments.empty() ? nullptr : findCommand(app, arguments.front());
+    if (command != nullptr) {
+        line.words = joinSwitches(*command, line.words);
+    }
     const bool takes = command != nullptr && command->get_option_no_throw(kOption) != nullptr;
     const std::optional<std::string> file = takes ? given(arguments, kOption) : std::nullopt;
     if (!file || file->empty()) {
