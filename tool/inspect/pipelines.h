@@ -57,7 +57,7 @@ struct ReportedModule {
     std::optional<std::uint32_t> shaderId;  // of modules of cases
     std::string file;
     double share = 0.0;  // of the hits that the compiler expects, of cases
-    // Of its SPIR-V. A fetch counts as one instruction.
+    // Counts of its SPIR-V; a fetch counts as one instruction.
     double instructions = 0.0;
     double textureFetches = 0.0;
 };
