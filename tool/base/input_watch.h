@@ -58,7 +58,8 @@ private:
     };
     struct File {
         std::optional<Look> look;  // no value: missing
-        // The hash covers the contents of a file, or the names and looks of a folder's files. A missing one has none.
+        // The hash covers the contents of a file, or the names and looks of a folder's files. A missing one
+        // has none.
         std::optional<std::uint64_t> hash;
         // When the file system's clock has certainly moved on since the last change. A file that was looked
         // at before then may have changed since without looking other than before.
