@@ -16,16 +16,13 @@ Json textOrNull(const std::string& text) {
 }
 
 Result<Json> JsonReader::read(std::uint64_t mostBytes) {
-    const Result<Bytes> bytes = readFile(path_, mostBytes);
-    if (!bytes) {
-        return bytes.error();
-    }
-    if (nestsTooDeep(*bytes)) {
+    GLINT_TRY(const auto bytes, readFile(path_, mostBytes));
+    if (nestsTooDeep(bytes)) {
         fail("", "nests too deep");
         return error_;
     }
     try {
-        return Json::parse(bytes->begin(), bytes->end());
+        return Json::parse(bytes.begin(), bytes.end());
     } catch (const Json::parse_error& error) {
         fail("", fmt::format("is not valid JSON: byte {} is wrong", error.byte));
     } catch (const Json::exception&) {

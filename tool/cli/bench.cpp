@@ -33,14 +33,11 @@ Status bench(const Console& console, const BenchArguments& arguments, const gltf
              const compiler::PlanOptions& plan, measure::BenchReport& report) {
     const base::Clock::time_point start = base::Clock::now();
     CompileCache cache(arguments.render.cache, "");
-    const Result<std::unique_ptr<measure::BenchBed>> bed =
-        measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store());
-    if (!bed) {
-        return bed.error();
-    }
-    PipelineCacheFile pipelineCache(console, (*bed)->context(),
+    GLINT_TRY(const auto bed,
+              measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store()));
+    PipelineCacheFile pipelineCache(console, bed->context(),
                                     pipelineCacheFolder(arguments.render.pipelines, arguments.render.cache));
-    Status done = measure::runBench(console, arguments, plan, **bed, cache.store(), report);
+    Status done = measure::runBench(console, arguments, plan, *bed, cache.store(), report);
     pipelineCache.save();
     cache.close(console);
     report.seconds = std::chrono::duration<double>(base::Clock::now() - start).count();

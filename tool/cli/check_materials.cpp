@@ -136,9 +136,7 @@ Result<std::vector<std::string>> writePictures(const std::string& folder,
     }
     for (const measure::FeaturePicture& picture : pictures) {
         const std::filesystem::path file = std::filesystem::path(folder) / (picture.name + kPictureSuffix);
-        if (Status written = image::writeImage(file, picture.image, 0.0); !written) {
-            return written.error();
-        }
+        GLINT_TRY_DO(image::writeImage(file, picture.image, 0.0));
         files.push_back(file.generic_string());
     }
     return files;

@@ -219,10 +219,7 @@ Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptio
     if (!settings.advisesStrategy) {
         return okStatus();
     }
-    const Result<measure::KnownCosts> costs = measure::knownCosts(settings, false);
-    if (!costs) {
-        return costs.error();
-    }
+    GLINT_TRY(const auto costs, measure::knownCosts(settings, false));
     compiler::FrameShape shape;
     shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects.all;
     shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
@@ -230,17 +227,15 @@ Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptio
     if (!made) {
         made = makePlan(scenes.materials(), scenes.primitives(), plan);
     }
-    Result<compiler::StrategyAdvice> advice = measure::adviseStrategy(
-        *costs, measure::roundsOf(scenes, *made, plan, shape),
-        measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
-    if (!advice) {
-        return advice.error();
-    }
-    const package::Strategy chosen = *valueNamed<package::Strategy>(advice->choice.strategy);
+    GLINT_TRY(auto advice,
+              measure::adviseStrategy(
+                  costs, measure::roundsOf(scenes, *made, plan, shape),
+                  measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels));
+    const package::Strategy chosen = *valueNamed<package::Strategy>(advice.choice.strategy);
     settings.compile.strategies |=
         chosen |
         (package::infoOf(chosen).ownPipeline ? std::uint32_t{package::strategyTable().front().strategy} : 0U);
-    settings.compile.strategyChoice = std::move(*advice);
+    settings.compile.strategyChoice = std::move(advice);
     return okStatus();
 }
 

@@ -210,18 +210,15 @@ void reportFindings(const Console& console, const std::vector<compiler::LintFind
 // Lints the files that `path` stands for, and adds the results to `report`.
 Status lintPath(const Console& console, const LintArguments& arguments, const std::string& path,
                 inspect::LintReport& report) {
-    const Result<inspect::LintFiles> files = inspect::findLintFiles(path);
-    if (!files) {
-        return files.error();
-    }
+    GLINT_TRY(const auto files, inspect::findLintFiles(path));
     const std::size_t begin = report.modules.size();
-    for (const inspect::LintFile& file : files->files) {
+    for (const inspect::LintFile& file : files.files) {
         console.progress(fmt::format("lint {} of {}: {}", report.modules.size() - begin + 1,
-                                     files->files.size(), file.path.string()));
+                                     files.files.size(), file.path.string()));
         report.modules.push_back(
             inspect::lintModule(file, arguments.budgets(), report.malioc, arguments.core));
     }
-    if (files->isFolder) {
+    if (files.isFolder) {
         report.folders.push_back({path, inspect::judgeTogether(std::span(report.modules).subspan(begin))});
     }
     return okStatus();

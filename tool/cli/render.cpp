@@ -188,9 +188,7 @@ image::DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32
 Status writeResults(const RenderArguments& arguments, const RenderReport& report) {
     if (!arguments.coverage.empty()) {
         const image::DisplayImage map = coverageMap(report.paths, report.width, report.height);
-        if (Status written = writeImage(arguments.coverage, map); !written) {
-            return written;
-        }
+        GLINT_TRY_DO(writeImage(arguments.coverage, map));
     }
     return arguments.stats.empty() ? okStatus()
                                    : base::writeFile(arguments.stats, base::toText(toJson(report)));
@@ -202,15 +200,12 @@ Status readTextures(const Console& console, const RenderArguments& arguments, co
                     const Package& package, const gltf::Scene& scene, CompileCache& cache,
                     scene_view::SceneViewData& data, RenderReport& report) {
     console.progress("reading textures of " + arguments.scene);
-    Result<std::shared_ptr<const scene_view::TextureSet>> textures =
-        scene_view::loadTextures(scene, measure::textureOptions(arguments, context, package, cache.store()));
-    if (!textures) {
-        return textures.error();
-    }
-    console.report((*textures)->notes);
-    report.start.texturesMs = (*textures)->milliseconds;
-    const std::uint32_t found = (*textures)->found;
-    scene_view::useTextures(std::move(*textures), data);
+    GLINT_TRY(auto textures, scene_view::loadTextures(
+                                 scene, measure::textureOptions(arguments, context, package, cache.store())));
+    console.report(textures->notes);
+    report.start.texturesMs = textures->milliseconds;
+    const std::uint32_t found = textures->found;
+    scene_view::useTextures(std::move(textures), data);
     report.textures = textureReport(data.images);
     report.textures.found = found;
     return okStatus();
@@ -250,17 +245,14 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
     if (arguments.viewReference.empty()) {
         return std::optional<LinearImage>();
     }
-    Result<LinearImage> read = image::readImage(arguments.viewReference);
-    if (!read) {
-        return read.error();
-    }
-    if (read->width != arguments.renderer.width || read->height != arguments.renderer.height) {
+    GLINT_TRY(auto read, image::readImage(arguments.viewReference));
+    if (read.width != arguments.renderer.width || read.height != arguments.renderer.height) {
         return makeError("view-reference", arguments.viewReference,
-                         fmt::format("has {}x{} pixels, and the picture {}x{}", read->width, read->height,
+                         fmt::format("has {}x{} pixels, and the picture {}x{}", read.width, read.height,
                                      arguments.renderer.width, arguments.renderer.height),
                          "render both with the same --size");
     }
-    return std::optional<LinearImage>(std::move(*read));
+    return std::optional<LinearImage>(std::move(read));
 }
 
 // Does all the work between reading the scene and writing the files.
@@ -268,23 +260,13 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
               const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
               std::optional<Result<Package>> given, CompileCache& cache, RenderReport& report) {
     RenderArguments arguments = asked;
-    const Result<std::optional<Movement>> movement =
-        chooseMovement(arguments.motion, scene, !arguments.materials.empty());
-    if (!movement) {
-        return movement.error();
-    }
-    const Result<std::optional<LinearImage>> compared = readReference(arguments);
-    if (!compared) {
-        return compared.error();
-    }
-    const std::optional<LinearImage>& reference = *compared;
+    GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
+    GLINT_TRY(const auto compared, readReference(arguments));
+    const std::optional<LinearImage>& reference = compared;
     scene_view::SceneViewData data = measure::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
-    const Result<scene_view::CameraChoice> camera = chooseView(*movement, arguments, scene, data, aspect);
-    if (!camera) {
-        return camera.error();
-    }
-    report.camera = camera->name;
+    GLINT_TRY(const auto camera, chooseView(movement, arguments, scene, data, aspect));
+    report.camera = camera.name;
     if (measure::addsSun(arguments, scene)) {
         report.sun = scene_view::sunLight();
         report.sunAutomatic = arguments.sun == compiler::Sun::Auto;
@@ -292,37 +274,24 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     report.sceneInFile = gltf::sceneInFile(scene);
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const base::Clock::time_point begin = base::Clock::now();
-    const Result<std::unique_ptr<Context>> context = makeContext(arguments, given);
-    if (!context) {
-        return context.error();
-    }
-    PipelineCacheFile pipelineCache(console, **context,
+    GLINT_TRY(const auto context, makeContext(arguments, given));
+    PipelineCacheFile pipelineCache(console, *context,
                                     pipelineCacheFolder(arguments.pipelines, arguments.cache));
     report.start.deviceMs = base::millisecondsSince(begin);
-    report.device = (*context)->deviceName();
-    report.driver = (*context)->driverName();
-    if (Status settled = settleStrategy(console, plan, **context, scene, given, arguments, report);
-        !settled) {
-        return settled;
-    }
+    report.device = context->deviceName();
+    report.driver = context->driverName();
+    GLINT_TRY_DO(settleStrategy(console, plan, *context, scene, given, arguments, report));
     reportIdle(console, arguments, plan, scene, given);
     console.progress("compiling " + arguments.scene);
-    const Result<Package> package = obtainPackage(console, arguments, plan, (*context)->handles().tracers,
-                                                  scene, std::move(given), cache.modules(), report);
+    const Result<Package> package = obtainPackage(console, arguments, plan, context->handles().tracers, scene,
+                                                  std::move(given), cache.modules(), report);
     if (!package) {
         return package.error();
     }
-    const Result<std::unique_ptr<Environment>> environment =
-        obtainEnvironment(console, arguments, **context, *package, report);
-    if (!environment) {
-        return environment.error();
-    }
+    GLINT_TRY(const auto environment, obtainEnvironment(console, arguments, *context, *package, report));
     data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
     scene_view::useLayoutOf(*package, scene, data);
-    if (Status read = readTextures(console, arguments, **context, *package, scene, cache, data, report);
-        !read) {
-        return read;
-    }
+    GLINT_TRY_DO(readTextures(console, arguments, *context, *package, scene, cache, data, report));
     cache.close(console);
     report.alpha = nameOf(package->alpha());
     report.cases = package->caseCount();
@@ -335,7 +304,7 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     if (!arguments.coverage.empty()) {
         options.bands = 1;  // the coverage is that of all pixels at once
     }
-    options.pipelineStatistics = arguments.pipelineStatistics && (*context)->handles().pipelineStatistics;
+    options.pipelineStatistics = arguments.pipelineStatistics && context->handles().pipelineStatistics;
     if (arguments.pipelineStatistics && !options.pipelineStatistics) {
         console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
                                   "has no VK_KHR_pipeline_executable_properties: there are no statistics",
@@ -344,17 +313,15 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     const FrameSetup setup{console,
                            arguments,
                            options,
-                           environment->get(),
-                           *movement,
-                           *camera,
+                           environment.get(),
+                           movement,
+                           camera,
                            aspect,
                            reference ? &*reference : nullptr,
                            console.countTo("rendering sample")};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
-        if (Status valid = measure::checkValidation(console, **context); !valid) {
-            return valid.error();
-        }
+        GLINT_TRY_DO(measure::checkValidation(console, *context));
         if (report.counters.nonFinite > 0 && !std::exchange(warned, true)) {
             warnOfNonFinite(console, report);
         }
@@ -364,9 +331,7 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         const Status ordered = checkOrder(report);
         return ordered ? Result<bool>(true) : Result<bool>(ordered.error());
     };
-    if (Status rendered = renderFrames(**context, *package, setup, scene, data, accept, report); !rendered) {
-        return rendered;
-    }
+    GLINT_TRY_DO(renderFrames(*context, *package, setup, scene, data, accept, report));
     pipelineCache.save();
     if (!pipelineCache.path().empty()) {
         report.pipelines.cache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),

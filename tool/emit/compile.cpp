@@ -153,61 +153,46 @@ bool showEarly(const gltf::SceneList& scenes, const Plan& plan, const SourceSet&
 Result<Prepared> prepare(const gltf::SceneList& scenes, CompileSettings& settings, std::optional<Plan> made,
                          WarmModules* warm = nullptr, const EarlyShowing* showing = nullptr) {
     const base::Clock::time_point start = base::Clock::now();
-    if (Status valid = checkSettings(settings, scenes.path()); !valid) {
-        return valid.error();
-    }
+    GLINT_TRY_DO(checkSettings(settings, scenes.path()));
     Plan plan = made ? std::move(*made) : makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     plan.effects = planEffects(scenes, settings);
-    Result<std::vector<package::LayerEntry>> layers = resolveLayers(plan, settings, scenes.path());
-    if (!layers) {
-        return layers.error();
-    }
-    plan.layers = std::move(*layers);
+    GLINT_TRY(plan.layers, resolveLayers(plan, settings, scenes.path()));
     settings.shadowThrough = shadowThroughOf(scenes, plan, settings);
     if (const auto excess = describeExcess(plan, settings.plan)) {
         return makeError("max-shaders", scenes.path(), *excess);
     }
-    Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
-    if (!sources) {
-        return sources.error();
-    }
+    GLINT_TRY(auto sources, makeSourceSet(scenes, plan, settings));
     const base::Clock::time_point planned = base::Clock::now();
-    const bool shown = showing != nullptr && showEarly(scenes, plan, *sources, settings, *showing,
+    const bool shown = showing != nullptr && showEarly(scenes, plan, sources, settings, *showing,
                                                        base::millisecondsBetween(start, planned), warm);
     const double earlyMs = base::millisecondsSince(planned);
-    const auto makeSources = [&] { return makeModuleSources(scenes, plan, *sources, settings, warm); };
-    Result<std::vector<ModuleSource>> modules = shown ? base::runBehind(makeSources) : makeSources();
-    if (!modules) {
-        return modules.error();
-    }
-    return Prepared{std::move(plan), std::move(*sources), std::move(*modules), shown, earlyMs};
+    const auto makeSources = [&] { return makeModuleSources(scenes, plan, sources, settings, warm); };
+    GLINT_TRY(auto modules, shown ? base::runBehind(makeSources) : makeSources());
+    return Prepared{std::move(plan), std::move(sources), std::move(modules), shown, earlyMs};
 }
 
 Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings settings, ModuleCache* cache,
                                 std::optional<Plan> made, WarmModules* warm, const EarlyShowing* showing) {
     const base::Clock::time_point start = base::Clock::now();
-    Result<Prepared> prepared = prepare(scenes, settings, std::move(made), warm, showing);
-    if (!prepared) {
-        return prepared.error();
-    }
+    GLINT_TRY(auto prepared, prepare(scenes, settings, std::move(made), warm, showing));
     const base::Clock::time_point planned = base::Clock::now();
     const auto compileAll = [&] {
-        return compileModules(std::move(prepared->modules), settings.jobs, settings.debugInfo, cache, warm,
-                              prepared->shownEarly ? showing->isOutdated : std::function<bool()>(),
+        return compileModules(std::move(prepared.modules), settings.jobs, settings.debugInfo, cache, warm,
+                              prepared.shownEarly ? showing->isOutdated : std::function<bool()>(),
                               settings.progress);
     };
     // The driver makes the pipeline of the early package at the same time, and that is awaited first.
     Result<std::vector<CompiledModule>> compiled =
         !settings.modules.empty()
-            ? takeModules(std::move(prepared->modules), settings.debugInfo, settings.modules)
-        : prepared->shownEarly ? base::runBehind(compileAll)
-                               : compileAll();
+            ? takeModules(std::move(prepared.modules), settings.debugInfo, settings.modules)
+        : prepared.shownEarly ? base::runBehind(compileAll)
+                              : compileAll();
     if (!compiled) {
-        return explainGlslError(compiled.error(), *prepared->plan.model, settings.host);
+        return explainGlslError(compiled.error(), *prepared.plan.model, settings.host);
     }
     const base::Clock::time_point haveSpirv = base::Clock::now();
     CompiledPackage package;
-    package.plan = std::move(prepared->plan);
+    package.plan = std::move(prepared.plan);
     package.modules = std::move(*compiled);
 
     // The manifest comes last, because it lists the other files.
@@ -215,24 +200,18 @@ Result<CompiledPackage> compile(const gltf::SceneList& scenes, CompileSettings s
     package.files.push_back(
         {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
     if (settings.emitHeader) {
-        Result<std::string> header = makeHeader(scenes, package.plan, prepared->sources, settings.plan);
-        if (!header) {
-            return header.error();
-        }
-        package.files.push_back({package::kHeaderFile, toBytes(*header)});
+        GLINT_TRY(auto header, makeHeader(scenes, package.plan, prepared.sources, settings.plan));
+        package.files.push_back({package::kHeaderFile, toBytes(header)});
     }
     if (settings.emitLibrary || settings.emitLinkable) {
-        Result<std::vector<PackageFile>> library = makeLibrary(scenes, package.plan, settings, cache);
-        if (!library) {
-            return library.error();
-        }
-        std::ranges::move(*library, std::back_inserter(package.files));
+        GLINT_TRY(auto library, makeLibrary(scenes, package.plan, settings, cache));
+        std::ranges::move(library, std::back_inserter(package.files));
     }
     std::ranges::sort(package.files, {}, &PackageFile::name);
     package.files.push_back({package::kManifestFile, toBytes(makeManifest(scenes, package, settings))});
     std::ranges::sort(package.files, {}, &PackageFile::name);
-    package.planMs = base::millisecondsBetween(start, planned) - prepared->earlyMs;
-    package.earlyMs = prepared->shownEarly ? prepared->earlyMs : 0.0;
+    package.planMs = base::millisecondsBetween(start, planned) - prepared.earlyMs;
+    package.earlyMs = prepared.shownEarly ? prepared.earlyMs : 0.0;
     package.compileMs = base::millisecondsBetween(planned, haveSpirv);
     package.tablesMs = base::millisecondsSince(haveSpirv);
     return package;
@@ -244,26 +223,10 @@ Result<CompileSettings> completed(std::span<const gltf::Scene> scenes, CompileSe
     if ((settings.strategies & ~package::pipelineStrategies()) == 0) {
         settings.tracers = package::tracersOf(settings.strategies, settings.tracers);
     }
-    Result<EmissiveLights> emissive = emissiveLightsOf(scenes, settings);
-    if (!emissive) {
-        return emissive.error();
-    }
-    settings.emissiveLights = *emissive;
-    Result<SkyLight> sky = skyLightOf(scenes, settings);
-    if (!sky) {
-        return sky.error();
-    }
-    settings.skyLight = *sky;
-    Result<SizedLights> sized = sizedLightsOf(scenes, settings);
-    if (!sized) {
-        return sized.error();
-    }
-    settings.sizedLights = *sized;
-    Result<std::uint32_t> lights = lightSamplesOf(scenes, settings);
-    if (!lights) {
-        return lights.error();
-    }
-    settings.lightSamples = *lights;
+    GLINT_TRY(settings.emissiveLights, emissiveLightsOf(scenes, settings));
+    GLINT_TRY(settings.skyLight, skyLightOf(scenes, settings));
+    GLINT_TRY(settings.sizedLights, sizedLightsOf(scenes, settings));
+    GLINT_TRY(settings.lightSamples, lightSamplesOf(scenes, settings));
     return settings;
 }
 
@@ -276,9 +239,7 @@ Result<Value> guarded(std::span<const gltf::Scene> scenes, const Work& work) {
     const std::string where = scenes.front().path;
     try {
         for (const gltf::Scene& scene : scenes) {
-            if (Status valid = checkScene(scene); !valid) {
-                return valid.error();
-            }
+            GLINT_TRY_DO(checkScene(scene));
         }
         return work();
     } catch (const std::bad_alloc&) {
@@ -315,16 +276,10 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
 Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                                 std::optional<Plan> made) {
     return guarded<PackagePlan>(scenes, [&]() -> Result<PackagePlan> {
-        Result<CompileSettings> complete = completed(scenes, settings);
-        if (!complete) {
-            return complete.error();
-        }
-        Result<Prepared> prepared = prepare(gltf::SceneList(scenes), *complete, std::move(made));
-        if (!prepared) {
-            return prepared.error();
-        }
-        std::vector<PlannedModule> modules = planModules(prepared->modules, settings.debugInfo);
-        return PackagePlan{std::move(prepared->plan), std::move(modules)};
+        GLINT_TRY(auto complete, completed(scenes, settings));
+        GLINT_TRY(auto prepared, prepare(gltf::SceneList(scenes), complete, std::move(made)));
+        std::vector<PlannedModule> modules = planModules(prepared.modules, settings.debugInfo);
+        return PackagePlan{std::move(prepared.plan), std::move(modules)};
     });
 }
 
@@ -332,11 +287,8 @@ Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, cons
                                        ModuleCache* cache, std::optional<Plan> made, WarmModules* warm,
                                        const EarlyShowing* showing) {
     return guarded<CompiledPackage>(scenes, [&]() -> Result<CompiledPackage> {
-        Result<CompileSettings> complete = completed(scenes, settings);
-        if (!complete) {
-            return complete.error();
-        }
-        return compile(gltf::SceneList(scenes), *complete, cache, std::move(made), warm, showing);
+        GLINT_TRY(auto complete, completed(scenes, settings));
+        return compile(gltf::SceneList(scenes), complete, cache, std::move(made), warm, showing);
     });
 }
 

@@ -349,12 +349,9 @@ Result<std::vector<CompiledModule>> compileModules(
     std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache, WarmModules* warm,
     const std::function<bool()>& isOutdated, const std::function<void(std::size_t, std::size_t)>& progress) {
     const DistinctTexts distinct(sources, debugInfo);
-    Result<std::vector<std::optional<CompiledText>>> compiled =
-        TextCompiler(distinct.texts(), debugInfo, cache, warm, isOutdated, progress).run(jobs);
-    if (!compiled) {
-        return compiled.error();
-    }
-    return makeModules(sources, distinct, *compiled);
+    GLINT_TRY(auto compiled,
+              TextCompiler(distinct.texts(), debugInfo, cache, warm, isOutdated, progress).run(jobs));
+    return makeModules(sources, distinct, compiled);
 }
 
 Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
@@ -366,13 +363,9 @@ Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> source
         if (text.source->link) {
             continue;  // the module that was joined from it has been made already
         }
-        Result<CompiledText> module =
-            takeText(*text.source, *text.text,
-                     folder / (nameOfModuleText(*text.text) + std::string(kCompiledModuleSuffix)));
-        if (!module) {
-            return module.error();
-        }
-        taken.back() = std::move(*module);
+        GLINT_TRY(taken.back(),
+                  takeText(*text.source, *text.text,
+                           folder / (nameOfModuleText(*text.text) + std::string(kCompiledModuleSuffix))));
     }
     return makeModules(sources, distinct, taken);
 }

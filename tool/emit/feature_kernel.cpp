@@ -36,10 +36,7 @@ std::vector<const materials::FeatureCode*> layersOf(const Plan& plan) {
 Result<FeatureKernel> compileFeatureKernel(const gltf::Scene& scene, const Plan& plan,
                                            const CompileSettings& settings) {
     const gltf::SceneList scenes({&scene, 1});
-    Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
-    if (!sources) {
-        return sources.error();
-    }
+    GLINT_TRY(auto sources, makeSourceSet(scenes, plan, settings));
     FeatureKernel kernel;
     kainjow::mustache::data layers(kainjow::mustache::data::type::list);
     for (const materials::FeatureCode* const layer : layersOf(plan)) {
@@ -54,16 +51,10 @@ Result<FeatureKernel> compileFeatureKernel(const gltf::Scene& scene, const Plan&
     context.set("layers", layers);
     context.set("wordsIn", std::to_string(sizeof(FeatureKernelInput) / sizeof(std::uint32_t)));
     context.set("wordsOut", std::to_string(sizeof(FeatureKernelOutput) / sizeof(float)));
-    const Result<std::string> text = renderTemplate(*sources, kTemplate, context);
-    if (!text) {
-        return text.error();
-    }
-    const Result<GlslUnit> glsl = flatten(kName, *text, sources->lookup(), FlattenSide::Glsl);
-    if (!glsl) {
-        return glsl.error();
-    }
+    GLINT_TRY(const auto text, renderTemplate(sources, kTemplate, context));
+    GLINT_TRY(const auto glsl, flatten(kName, text, sources.lookup(), FlattenSide::Glsl));
     Result<std::vector<std::uint32_t>> words =
-        compileShader({kName, ShaderStage::Compute, dropUnused(*glsl).withPlaces(), {}}, {});
+        compileShader({kName, ShaderStage::Compute, dropUnused(glsl).withPlaces(), {}}, {});
     if (!words) {
         return explainGlslError(words.error(), *plan.model, settings.host);
     }

@@ -206,25 +206,22 @@ Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const Plan& p
                                          const CompileSettings& settings,
                                          const materials::FeatureCode& code) {
     const gltf::SceneList scenes({&scene, 1});
-    Result<SourceSet> sources = makeSourceSet(scenes, plan, settings);
-    if (!sources) {
-        return sources.error();
-    }
+    GLINT_TRY(auto sources, makeSourceSet(scenes, plan, settings));
     FeatureProof proof;
     proof.claim = startClaim();
     materials::FeatureMask mask =
         code.feature < 0 ? 0 : plan.model->features[static_cast<std::size_t>(code.feature)].mask();
-    sources->add("hit/texture.glsl", claimTexels(std::string(sources->find("hit/texture.glsl").value_or("")),
-                                                 *plan.model, code.feature, proof.claim, mask));
-    sources->add("hit/surface_point.glsl",
-                 claimPointTexels(std::string(sources->find("hit/surface_point.glsl").value_or(""))));
-    sources->add("hit/frame_time.glsl",
-                 fmt::format("#include \"host/material.glsl\"\n\nfloat frameTime() {{\n    return "
-                             "glintGiven[{}];\n}}\n",
-                             kTimeInput));
-    const std::string record(sources->find("generated/material_record.glsl").value_or(""));
-    sources->add("generated/material_record.glsl",
-                 record + claimParameters(*plan.model, code.feature, proof.claim));
+    sources.add("hit/texture.glsl", claimTexels(std::string(sources.find("hit/texture.glsl").value_or("")),
+                                                *plan.model, code.feature, proof.claim, mask));
+    sources.add("hit/surface_point.glsl",
+                claimPointTexels(std::string(sources.find("hit/surface_point.glsl").value_or(""))));
+    sources.add("hit/frame_time.glsl",
+                fmt::format("#include \"host/material.glsl\"\n\nfloat frameTime() {{\n    return "
+                            "glintGiven[{}];\n}}\n",
+                            kTimeInput));
+    const std::string record(sources.find("generated/material_record.glsl").value_or(""));
+    sources.add("generated/material_record.glsl",
+                record + claimParameters(*plan.model, code.feature, proof.claim));
 
     namespace mustache = kainjow::mustache;
     mustache::data context;
@@ -250,18 +247,12 @@ Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const Plan& p
     context.set("outputs", std::to_string(kProofOutputs));
     context.set("lobes", std::to_string(static_cast<std::uint32_t>(mask)));
     context.set("inputBits", std::to_string(static_cast<std::uint32_t>(mask >> 32U)));
-    const Result<std::string> text = renderTemplate(*sources, kProofTemplate, context);
-    if (!text) {
-        return text.error();
-    }
-    const Result<GlslUnit> glsl = flatten(kProofName, *text, sources->lookup(), FlattenSide::Glsl);
-    if (!glsl) {
-        return glsl.error();
-    }
+    GLINT_TRY(const auto text, renderTemplate(sources, kProofTemplate, context));
+    GLINT_TRY(const auto glsl, flatten(kProofName, text, sources.lookup(), FlattenSide::Glsl));
     ShaderCompileOptions options;
     options.debugInfo = true;  // names
     const Result<std::vector<std::uint32_t>> words = compileShader(
-        {kProofName, ShaderStage::Compute, dropUnused(*glsl).withPlaces(), {"proveFeature"}}, options);
+        {kProofName, ShaderStage::Compute, dropUnused(glsl).withPlaces(), {"proveFeature"}}, options);
     if (!words) {
         return explainGlslError(words.error(), *plan.model, settings.host);
     }

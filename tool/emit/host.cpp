@@ -91,10 +91,7 @@ Result<std::vector<fs::path>> hostFiles(const std::string& folder) {
             continue;
         }
         const bool isFolder = place->is_directory(error);
-        Status added = isFolder ? addInner(place->path(), files) : checkFile(place->path(), own);
-        if (!added) {
-            return added.error();
-        }
+        GLINT_TRY_DO(isFolder ? addInner(place->path(), files) : checkFile(place->path(), own));
         if (!isFolder) {
             files.push_back(place->path());
             replaces = true;
@@ -111,12 +108,9 @@ Result<std::vector<fs::path>> hostFiles(const std::string& folder) {
 }
 
 Result<std::vector<std::string>> replacedHostFiles(const std::string& folder) {
-    Result<std::vector<fs::path>> files = hostFiles(folder);
-    if (!files) {
-        return files.error();
-    }
+    GLINT_TRY(auto files, hostFiles(folder));
     std::vector<std::string> names;
-    for (const fs::path& file : *files) {
+    for (const fs::path& file : files) {
         if (const fs::path inner = file.lexically_relative(folder); !inner.has_parent_path()) {
             names.push_back(inner.string());
         }
@@ -130,15 +124,9 @@ bool isHostPlace(const std::string& where, const std::string& folder) {
 }
 
 Status addHost(SourceSet& sources, const std::string& folder) {
-    const Result<std::vector<fs::path>> files = hostFiles(folder);
-    if (!files) {
-        return files.error();
-    }
-    for (const fs::path& file : *files) {
-        const Result<base::Bytes> bytes = base::readFile(file, kMaxFileBytes);
-        if (!bytes) {
-            return bytes.error();
-        }
+    GLINT_TRY(const auto files, hostFiles(folder));
+    for (const fs::path& file : files) {
+        GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
         const fs::path inner = file.lexically_relative(folder);
         const std::string name =
             (inner.has_parent_path() ? "" : std::string(kHostFolder)) + inner.generic_string();
@@ -147,7 +135,7 @@ Status addHost(SourceSet& sources, const std::string& folder) {
         const std::string path = file.generic_string();
         const std::string shown = path != name && sources.find(path) ? "./" + path : path;
         sources.add(name, fmt::format("#include \"{}\"\n", shown));
-        sources.add(shown, std::string(base::asText(*bytes)));
+        sources.add(shown, std::string(base::asText(bytes)));
     }
     return okStatus();
 }

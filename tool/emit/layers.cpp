@@ -246,9 +246,7 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
             std::ranges::copy(entriesOf(*info, plan, bounces), std::back_inserter(entries));
         }
         if (named.empty()) {
-            if (Status added = addOfSource(word, plan, bounces, where, entries); !added) {
-                return added.error();
-            }
+            GLINT_TRY_DO(addOfSource(word, plan, bounces, where, entries));
         } else if (entries.size() == before && !isOptional) {
             return makeError("layer-effect", where,
                              fmt::format("nothing in the package has the layer {}", word),

@@ -99,10 +99,7 @@ void setModule(mustache::data& context, const std::string& alwaysLobes, const st
 // Files of `own` stand in for those of `sources`.
 Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, const mustache::data& context,
                              const std::string& name) {
-    const Result<std::string> rendered = renderTemplate(sources, kTemplate, context);
-    if (!rendered) {
-        return rendered.error();
-    }
+    GLINT_TRY(const auto rendered, renderTemplate(sources, kTemplate, context));
     const auto lookup = [&](std::string_view file) -> std::optional<std::string_view> {
         if (file == kHostFile) {
             return "";
@@ -110,11 +107,8 @@ Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, con
         const std::optional<std::string_view> found = own.find(file);
         return found ? found : sources.find(file);
     };
-    const Result<GlslUnit> flattened = flatten(name, *rendered, lookup, FlattenSide::Glsl);
-    if (!flattened) {
-        return flattened.error();
-    }
-    return withHost(makeReadable(dropUnused(*flattened), ""), hostText(sources));
+    GLINT_TRY(const auto flattened, flatten(name, rendered, lookup, FlattenSide::Glsl));
+    return withHost(makeReadable(dropUnused(flattened), ""), hostText(sources));
 }
 
 constexpr const char* kExported[] = {"glintSurface",  "glintEvaluate", "glintSample",   "glintDensity",
@@ -184,11 +178,8 @@ Result<PackageFile> makeLinkableFile(const std::string& library, const std::stri
                                          debugInfo ? source.glsl : essentialText(source.glsl));
     std::optional<CachedModule> module = cache != nullptr ? cache->find(text) : std::nullopt;
     if (!module) {
-        Result<std::vector<std::uint32_t>> words = compileLinkable(source, names, {debugInfo});
-        if (!words) {
-            return words.error();
-        }
-        module = CachedModule{std::move(*words), {}};
+        GLINT_TRY(auto words, compileLinkable(source, names, {debugInfo}));
+        module = CachedModule{std::move(words), {}};
         if (cache != nullptr) {
             cache->put(text, *module);
         }
@@ -206,23 +197,14 @@ PackageFile fileOf(const std::string& name, std::string_view text) {
 
 Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, const Plan& plan,
                                              const CompileSettings& settings, const ModuleCache* cache) {
-    const Result<SourceSet> sources = librarySources(scenes, plan, settings);
-    if (!sources) {
-        return sources.error();
-    }
-    MaterialCodeOfCases codeOfCases(*sources, *plan.model);
-    std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(*sources))};
+    GLINT_TRY(const auto sources, librarySources(scenes, plan, settings));
+    MaterialCodeOfCases codeOfCases(sources, *plan.model);
+    std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(sources))};
     const auto add = [&](const mustache::data& context, materials::FeatureMask features,
                          const std::string& name) -> Status {
-        const Result<const SourceSet*> code = codeOfCases.find(features);
-        if (!code) {
-            return code.error();
-        }
-        const Result<std::string> text = makeFile(*sources, **code, context, name);
-        if (!text) {
-            return text.error();
-        }
-        files.push_back(fileOf(name, *text));
+        GLINT_TRY(const auto code, codeOfCases.find(features));
+        GLINT_TRY(const auto text, makeFile(sources, *code, context, name));
+        files.push_back(fileOf(name, text));
         return okStatus();
     };
 
@@ -233,17 +215,11 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
     setModule(all, "GLINT_HIT_ALWAYS_LOBES", "GLINT_HIT_ALWAYS_INPUTS",
               "(GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)",
               "(GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)");
-    if (Status status = add(all, plan.always | plan.sometimes, "glint_library.glsl"); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(add(all, plan.always | plan.sometimes, "glint_library.glsl"));
     if (settings.emitLinkable) {
         const std::string text(files.back().bytes.begin(), files.back().bytes.end());
-        Result<PackageFile> linkable =
-            makeLinkableFile(text, hostText(*sources), plan, settings.debugInfo, cache);
-        if (!linkable) {
-            return linkable.error();
-        }
-        files.push_back(std::move(*linkable));
+        GLINT_TRY(auto linkable, makeLinkableFile(text, hostText(sources), plan, settings.debugInfo, cache));
+        files.push_back(std::move(linkable));
     }
     for (const Case& shaderCase : plan.cases) {
         if (shaderCase.isRetired() || !settings.emitLibrary) {
@@ -266,9 +242,7 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
         setModule(one, word(shaderCase.always), word(shaderCase.always >> 32U), word(any), word(any >> 32U));
         const std::string name =
             fmt::format("glint_case_{}_{}.glsl", shaderCase.shaderId, shaderCase.name.substr(0, 100));
-        if (Status status = add(one, any, name); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(add(one, any, name));
     }
     return files;
 }

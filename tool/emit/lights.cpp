@@ -45,13 +45,10 @@ bool tracesScattered(std::span<const gltf::Scene> scenes, const CompileSettings&
 // `whose` says what these are.
 Result<std::string> hindrance(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
                               std::span<const std::string_view> files, std::string_view whose) {
-    Result<std::vector<std::string>> replaced = replacedHostFiles(settings.host);
-    if (!replaced) {
-        return replaced.error();
-    }
+    GLINT_TRY(auto replaced, replacedHostFiles(settings.host));
     const bool ofHost =
         settings.passes == package::Passes::Steps || std::ranges::any_of(files, [&](std::string_view file) {
-            return std::ranges::find(*replaced, file) != replaced->end();
+            return std::ranges::find(replaced, file) != replaced.end();
         });
     if (ofHost) {
         return fmt::format("{} are the host's", whose);
@@ -109,16 +106,13 @@ Result<EmissiveLights> emissiveLightsOf(std::span<const gltf::Scene> scenes,
     if (most == 0 || (!isOn && most > kMostEmitters)) {
         return EmissiveLights::Off;
     }
-    const Result<std::string> why = hindrance(scenes, settings, kEmitterFiles, "the lights or the geometry");
-    if (!why) {
-        return why.error();
-    }
-    if (isOn && !why->empty()) {
+    GLINT_TRY(const auto why, hindrance(scenes, settings, kEmitterFiles, "the lights or the geometry"));
+    if (isOn && !why.empty()) {
         return makeError("emissive-lights", "",
-                         fmt::format("--emissive-lights needs shadow rays of Glint's own: {}", *why),
+                         fmt::format("--emissive-lights needs shadow rays of Glint's own: {}", why),
                          "add the effect shadow, or leave out --emissive-lights");
     }
-    return why->empty() ? EmissiveLights::On : EmissiveLights::Off;
+    return why.empty() ? EmissiveLights::On : EmissiveLights::Off;
 }
 
 Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
@@ -127,16 +121,13 @@ Result<SkyLight> skyLightOf(std::span<const gltf::Scene> scenes, const CompileSe
         (!isOn && (settings.maxBounces == 1 || !tracesScattered(scenes, settings)))) {
         return SkyLight::Off;
     }
-    const Result<std::string> why = hindrance(scenes, settings, kSkyFiles, "the lights or the sky");
-    if (!why) {
-        return why.error();
-    }
-    if (isOn && !why->empty()) {
+    GLINT_TRY(const auto why, hindrance(scenes, settings, kSkyFiles, "the lights or the sky"));
+    if (isOn && !why.empty()) {
         return makeError("sky-light", "",
-                         fmt::format("--sky-light needs shadow rays and a sky of Glint's own: {}", *why),
+                         fmt::format("--sky-light needs shadow rays and a sky of Glint's own: {}", why),
                          "add the effect shadow, or leave out --sky-light");
     }
-    return why->empty() ? SkyLight::On : SkyLight::Off;
+    return why.empty() ? SkyLight::On : SkyLight::Off;
 }
 
 Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
@@ -145,16 +136,13 @@ Result<SizedLights> sizedLightsOf(std::span<const gltf::Scene> scenes, const Com
         (!isOn && (settings.maxBounces == 1 || !settings.sizesLights))) {
         return SizedLights::Off;
     }
-    const Result<std::string> why = hindrance(scenes, settings, kLightFiles, "the lights");
-    if (!why) {
-        return why.error();
-    }
-    if (isOn && !why->empty()) {
+    GLINT_TRY(const auto why, hindrance(scenes, settings, kLightFiles, "the lights"));
+    if (isOn && !why.empty()) {
         return makeError("sized-lights", "",
-                         fmt::format("--sized-lights needs shadow rays of Glint's own: {}", *why),
+                         fmt::format("--sized-lights needs shadow rays of Glint's own: {}", why),
                          "add the effect shadow, or leave out --sized-lights");
     }
-    return why->empty() ? SizedLights::On : SizedLights::Off;
+    return why.empty() ? SizedLights::On : SizedLights::Off;
 }
 
 EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan, bool fallback) {
@@ -195,12 +183,9 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
 }
 
 Result<std::uint32_t> lightSamplesOf(std::span<const gltf::Scene> scenes, const CompileSettings& settings) {
-    Result<std::vector<std::string>> replaced = replacedHostFiles(settings.host);
-    if (!replaced) {
-        return replaced.error();
-    }
+    GLINT_TRY(auto replaced, replacedHostFiles(settings.host));
     const bool ofHost = settings.passes == package::Passes::Steps ||
-                        std::ranges::find(*replaced, "lights.glsl") != replaced->end();
+                        std::ranges::find(replaced, "lights.glsl") != replaced.end();
     if (settings.lightSamples) {
         if (ofHost && *settings.lightSamples > 0) {
             return makeError(

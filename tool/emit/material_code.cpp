@@ -231,11 +231,8 @@ Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& mod
     context.set("includes", includesOf(code, kStages));
     context.set("coordinates", stageOf(model, code, &materials::FeatureCode::coordinates, Asked::OfAnyKey));
     context.set("opacity", stageOf(model, code, &materials::FeatureCode::opacity, Asked::OfAnyKey));
-    Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", kMaskTemplate), context);
-    if (!text) {
-        return text.error();
-    }
-    generated.add(fmt::format("generated/{}", kMaskTemplate), std::move(*text));
+    GLINT_TRY(auto text, renderTemplate(sources, fmt::format("{}.mustache", kMaskTemplate), context));
+    generated.add(fmt::format("generated/{}", kMaskTemplate), std::move(text));
     return okStatus();
 }
 
@@ -255,11 +252,8 @@ Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel&
     context.set("bsdf", stageOf(model, code, &materials::FeatureCode::bsdf));
     context.set("emission", stageOf(model, code, &materials::FeatureCode::emission));
     for (const std::string_view name : kTemplates) {
-        Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", name), context);
-        if (!text) {
-            return text.error();
-        }
-        generated.add(fmt::format("generated/{}", name), std::move(*text));
+        GLINT_TRY(auto text, renderTemplate(sources, fmt::format("{}.mustache", name), context));
+        generated.add(fmt::format("generated/{}", name), std::move(text));
     }
     return okStatus();
 }
@@ -309,9 +303,7 @@ Result<const SourceSet*> MaterialCodeOfCases::find(materials::FeatureMask used) 
     }
     const auto [place, isNew] = made_.try_emplace(used & withCode);
     if (isNew) {
-        if (Status status = addMaterialCode(sources_, model_, used, place->second); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(addMaterialCode(sources_, model_, used, place->second));
     }
     return &place->second;
 }

@@ -57,12 +57,9 @@ Status ModuleDrafts::finish(const Draft& draft) const {
     module.prepared = warm_ == nullptr ? nullptr : warm_->findGlsl(draft.origin, draft.text, lookup);
     if (!module.prepared) {
         WarmModules::Reader reader(lookup);
-        const Result<GlslUnit> flattened =
-            flatten(draft.origin, draft.text, reader.recording(), FlattenSide::Glsl);
-        if (!flattened) {
-            return flattened.error();
-        }
-        GlslUnit unit = dropUnused(*flattened);
+        GLINT_TRY(const auto flattened,
+                  flatten(draft.origin, draft.text, reader.recording(), FlattenSide::Glsl));
+        GlslUnit unit = dropUnused(flattened);
         std::string essential = essentialText(unit.text());
         module.prepared =
             std::make_shared<const PreparedGlsl>(PreparedGlsl{std::move(unit), std::move(essential)});

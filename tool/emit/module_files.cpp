@@ -46,19 +46,16 @@ Result<ModuleFile> readModuleFile(const fs::path& file, const std::string& name)
         return makeError("module-missing", file.string(), fmt::format("there is no compiled {}", name),
                          kBuildAgain);
     }
-    const Result<base::Bytes> bytes = base::readFile(file, kMaxModuleFileBytes);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, base::readFile(file, kMaxModuleFileBytes));
     const auto damaged = [&] {
         return makeError("module-format", file.string(),
                          fmt::format("is no compiled module, or a damaged one; it should be {}", name),
                          "delete it and run Ninja again");
     };
-    if (!base::asText(*bytes).starts_with(kModuleMagic)) {
+    if (!base::asText(bytes).starts_with(kModuleMagic)) {
         return damaged();
     }
-    std::string_view rest = base::asText(*bytes).substr(kModuleMagic.size());
+    std::string_view rest = base::asText(bytes).substr(kModuleMagic.size());
     const std::optional<std::uint64_t> sum = Unpacker(rest).number();
     if (!sum || base::hashBytes(rest.substr(sizeof *sum)) != *sum) {
         return damaged();
@@ -85,14 +82,11 @@ Status joinModuleFile(const ModuleText& source, std::string_view text, const fs:
     std::vector<CachedModule> parts;
     for (const std::string& name : source.parts) {
         const fs::path file = output.parent_path() / (name + std::string(kCompiledModuleSuffix));
-        Result<ModuleFile> part = readModuleFile(file, "part of " + source.source.name);
-        if (!part) {
-            return part.error();
-        }
-        if (nameOfModuleText(part->text) != name) {
+        GLINT_TRY(auto part, readModuleFile(file, "part of " + source.source.name));
+        if (nameOfModuleText(part.text) != name) {
             return makeError("module-stale", file.string(), "was compiled from another text", kBuildAgain);
         }
-        parts.push_back(std::move(part->module));
+        parts.push_back(std::move(part.module));
     }
     std::vector<const CachedModule*> pointers;
     for (const CachedModule& part : parts) {
@@ -126,33 +120,24 @@ std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bo
 }
 
 Status compileModuleFile(const fs::path& input, const fs::path& output) {
-    const Result<base::Bytes> bytes = base::readFile(input, kMaxModuleFileBytes);
-    if (!bytes) {
-        return bytes.error();
+    GLINT_TRY(const auto bytes, base::readFile(input, kMaxModuleFileBytes));
+    const std::string_view text = base::asText(bytes);
+    GLINT_TRY(const auto module, readModuleText(text, input.string()));
+    if (!module.parts.empty()) {
+        return joinModuleFile(module, text, output);
     }
-    const std::string_view text = base::asText(*bytes);
-    const Result<ModuleText> module = readModuleText(text, input.string());
-    if (!module) {
-        return module.error();
-    }
-    if (!module->parts.empty()) {
-        return joinModuleFile(*module, text, output);
-    }
-    const Result<CachedModule> compiled = compileMeasured(module->source, module->options, module->link);
+    const Result<CachedModule> compiled = compileMeasured(module.source, module.options, module.link);
     return compiled ? base::writeFile(output, packFile(text, *compiled)) : Status(compiled.error());
 }
 
 Result<CachedModule> readCompiledModule(const fs::path& file, std::string_view text,
                                         const std::string& name) {
-    Result<ModuleFile> read = readModuleFile(file, name);
-    if (!read) {
-        return read.error();
-    }
-    if (read->text != text) {
+    GLINT_TRY(auto read, readModuleFile(file, name));
+    if (read.text != text) {
         return makeError("module-stale", file.string(),
                          fmt::format("was compiled from another text than that of {}", name), kBuildAgain);
     }
-    return std::move(read->module);
+    return std::move(read.module);
 }
 
 }  // namespace glint::compiler

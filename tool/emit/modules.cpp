@@ -157,13 +157,10 @@ Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sou
                                                             package::ShadingPrecision precision,
                                                             const SourceSet& own, ModuleDrafts& drafts) {
     constexpr std::string_view kSource = "passes/primary_surface.comp";
-    Result<std::string> text = makeText(kSource, "", sources, context);
-    if (!text) {
-        return text.error();
-    }
-    insertPartDefines(*text, precision);
+    GLINT_TRY(auto text, makeText(kSource, "", sources, context));
+    insertPartDefines(text, precision);
     const std::shared_ptr<ModuleSource> part = makePart("primary_surface.part", {"surfaceOfPrimary"});
-    drafts.add(part, std::string(kSource), std::move(*text), own);
+    drafts.add(part, std::string(kSource), std::move(text), own);
     return std::shared_ptr<const ModuleSource>(part);
 }
 
@@ -227,23 +224,16 @@ Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& p
     SourceSet own;
     const materials::FeatureMask evaluated =
         shaderCase.always | shaderCase.sometimes | emitterMask(scenes, plan, settings);
-    if (Status made = addMaterialCode(sources, *plan.model, evaluated, own); !made) {
-        return made.error();
-    }
-    Result<std::string> text =
-        makeText(info.source, moduleDefines(info, key, settings.precision), sources, context);
-    if (!text) {
-        return text.error();
-    }
+    GLINT_TRY_DO(addMaterialCode(sources, *plan.model, evaluated, own));
+    GLINT_TRY(auto text,
+              makeText(info.source, moduleDefines(info, key, settings.precision), sources, context));
     const auto module = std::make_shared<ModuleSource>();
     module->key = key;
     module->stage = stageOf(info, key.tracer);
     module->name = moduleName(info.source, info, key, "", *plan.model);
     ModuleDrafts drafts(sources, warm);
-    drafts.add(module, module->name, std::move(*text), own);
-    if (Status finished = drafts.finish(settings.jobs); !finished) {
-        return finished.error();
-    }
+    drafts.add(module, module->name, std::move(text), own);
+    GLINT_TRY_DO(drafts.finish(settings.jobs));
     return std::move(*module);
 }
 
@@ -258,9 +248,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     const Case draft = draftCase(plan);
     ModuleDrafts drafts(sources, warm);
     SwitchParts parts(context, scenes, plan, sources, settings, drafts, codeOfCases, ofEmitters);
-    if (Status made = parts.makeSwitches(); !made) {
-        return made.error();
-    }
+    GLINT_TRY_DO(parts.makeSwitches());
     std::shared_ptr<const ModuleSource> surface;  // of the lighting pass, whatever traces its rays
     const SourceSet apart = surfaceApart(sources, settings.emissiveLights);
     std::vector<std::shared_ptr<ModuleSource>> modules;
@@ -275,21 +263,13 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
             const Case& shaderCase = ofCase ? plan.cases[key.index] : ofDraft ? draft : fallback;
             addCase(context, scenes, *plan.model, shaderCase);
             context.set("skipsMisses", ofFallback);
-            Result<const SourceSet*> code =
-                codeOfCases.find(shaderCase.always | shaderCase.sometimes | ofEmitters);
-            if (!code) {
-                return code.error();
-            }
-            own = *code;
+            GLINT_TRY(own, codeOfCases.find(shaderCase.always | shaderCase.sometimes | ofEmitters));
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, *plan.model, plan.effects.effects, key.index);
         }
         const std::string_view source = sourceOf(info, key, *plan.model);
-        Result<std::string> text =
-            makeText(source, moduleDefines(info, key, settings.precision), sources, context);
-        if (!text) {
-            return text.error();
-        }
+        GLINT_TRY(auto text,
+                  makeText(source, moduleDefines(info, key, settings.precision), sources, context));
         const std::string_view caseName = ofCase ? std::string_view(plan.cases[key.index].name) : "";
         auto module = std::make_shared<ModuleSource>();
         module->key = key;
@@ -297,26 +277,17 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         module->name = moduleName(source, info, key, caseName, *plan.model);
         const std::string origin = source.ends_with(kTemplateSuffix) ? module->name : std::string(source);
         if (ofSwitch) {
-            if (Status added = parts.addTo(*module, origin, *text, ofFallback); !added) {
-                return added.error();
-            }
+            GLINT_TRY_DO(parts.addTo(*module, origin, text, ofFallback));
         } else if (key.role == ModuleRole::Lighting) {
             if (!surface) {
-                Result<std::shared_ptr<const ModuleSource>> part =
-                    makeSurfacePart(sources, context, settings.precision, none, drafts);
-                if (!part) {
-                    return part.error();
-                }
-                surface = std::move(*part);
+                GLINT_TRY(surface, makeSurfacePart(sources, context, settings.precision, none, drafts));
             }
-            addLightingParts(*module, origin, *text, apart, surface, drafts);
+            addLightingParts(*module, origin, text, apart, surface, drafts);
         }
-        drafts.add(module, origin, std::move(*text), *own);
+        drafts.add(module, origin, std::move(text), *own);
         modules.push_back(std::move(module));
     }
-    if (Status finished = drafts.finish(settings.jobs); !finished) {
-        return finished.error();
-    }
+    GLINT_TRY_DO(drafts.finish(settings.jobs));
     std::vector<ModuleSource> made;
     made.reserve(modules.size());
     for (const std::shared_ptr<ModuleSource>& module : modules) {

@@ -197,9 +197,7 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     for (const materials::ModelSource& source : plan.model->sources) {
         sources.add(source.name, source.text);
     }
-    if (Status status = addHost(sources, settings.host); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(addHost(sources, settings.host));
     sources.add("generated/features.glsl", plan.model->featureDefines());
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
     const bool surface = settings.answer == package::HitAnswer::Surface;
@@ -210,22 +208,15 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
     const materials::FeatureMask used =
         plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
-    if (Status status = addMaterialCode(sources, *plan.model, used, sources); !status) {
-        return status.error();
-    }
-    if (Status status = addMaskCode(sources, *plan.model, used, sources); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(addMaterialCode(sources, *plan.model, used, sources));
+    GLINT_TRY_DO(addMaskCode(sources, *plan.model, used, sources));
     sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     addEffects(context, plan);
     addLayers(context, plan);
     for (const std::string_view name : kGenerated) {
-        Result<std::string> text = renderTemplate(sources, fmt::format("{}.mustache", name), context);
-        if (!text) {
-            return text.error();
-        }
-        sources.add(fmt::format("generated/{}", name), std::move(*text));
+        GLINT_TRY(auto text, renderTemplate(sources, fmt::format("{}.mustache", name), context));
+        sources.add(fmt::format("generated/{}", name), std::move(text));
     }
     return sources;
 }

@@ -25,12 +25,9 @@ Status SwitchParts::makeSwitches() {
         }
         for (const bool apart : {false, true}) {
             context.set("apart", apart);
-            Result<std::string> text = renderTemplate(sources_, kSwitchTemplate, context);
-            if (!text) {
-                return text.error();
-            }
+            GLINT_TRY(auto text, renderTemplate(sources_, kSwitchTemplate, context));
             SourceSet& to = (apart ? head_ : whole_)[fallbackAlone ? 1 : 0];
-            to.add(std::string(kSwitchFile), std::move(*text));
+            to.add(std::string(kSwitchFile), std::move(text));
             if (apart && settings_.emissiveLights != EmissiveLights::On) {
                 // What emissive lights emit is the only code of materials that the switch would have, and an
                 // edit of that code would change the switch.
@@ -47,24 +44,18 @@ Result<std::shared_ptr<const ModuleSource>> SwitchParts::partOf(const Case& shad
     if (made) {
         return made;
     }
-    Result<const SourceSet*> code = codeOfCases_.find(shaderCase.always | shaderCase.sometimes | ofEmitters_);
-    if (!code) {
-        return code.error();
-    }
+    GLINT_TRY(auto code, codeOfCases_.find(shaderCase.always | shaderCase.sometimes | ofEmitters_));
     kainjow::mustache::data context = context_;
     addCase(context, scenes_, *plan_.model, shaderCase);
-    Result<std::string> text = renderTemplate(sources_, kPartTemplate, context);
-    if (!text) {
-        return text.error();
-    }
-    insertPartDefines(*text, settings_.precision);
+    GLINT_TRY(auto text, renderTemplate(sources_, kPartTemplate, context));
+    insertPartDefines(text, settings_.precision);
     const std::shared_ptr<ModuleSource> part = makePart(function + ".part", {function});
     if (settings_.emissiveLights == EmissiveLights::On) {
         // It shades a point on an emissive triangle, whatever the case. Inlined, it would be a quarter of
         // each case; apart, it is equal in all parts, and the joined shader has it once.
         part->functionsApart.emplace_back("sampleEmitter");
     }
-    drafts_.add(part, part->name, std::move(*text), **code);
+    drafts_.add(part, part->name, std::move(text), *code);
     made = part;
     return made;
 }
@@ -87,12 +78,9 @@ Status SwitchParts::addTo(ModuleSource& module, const std::string& origin, const
     }
     std::vector<std::shared_ptr<const ModuleSource>> parts;
     for (const Case& shaderCase : cases) {
-        Result<std::shared_ptr<const ModuleSource>> part = partOf(shaderCase);
-        if (!part) {
-            return part.error();
-        }
-        module.functionsApart.push_back((*part)->link->exported.front());
-        parts.push_back(std::move(*part));
+        GLINT_TRY(auto part, partOf(shaderCase));
+        module.functionsApart.push_back(part->link->exported.front());
+        parts.push_back(std::move(part));
     }
     const std::shared_ptr<ModuleSource> head = makeHead(module, module.functionsApart);
     module.parts.push_back(head);

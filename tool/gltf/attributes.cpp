@@ -83,21 +83,13 @@ void findMissing(Reader& reader) {
 Result<FloatElements> readPacked(const Reader& reader, const char* attribute, int accessor, std::uint32_t id,
                                  Integers integers) {
     Document& document = reader.document();
-    const Result<ElementFormat> format = floatFormat(document, accessor);
-    if (!format) {
-        return format.error();
-    }
-    if (Status status = document.chargeVertices(reader.draco->pointCount(), reader.pointer(attribute));
-        !status) {
-        return status.error();
-    }
+    GLINT_TRY(const auto format, floatFormat(document, accessor));
+    GLINT_TRY_DO(document.chargeVertices(reader.draco->pointCount(), reader.pointer(attribute)));
     noteUnlikeCount(reader, attribute, document.accessor(accessor).count, reader.draco->pointCount());
-    const Result<base::Bytes> bytes = reader.draco->attribute(
-        document, id, *format, fmt::format("{}/attributes/{}", dracoPointer(reader), attribute));
-    if (!bytes) {
-        return bytes.error();
-    }
-    return toFloats(document, accessor, integers, *bytes);
+    GLINT_TRY(const auto bytes,
+              reader.draco->attribute(document, id, format,
+                                      fmt::format("{}/attributes/{}", dracoPointer(reader), attribute)));
+    return toFloats(document, accessor, integers, bytes);
 }
 
 Result<FloatElements> readElements(const Reader& reader, const char* attribute, int accessor,
@@ -128,19 +120,16 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
                                           reader.draco != nullptr ? "the Draco data" : "POSITION", expected),
                               kExportMesh);
     }
-    const Result<FloatElements> elements = readElements(reader, attribute, accessor, integers);
-    if (!elements) {
-        return elements.error();
-    }
-    if (elements->components < fewest || elements->components > N) {
+    GLINT_TRY(const auto elements, readElements(reader, attribute, accessor, integers));
+    if (elements.components < fewest || elements.components > N) {
         return document.error("attribute-type", reader.pointer(attribute),
-                              fmt::format("has {} components, not {}", elements->components, N), kExportMesh);
+                              fmt::format("has {} components, not {}", elements.components, N), kExportMesh);
     }
     std::array<float, N> filled{};
     filled.fill(1.0F);
-    values.assign(elements->count, filled);
-    for (std::size_t i = 0; i < elements->count; ++i) {
-        std::copy_n(&elements->values[i * elements->components], elements->components, values[i].begin());
+    values.assign(elements.count, filled);
+    for (std::size_t i = 0; i < elements.count; ++i) {
+        std::copy_n(&elements.values[i * elements.components], elements.components, values[i].begin());
     }
     return okStatus();
 }
@@ -189,12 +178,8 @@ Status readInfluences(const Reader& reader) {
                                            kExportMesh);
         }
         InfluenceSet& read = sets.emplace_back();
-        if (Status s = readAttribute(reader, joints.c_str(), 4, Integers::AsValues, read.joints); !s) {
-            return s;
-        }
-        if (Status s = readAttribute(reader, weights.c_str(), 4, Integers::Normalized, read.weights); !s) {
-            return s;
-        }
+        GLINT_TRY_DO(readAttribute(reader, joints.c_str(), 4, Integers::AsValues, read.joints));
+        GLINT_TRY_DO(readAttribute(reader, weights.c_str(), 4, Integers::Normalized, read.weights));
     }
     const std::string beyond = fmt::format("JOINTS_{}", sets.size());
     if (find(reader.source.json["attributes"], beyond) != nullptr) {
@@ -218,25 +203,21 @@ Status readDeclared(const Reader& reader) {
             continue;
         }
         const std::string pointer = reader.pointer(declared.gltf.c_str());
-        Result<FloatElements> elements =
-            readElements(reader, declared.gltf.c_str(), accessor, Integers::AsValues);
-        if (!elements) {
-            return elements.error();
-        }
-        if (elements->count != reader.primitive.positions.size()) {
+        GLINT_TRY(auto elements, readElements(reader, declared.gltf.c_str(), accessor, Integers::AsValues));
+        if (elements.count != reader.primitive.positions.size()) {
             return document.error("attribute-count", pointer,
-                                  fmt::format("has {} elements, POSITION has {}", elements->count,
+                                  fmt::format("has {} elements, POSITION has {}", elements.count,
                                               reader.primitive.positions.size()),
                                   kExportMesh);
         }
-        if (elements->components != static_cast<std::size_t>(declared.channels)) {
+        if (elements.components != static_cast<std::size_t>(declared.channels)) {
             return document.error("attribute-type", pointer,
                                   fmt::format("has {} components; the pack's attribute \"{}\" has {}",
-                                              elements->components, declared.name, declared.channels),
+                                              elements.components, declared.name, declared.channels),
                                   "export the mesh again, or correct the declaration");
         }
         reader.primitive.attributes.push_back(
-            {declared.gltf, static_cast<std::uint32_t>(declared.channels), std::move(elements->values)});
+            {declared.gltf, static_cast<std::uint32_t>(declared.channels), std::move(elements.values)});
     }
     return okStatus();
 }
@@ -244,27 +225,13 @@ Status readDeclared(const Reader& reader) {
 Status readAttributes(const Reader& reader) {
     Primitive& primitive = reader.primitive;
     constexpr Integers kValues = Integers::AsValues;
-    if (Status s = readAttribute(reader, "POSITION", 3, kValues, primitive.positions); !s) {
-        return s;
-    }
-    if (Status s = readAttribute(reader, "NORMAL", 3, kValues, primitive.normals); !s) {
-        return s;
-    }
-    if (Status s = readAttribute(reader, "TEXCOORD_0", 2, kValues, primitive.texCoords0); !s) {
-        return s;
-    }
-    if (Status s = readAttribute(reader, "TEXCOORD_1", 2, kValues, primitive.texCoords1); !s) {
-        return s;
-    }
-    if (Status s = readColors(reader); !s) {
-        return s;
-    }
-    if (Status s = readInfluences(reader); !s) {
-        return s;
-    }
-    if (Status s = readDeclared(reader); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(readAttribute(reader, "POSITION", 3, kValues, primitive.positions));
+    GLINT_TRY_DO(readAttribute(reader, "NORMAL", 3, kValues, primitive.normals));
+    GLINT_TRY_DO(readAttribute(reader, "TEXCOORD_0", 2, kValues, primitive.texCoords0));
+    GLINT_TRY_DO(readAttribute(reader, "TEXCOORD_1", 2, kValues, primitive.texCoords1));
+    GLINT_TRY_DO(readColors(reader));
+    GLINT_TRY_DO(readInfluences(reader));
+    GLINT_TRY_DO(readDeclared(reader));
     if (primitive.normals.empty() && readableAccessor(reader, "TANGENT") >= 0) {
         reader.document().warn("tangent-without-normal", reader.pointer("TANGENT"),
                                "tangents without normals are ignored, as glTF says");
@@ -282,16 +249,13 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
         std::iota(order.begin(), order.end(), 0U);
         return order;
     }
-    Result<IndexElements> indices = readIndices(document, accessor);
-    if (!indices) {
-        return indices.error();
-    }
+    GLINT_TRY(auto indices, readIndices(document, accessor));
     const std::string pointer = reader.primitive.pointer + "/indices";
     constexpr const char* kExportWithoutRestart = "glTF has no primitive restart: export the mesh again";
     bool hasRestart = false;
-    for (std::size_t i = 0; i < indices->values.size(); ++i) {
-        const std::uint32_t index = indices->values[i];
-        const bool isRestart = index == indices->restart;
+    for (std::size_t i = 0; i < indices.values.size(); ++i) {
+        const std::uint32_t index = indices.values[i];
+        const bool isRestart = index == indices.restart;
         if (index >= vertices && isRestart) {
             return document.error("primitive-restart", pointer,
                                   fmt::format("index {} is the primitive restart value {}", i, index),
@@ -308,10 +272,10 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
         document.warn(
             "primitive-restart", pointer,
             fmt::format("has the primitive restart value {}, which is taken for the vertex of that number",
-                        indices->restart),
+                        indices.restart),
             kExportWithoutRestart);
     }
-    return std::move(indices->values);
+    return std::move(indices.values);
 }
 
 // Draco merges points and drops degenerate triangles. Not every exporter corrects the accessors afterwards.
@@ -346,18 +310,12 @@ Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, P
     Reader reader{source, primitive, unlikeCounts};
     std::optional<DracoMesh> draco;
     if (const Json* extension = findExtension(source.json, kDraco)) {
-        Result<DracoMesh> mesh = DracoMesh::decode(source.document, *extension, dracoPointer(reader));
-        if (!mesh) {
-            return mesh.error();
-        }
-        draco = std::move(*mesh);
+        GLINT_TRY(draco, DracoMesh::decode(source.document, *extension, dracoPointer(reader)));
         reader.draco = &*draco;
         reader.dracoAttributes = find(*extension, "attributes");
         findMissing(reader);
     }
-    if (Status status = readAttributes(reader); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(readAttributes(reader));
     if (!draco) {
         return readOrder(reader);
     }

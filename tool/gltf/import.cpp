@@ -37,35 +37,21 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
 }
 
 Status fillScene(Document& document, Scene& scene) {
-    if (Status status = importMaterials(document, scene); !status) {
-        return status;
-    }
-    if (Status status = importNodes(document, scene); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(importMaterials(document, scene));
+    GLINT_TRY_DO(importNodes(document, scene));
     std::vector<bool> placed(gltf::arraySize(document.json(), "/meshes"));
     for (const Node& node : scene.nodes) {
         if (node.mesh >= 0) {
             placed[static_cast<std::size_t>(node.mesh)] = true;
         }
     }
-    if (const Result<bool> imported = importMeshes(document, placed, scene); !imported) {
-        return imported.error();
-    }
-    if (Status status = importMorphWeights(document, scene); !status) {
-        return status;
-    }
-    if (Status status = importSkins(document, scene); !status) {
-        return status;
-    }
-    if (Status status = importInstances(document, scene); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(importMeshes(document, placed, scene));
+    GLINT_TRY_DO(importMorphWeights(document, scene));
+    GLINT_TRY_DO(importSkins(document, scene));
+    GLINT_TRY_DO(importInstances(document, scene));
     importAnimations(document, scene);
     settleColors(document, scene);
-    if (Status status = applyVariant(document, scene); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(applyVariant(document, scene));
     if (usesMaterial(scene, scene.materials.size())) {
         scene.defaultMaterial = static_cast<int>(scene.materials.size());
         scene.materials.emplace_back(*document.options().materialModel).name = "default";
@@ -74,9 +60,7 @@ Status fillScene(Document& document, Scene& scene) {
     warnOfMissingInputs(document, scene);
     scene.trustsTextures = document.options().trustTextures;
     if (scene.trustsTextures) {
-        if (Status status = readTextureContent(document.options(), scene); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(readTextureContent(document.options(), scene));
         mergeSameTextures(scene);
         for (Mesh& mesh : scene.meshes) {
             for (Primitive& primitive : mesh.primitives) {
@@ -95,15 +79,10 @@ Status fillScene(Document& document, Scene& scene) {
 Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
     // The JSON library and the allocator throw exceptions, which must not leave this function.
     try {
-        const auto document = Document::open(path, options);
-        if (!document) {
-            return document.error();
-        }
+        GLINT_TRY(const auto document, Document::open(path, options));
         Scene scene;
         scene.path = path.string();
-        if (Status status = fillScene(**document, scene); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(fillScene(*document, scene));
         return scene;
     } catch (const std::bad_alloc&) {
         return makeError("out-of-memory", path.string(), "the scene does not fit into memory",

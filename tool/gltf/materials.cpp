@@ -40,9 +40,7 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
                 continue;
             }
             const ObjectReader reader(document, *object, pointerOf(pointer, owner));
-            if (Status status = reader.texture(place.member, textures, material.textures[slot]); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(reader.texture(place.member, textures, material.textures[slot]));
         }
     }
     return okStatus();
@@ -196,9 +194,7 @@ Status importMaterials(Document& document, Scene& scene) {
         material.alphaMode = readAlphaMode(document, textMember(json, "alphaMode"), pointer);
         material.doubleSided = boolMember(json, "doubleSided", false);
         readParameters(document, json, pointer, material);
-        if (Status status = readTextures(document, textures, json, pointer, material); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(readTextures(document, textures, json, pointer, material));
         checkTransfer(document, scene, material, pointer);
         scene.materials.push_back(std::move(material));
     }

@@ -55,21 +55,16 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
         return drawable;
     }
     bool isList = false;
-    Result<std::vector<std::uint32_t>> order = readVertices(source, primitive, isList);
-    if (!order) {
-        return order.error();
-    }
+    GLINT_TRY(auto order, readVertices(source, primitive, isList));
     const auto mode = isList ? PrimitiveMode::Triangles : static_cast<PrimitiveMode>(modeOf(source));
-    TriangleList list = makeTriangles(mode, std::move(*order));
+    TriangleList list = makeTriangles(mode, std::move(order));
     if (list.leftOver > 0) {
         source.document.warn(
             "triangle-incomplete", primitive.pointer,
             fmt::format("the last {} vertices make no triangle and are dropped", list.leftOver));
     }
     primitive.indices = std::move(list.indices);
-    if (Status status = readTargets(source, primitive); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(readTargets(source, primitive));
     repairPrimitive(source.document, primitive);
     if (primitive.indices.empty()) {
         source.document.warn("primitive-empty", primitive.pointer, "has no triangle and is skipped");

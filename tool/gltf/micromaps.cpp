@@ -49,9 +49,7 @@ public:
     MicromapReader(const Json& json, const ReadBufferView& read) : json_(json), read_(read) {}
 
     Result<std::vector<PrimitiveMicromap>> run() {
-        if (Status status = readArrays(); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(readArrays());
         std::vector<PrimitiveMicromap> found;
         const Json meshes = json_.value("meshes", Json::array());
         for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
@@ -63,11 +61,8 @@ public:
                 }
                 const std::string pointer =
                     fmt::format("/meshes/{}/primitives/{}/extensions/{}", mesh, i, kMicromapExtension);
-                Result<opacity::MicromapArray> array = readPrimitive(primitives[i], *extension, pointer);
-                if (!array) {
-                    return array.error();
-                }
-                found.push_back({mesh, i, std::move(*array)});
+                GLINT_TRY(auto array, readPrimitive(primitives[i], *extension, pointer));
+                found.push_back({mesh, i, std::move(array)});
             }
         }
         return found;
@@ -79,11 +74,8 @@ private:
         const Json list = root == nullptr ? Json::array() : root->value("micromaps", Json::array());
         for (std::size_t i = 0; i < list.size(); ++i) {
             const std::string pointer = fmt::format("/extensions/{}/micromaps/{}", kMicromapExtension, i);
-            Result<opacity::MicromapArray> array = readArray(list[i], pointer);
-            if (!array) {
-                return array.error();
-            }
-            arrays_.push_back(std::move(*array));
+            GLINT_TRY(auto array, readArray(list[i], pointer));
+            arrays_.push_back(std::move(array));
         }
         return okStatus();
     }
@@ -101,21 +93,15 @@ private:
     Result<opacity::MicromapArray> readArray(const Json& json, const std::string& pointer) {
         opacity::MicromapArray array;
         std::size_t index = 0;
-        Result<std::span<const std::uint8_t>> data = view(json, "data", pointer, index);
-        if (!data) {
-            return data.error();
-        }
-        array.data.assign(data->begin(), data->end());
-        Result<std::span<const std::uint8_t>> records = view(json, "triangles", pointer, index);
-        if (!records) {
-            return records.error();
-        }
+        GLINT_TRY(auto data, view(json, "data", pointer, index));
+        array.data.assign(data.begin(), data.end());
+        GLINT_TRY(auto records, view(json, "triangles", pointer, index));
         const std::size_t stride = json_["bufferViews"][index].value("byteStride", std::size_t{8});
         if (stride < sizeof(opacity::MicromapRecord) || stride % 4 != 0) {
             return micromapFault(pointer + "/triangles", "has a stride below 8, or none of 4");
         }
-        for (std::size_t at = 0; at + sizeof(opacity::MicromapRecord) <= records->size(); at += stride) {
-            std::memcpy(&array.records.emplace_back(), records->data() + at, sizeof(opacity::MicromapRecord));
+        for (std::size_t at = 0; at + sizeof(opacity::MicromapRecord) <= records.size(); at += stride) {
+            std::memcpy(&array.records.emplace_back(), records.data() + at, sizeof(opacity::MicromapRecord));
         }
         const Json counts = json.value("usageCounts", Json::array());
         const Json levels = json.value("usageLevels", Json::array());
@@ -162,11 +148,8 @@ private:
         }
         opacity::MicromapArray array = arrays_[*number];
         const std::size_t base = numberOf(extension, "micromapBaseTriangle").value_or(0);
-        Result<std::vector<std::int64_t>> values = readIndices(extension, *corners / 3, pointer);
-        if (!values) {
-            return values.error();
-        }
-        for (const std::int64_t value : *values) {
+        GLINT_TRY(auto values, readIndices(extension, *corners / 3, pointer));
+        for (const std::int64_t value : values) {
             const std::int64_t index = value < 0 ? value : value + static_cast<std::int64_t>(base);
             if (index < -4 || index >= static_cast<std::int64_t>(array.records.size())) {
                 return micromapFault(pointer,
@@ -200,10 +183,7 @@ private:
             return micromapFault(where, "names an accessor that has not one number for each triangle");
         }
         std::size_t index = 0;
-        Result<std::span<const std::uint8_t>> bytes = view(accessor, "bufferView", where, index);
-        if (!bytes) {
-            return bytes.error();
-        }
+        GLINT_TRY(auto bytes, view(accessor, "bufferView", where, index));
         const int type = accessor.value("componentType", 0);
         const std::size_t size = type == kByte ? 1 : type == kShort || type == kSignedShort ? 2 : 4;
         const bool known =
@@ -211,12 +191,12 @@ private:
         const std::size_t stride = json_["bufferViews"][index].value("byteStride", size);
         const std::size_t offset = accessor.value("byteOffset", std::size_t{0});
         const std::size_t needed = triangles == 0 ? 0 : offset + (triangles - 1) * stride + size;
-        if (!known || needed > bytes->size()) {
+        if (!known || needed > bytes.size()) {
             return micromapFault(where, "names an accessor of another type, or one beyond its buffer view");
         }
         for (std::size_t i = 0; i < triangles; ++i) {
             std::uint32_t word = 0;
-            std::memcpy(&word, bytes->data() + offset + i * stride, size);
+            std::memcpy(&word, bytes.data() + offset + i * stride, size);
             values[i] = signedOf(word, 8 * size, type == kSignedShort || type == kSignedInt);
         }
         return values;

@@ -178,12 +178,9 @@ Result<int> TextureTable::append(int texture) {
 Result<int> TextureTable::useImage(int image) {
     std::optional<int>& known = images_[static_cast<std::size_t>(image)];
     if (!known) {
-        Result<Image> imported = importImage(document_, image);
-        if (!imported) {
-            return imported.error();
-        }
+        GLINT_TRY(auto imported, importImage(document_, image));
         known = static_cast<int>(scene_.images.size());
-        scene_.images.push_back(std::move(*imported));
+        scene_.images.push_back(std::move(imported));
     }
     return *known;
 }

@@ -77,48 +77,29 @@ Status checkImageSize(std::int64_t width, std::int64_t height, const std::string
 }
 
 Result<LinearImage> readImage(const std::filesystem::path& path) {
-    const Result<ImageFormat> format = imageFormat(path);
-    if (!format) {
-        return format.error();
-    }
-    const Result<base::Bytes> bytes = base::readFile(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    return *format == ImageFormat::Png ? decodePng(*bytes, path.string()) : decodeExr(*bytes, path.string());
+    GLINT_TRY(const auto format, imageFormat(path));
+    GLINT_TRY(const auto bytes, base::readFile(path));
+    return format == ImageFormat::Png ? decodePng(bytes, path.string()) : decodeExr(bytes, path.string());
 }
 
 Result<LinearImage> readRadiance(const std::filesystem::path& path) {
-    const Result<RadianceFormat> format = radianceFormat(path);
-    if (!format) {
-        return format.error();
-    }
-    const Result<base::Bytes> bytes = base::readFile(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    return *format == RadianceFormat::Hdr ? decodeHdr(*bytes, path.string())
-                                          : decodeExr(*bytes, path.string());
+    GLINT_TRY(const auto format, radianceFormat(path));
+    GLINT_TRY(const auto bytes, base::readFile(path));
+    return format == RadianceFormat::Hdr ? decodeHdr(bytes, path.string()) : decodeExr(bytes, path.string());
 }
 
 Status writeImage(const std::filesystem::path& path, const LinearImage& image, double exposure,
                   std::span<const ExrLayer> layers) {
-    const Result<ImageFormat> format = imageFormat(path);
-    if (!format) {
-        return format.error();
-    }
-    if (*format == ImageFormat::Exr) {
+    GLINT_TRY(const auto format, imageFormat(path));
+    if (format == ImageFormat::Exr) {
         return writeEncoded(path, encodeExr(image, path.string(), layers));
     }
     return writeImage(path, toDisplayImage(image, exposure));
 }
 
 Status writeImage(const std::filesystem::path& path, const DisplayImage& image) {
-    const Result<ImageFormat> format = imageFormat(path);
-    if (!format) {
-        return format.error();
-    }
-    if (*format != ImageFormat::Png) {
+    GLINT_TRY(const auto format, imageFormat(path));
+    if (format != ImageFormat::Png) {
         return makeError("image-extension", path.string(), "can only be written as a PNG", "use .png");
     }
     return writeEncoded(path, encodePng(image, path.string()));

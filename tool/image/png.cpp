@@ -98,9 +98,7 @@ Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::st
     if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
         return unreadable(where);
     }
-    if (Status checked = checkImageSize(width, height, where); !checked) {
-        return checked.error();
-    }
+    GLINT_TRY_DO(checkImageSize(width, height, where));
     if (const std::string excess = base::findPngExcess(bytes, width, height); !excess.empty()) {
         return makeError("image-format", where, "is no PNG file that can be read: " + excess, kRewrite);
     }

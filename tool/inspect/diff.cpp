@@ -106,16 +106,13 @@ void readTotals(const base::Json& manifest, DiffPackage& package) {
 }
 
 Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
-    const Result<base::Json> manifest = readManifestFile(folder);
-    if (!manifest) {
-        return manifest.error();
-    }
+    GLINT_TRY(const auto manifest, readManifestFile(folder));
     try {
         DiffPackage package;
-        package.settings = settingsOf(*manifest);
-        readCases(*manifest, package);
-        readMaterials(*manifest, package);
-        readTotals(*manifest, package);
+        package.settings = settingsOf(manifest);
+        readCases(manifest, package);
+        readMaterials(manifest, package);
+        readTotals(manifest, package);
         return package;
     } catch (const std::exception& error) {
         return manifestError(folder, error.what());
@@ -350,21 +347,15 @@ auto orderOf(const ModuleChange& change) {
 }  // namespace
 
 Result<DiffPackage> readDiffPackage(const std::filesystem::path& folder) {
-    const Result<Package> loaded = Package::load(folder);
-    if (!loaded) {
-        return loaded.error();
-    }
+    GLINT_TRY(const auto loaded, Package::load(folder));
     Result<DiffPackage> package = readManifestPart(folder);
     if (!package) {
         return package.error();
     }
-    for (const package::ModuleEntry& entry : loaded->modules()) {
+    for (const package::ModuleEntry& entry : loaded.modules()) {
         package::ModuleKey key{entry.role, entry.index, entry.tracer};
-        const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(loaded->spirv(key));
-        if (!statistics) {
-            return statistics.error();
-        }
-        DiffModule module{std::string(loaded->string(entry.file)), entry.hash, *statistics};
+        GLINT_TRY(const auto statistics, compiler::measureSpirv(loaded.spirv(key)));
+        DiffModule module{std::string(loaded.string(entry.file)), entry.hash, statistics};
         if (package::findRole(entry.role)->repeated == package::Repeated::ByCase) {
             key.index = 0;
             package->cases[static_cast<int>(entry.index)].modules[key] = std::move(module);

@@ -71,13 +71,10 @@ private:
 };
 
 Result<std::vector<LintFile>> filesOfPackage(const fs::path& folder) {
-    const Result<base::Json> manifest = readManifestFile(folder);
-    if (!manifest) {
-        return manifest.error();
-    }
+    GLINT_TRY(const auto manifest, readManifestFile(folder));
     ManifestWalk walk(folder);
     // The list of all files comes after those that have a name.
-    walk.visit(*manifest, "");
+    walk.visit(manifest, "");
     return walk.take();
 }
 
@@ -98,18 +95,15 @@ Result<std::vector<LintFile>> filesBelow(const fs::path& folder) {
 }
 
 Result<compiler::SpirvLint> lintFile(const std::filesystem::path& path) {
-    const Result<base::Bytes> bytes = base::readFile(path);
-    if (!bytes) {
-        return bytes.error();
-    }
-    if (bytes->size() % sizeof(std::uint32_t) != 0) {
+    GLINT_TRY(const auto bytes, base::readFile(path));
+    if (bytes.size() % sizeof(std::uint32_t) != 0) {
         return makeError("spirv-format", path.string(),
-                         fmt::format("has {} bytes, which is no multiple of 4", bytes->size()),
+                         fmt::format("has {} bytes, which is no multiple of 4", bytes.size()),
                          "expected a SPIR-V module; this one may be cut short");
     }
-    std::vector<std::uint32_t> words(bytes->size() / sizeof(std::uint32_t));
+    std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
     if (!words.empty()) {
-        std::memcpy(words.data(), bytes->data(), bytes->size());
+        std::memcpy(words.data(), bytes.data(), bytes.size());
     }
     return compiler::lintSpirv(words);
 }
@@ -158,16 +152,13 @@ Result<LintFiles> findLintFiles(const fs::path& path) {
         }
         return LintFiles{false, {{path, ""}}};
     }
-    Result<std::vector<LintFile>> files =
-        fs::exists(path / package::kManifestFile, error) ? filesOfPackage(path) : filesBelow(path);
-    if (!files) {
-        return files.error();
-    }
-    if (files->empty()) {
+    GLINT_TRY(auto files,
+              fs::exists(path / package::kManifestFile, error) ? filesOfPackage(path) : filesBelow(path));
+    if (files.empty()) {
         return makeError("lint-path", path.string(), "holds no SPIR-V file",
                          "name a package or a folder of .spv files");
     }
-    return LintFiles{true, std::move(*files)};
+    return LintFiles{true, std::move(files)};
 }
 
 LintedModule lintModule(const LintFile& file, const LintBudgets& budgets,

@@ -13,14 +13,11 @@ Diagnostic manifestError(const std::filesystem::path& folder, const std::string&
 }
 
 Result<base::Json> readManifestFile(const std::filesystem::path& folder) {
-    const Result<base::Bytes> bytes = base::readFile(folder / package::kManifestFile);
-    if (!bytes) {
-        return bytes.error();
-    }
-    if (base::nestsTooDeep(*bytes)) {
+    GLINT_TRY(const auto bytes, base::readFile(folder / package::kManifestFile));
+    if (base::nestsTooDeep(bytes)) {
         return manifestError(folder, "nests too deep");
     }
-    base::Json json = base::Json::parse(bytes->begin(), bytes->end(), nullptr, false);
+    base::Json json = base::Json::parse(bytes.begin(), bytes.end(), nullptr, false);
     if (!json.is_object()) {
         return manifestError(folder, "is no JSON object");
     }

@@ -82,11 +82,8 @@ Diagnostic unknownModule(const InspectedPackage& inspected, const std::string& w
 }  // namespace
 
 Result<Manifest> readManifest(const std::filesystem::path& folder) {
-    const Result<base::Json> file = readManifestFile(folder);
-    if (!file) {
-        return file.error();
-    }
-    const base::Json& json = *file;
+    GLINT_TRY(const auto file, readManifestFile(folder));
+    const base::Json& json = file;
     try {
         Manifest manifest;
         manifest.toolVersion = json.at("toolVersion").get<std::string>();
@@ -170,12 +167,9 @@ Result<InspectedPackage> inspectPackage(const Package& package, const Manifest& 
                                         std::string folder) {
     InspectedPackage inspected{package, manifest, std::move(folder), {}, {}};
     for (const package::ModuleEntry& entry : package.modules()) {
-        const Result<compiler::SpirvStatistics> statistics =
-            compiler::measureSpirv(package.spirv({entry.role, entry.index, entry.tracer}));
-        if (!statistics) {
-            return statistics.error();
-        }
-        inspected.modules.push_back({&entry, *statistics});
+        GLINT_TRY(const auto statistics,
+                  compiler::measureSpirv(package.spirv({entry.role, entry.index, entry.tracer})));
+        inspected.modules.push_back({&entry, statistics});
     }
     for (std::uint32_t scene = 0; scene < package.sceneCount(); ++scene) {
         for (const package::PrimitiveEntry& primitive : package.scene(scene).primitives) {
@@ -190,11 +184,8 @@ Result<std::vector<Disassembly>> disassembleModules(const InspectedPackage& insp
     std::vector<Disassembly> list;
     for (const InspectedModule* module : findModules(inspected, wanted)) {
         const auto words = inspected.package.spirv(module->key());
-        Result<std::string> text = compiler::disassemble({words.begin(), words.end()});
-        if (!text) {
-            return text.error();
-        }
-        list.push_back({module, std::move(*text)});
+        GLINT_TRY(auto text, compiler::disassemble({words.begin(), words.end()}));
+        list.push_back({module, std::move(text)});
     }
     if (list.empty()) {
         return unknownModule(inspected, wanted);

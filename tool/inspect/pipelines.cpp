@@ -252,14 +252,8 @@ void requirePackage(const Package& package, HeadlessOptions& options) {
 
 Result<PipelineReport> reportPipelines(Context& context, const Package& package, const Manifest& manifest,
                                        const std::string& name, std::uint32_t threads) {
-    const Result<InspectedPackage> inspected = inspectPackage(package, manifest, name);
-    if (!inspected) {
-        return inspected.error();
-    }
-    Result<std::vector<PackagePipeline>> pipelines = makePackagePipelines(context, package, threads);
-    if (!pipelines) {
-        return pipelines.error();
-    }
+    GLINT_TRY(const auto inspected, inspectPackage(package, manifest, name));
+    GLINT_TRY(auto pipelines, makePackagePipelines(context, package, threads));
     PipelineReport report;
     report.package = name;
     report.merge = manifest.merge;
@@ -270,8 +264,8 @@ Result<PipelineReport> reportPipelines(Context& context, const Package& package,
     report.deviceType = context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU ? "cpu" : "gpu";
     report.subgroupSize = context.subgroupSize();
     report.hasStatistics = context.handles().pipelineStatistics;
-    for (PackagePipeline& pipeline : *pipelines) {
-        report.pipelines.push_back(reportOf(*inspected, std::move(pipeline)));
+    for (PackagePipeline& pipeline : pipelines) {
+        report.pipelines.push_back(reportOf(inspected, std::move(pipeline)));
     }
     return report;
 }
@@ -591,11 +585,8 @@ PipelineReport readPipelineReport(base::JsonReader& reader, const base::Json& js
 
 Result<PipelineReport> readPipelineReport(const std::filesystem::path& file) {
     base::JsonReader reader = reportReader(file);
-    const Result<base::Json> json = reader.read(kMaxReportBytes);
-    if (!json) {
-        return json.error();
-    }
-    PipelineReport report = readPipelineReport(reader, *json, "");
+    GLINT_TRY(const auto json, reader.read(kMaxReportBytes));
+    PipelineReport report = readPipelineReport(reader, json, "");
     return reader.ok() ? Result<PipelineReport>(std::move(report)) : Result<PipelineReport>(reader.error());
 }
 
@@ -680,11 +671,8 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
                                      base::suggestion(nameOrFile, names)),
                          "the GPUs are: " + base::join(names));
     }
-    const Result<base::Json> json = reader.read(kMaxTableBytes);
-    if (!json) {
-        return json.error();
-    }
-    compiler::GpuCosts gpu = readGpu(reader, *json);
+    GLINT_TRY(const auto json, reader.read(kMaxTableBytes));
+    compiler::GpuCosts gpu = readGpu(reader, json);
     return reader.ok() ? Result<compiler::GpuCosts>(std::move(gpu))
                        : Result<compiler::GpuCosts>(reader.error());
 }
@@ -770,16 +758,13 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file) {
     base::JsonReader reader(file, "pipeline-budget-file",
                             "docs/cli.md, \"Budgets of pipelines\", describes the file");
     constexpr std::uint64_t kMaxBudgetBytes = 1ULL << 24;
-    const Result<base::Json> json = reader.read(kMaxBudgetBytes);
-    if (!json) {
-        return json.error();
-    }
+    GLINT_TRY(const auto json, reader.read(kMaxBudgetBytes));
     PipelineBudget budget;
     budget.file = file.string();
-    if (reader.text(*json, "", "format") != "glint-pipeline-budget" && reader.ok()) {
+    if (reader.text(json, "", "format") != "glint-pipeline-budget" && reader.ok()) {
         reader.fail("/format", "is not \"glint-pipeline-budget\"");
     }
-    reader.each(*json, "", "budgets", [&](const base::Json& rule, const std::string& place) {
+    reader.each(json, "", "budgets", [&](const base::Json& rule, const std::string& place) {
         budget.rules.push_back(readRule(reader, rule, place));
     });
     if (reader.ok() && budget.rules.empty()) {

@@ -66,9 +66,7 @@ Status checkCode(const MaterialModel& model) {
     };
     for (const EffectDeclaration& effect : model.effects) {
         for (const std::string* const file : effect.files()) {
-            if (Status status = effect.isOfPack ? check(effect.name, *file) : okStatus(); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(effect.isOfPack ? check(effect.name, *file) : okStatus());
         }
     }
     for (const FeatureCode& code : model.code) {
@@ -78,9 +76,7 @@ Status checkCode(const MaterialModel& model) {
         }
         for (const std::string& file : {code.surface, code.bsdf, code.layer, code.emission, code.coordinates,
                                         code.opacity, code.diffuse}) {
-            if (Status status = file.empty() ? okStatus() : check(code.name, file); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(file.empty() ? okStatus() : check(code.name, file));
         }
     }
     return okStatus();
@@ -99,9 +95,7 @@ const MaterialModel& keep(MaterialModel model) {
 Result<std::vector<fs::path>> packFiles(std::span<const std::string> folders) {
     std::vector<fs::path> files;
     for (const std::string& folder : folders) {
-        if (Status status = addFolder(folder, files); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(addFolder(folder, files));
     }
     std::ranges::sort(files);
     files.erase(std::unique(files.begin(), files.end()), files.end());
@@ -112,10 +106,7 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     if (folders.empty()) {
         return &builtinMaterialModel();
     }
-    const Result<std::vector<fs::path>> files = packFiles(folders);
-    if (!files) {
-        return files.error();
-    }
+    GLINT_TRY(const auto files, packFiles(folders));
     std::deque<std::string> names;
     std::deque<std::string> texts;
     std::vector<DeclarationFile> declarations;
@@ -123,12 +114,9 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     for (const base::BuiltinFile& file : declarationFiles()) {
         declarations.push_back({file.name, file.text});
     }
-    for (const fs::path& file : *files) {
-        const Result<base::Bytes> bytes = base::readFile(file, kMaxFileBytes);
-        if (!bytes) {
-            return bytes.error();
-        }
-        std::string text(bytes->begin(), bytes->end());
+    for (const fs::path& file : files) {
+        GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
+        std::string text(bytes.begin(), bytes.end());
         if (file.extension() != ".json") {
             sources.push_back({file.generic_string(), std::move(text)});
         } else {
@@ -136,15 +124,10 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
                 {names.emplace_back(file.generic_string()), texts.emplace_back(std::move(text)), true});
         }
     }
-    Result<MaterialModel> model = readDeclarations(declarations);
-    if (!model) {
-        return model.error();
-    }
-    model->sources = std::move(sources);
-    if (Status status = checkCode(*model); !status) {
-        return status.error();
-    }
-    return &keep(std::move(*model));
+    GLINT_TRY(auto model, readDeclarations(declarations));
+    model.sources = std::move(sources);
+    GLINT_TRY_DO(checkCode(model));
+    return &keep(std::move(model));
 }
 
 }  // namespace glint::materials

@@ -86,12 +86,8 @@ Status Mount::showFramesBefore(FrameOptions frame) const {
     for (std::uint32_t i = 1; i < frames_; ++i) {
         FrameOptions before = frame;
         before.seed = frame.seed + kSeedsOfFrames + (i << 8U);
-        if (Status rendered = renderer_->renderSamples(before, samples_); !rendered) {
-            return rendered;
-        }
-        if (const Result<LinearImage> filtered = filter_->filter(); !filtered) {
-            return filtered.error();
-        }
+        GLINT_TRY_DO(renderer_->renderSamples(before, samples_));
+        GLINT_TRY_DO(filter_->filter());
     }
     return okStatus();
 }
@@ -101,27 +97,19 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
     frame.seed = seed;
     Exposure exposure;
     if (filter_ != nullptr) {
-        if (Status shown = showFramesBefore(frame); !shown) {
-            return shown.error();
-        }
+        GLINT_TRY_DO(showFramesBefore(frame));
     }
     const auto add = [&]() -> Status {
-        const Result<std::vector<PassTiming>> stretches = renderer_->timings();
-        if (!stretches) {
-            return stretches.error();
-        }
-        exposure.milliseconds += stretchMs(*stretches, Pass::Frame);
-        exposure.hitMs += stretchMs(*stretches, Pass::Hits);
+        GLINT_TRY(const auto stretches, renderer_->timings());
+        exposure.milliseconds += stretchMs(stretches, Pass::Frame);
+        exposure.hitMs += stretchMs(stretches, Pass::Hits);
         return okStatus();
     };
     Result<LinearImage> image = renderer_->render(frame, samples_, add);
     if (!image) {
         return image.error();
     }
-    Result<FrameCounters> counters = renderer_->counters();
-    if (!counters) {
-        return counters.error();
-    }
+    GLINT_TRY(auto counters, renderer_->counters());
     if (filter_ != nullptr) {
         image = filter_->filter();
         if (!image) {
@@ -131,10 +119,8 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
         exposure.passes[std::string(kFilterPass)] = filter_->milliseconds();
     }
     exposure.image = std::move(*image);
-    exposure.counters = std::move(*counters);
-    if (Status split = addSplit(frame, exposure); !split) {
-        return split.error();
-    }
+    exposure.counters = std::move(counters);
+    GLINT_TRY_DO(addSplit(frame, exposure));
     return exposure;
 }
 
@@ -142,16 +128,11 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
 // each pass keeps passes from overlapping.
 Status Mount::addSplit(FrameOptions frame, Exposure& exposure) const {
     frame.timing = Timing::Passes;
-    if (Status rendered = renderer_->renderSamples(frame, 1); !rendered) {
-        return rendered;
-    }
-    const Result<std::vector<PassTiming>> passes = renderer_->timings();
-    if (!passes) {
-        return passes.error();
-    }
-    exposure.hits = hitTimesOf(*passes);
+    GLINT_TRY_DO(renderer_->renderSamples(frame, 1));
+    GLINT_TRY(const auto passes, renderer_->timings());
+    exposure.hits = hitTimesOf(passes);
     exposure.hits /= 1.0 / samples_;
-    for (const PassTiming& pass : *passes) {
+    for (const PassTiming& pass : passes) {
         exposure.passes[nameOfPass(pass)] += pass.milliseconds * samples_;
     }
     return okStatus();
@@ -168,28 +149,20 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
                                                    compiler::CacheStore* store) {
     std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache, store));
     const scene_view::SceneViewData data = sceneView(base, scene);
-    const Result<scene_view::CameraChoice> camera = scene_view::chooseCamera(
-        scene, data, base.camera, static_cast<double>(base.renderer.width) / base.renderer.height);
-    if (!camera) {
-        return camera.error();
-    }
-    if (const std::optional<Diagnostic> warning = scene_view::nothingSeen(scene, data, *camera)) {
+    GLINT_TRY(const auto camera,
+              scene_view::chooseCamera(scene, data, base.camera,
+                                       static_cast<double>(base.renderer.width) / base.renderer.height));
+    if (const std::optional<Diagnostic> warning = scene_view::nothingSeen(scene, data, camera)) {
         observer.report(*warning);
     }
-    bed->camera_ = camera->view;
-    bed->cameraName_ = camera->name;
+    bed->camera_ = camera.view;
+    bed->cameraName_ = camera.name;
     bed->sky_ = chooseSky(base, scene, data);
     bed->size_ = sizeOf(data);
     bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
-    Result<std::unique_ptr<Context>> context = openDevice(base, bed->features_);
-    if (!context) {
-        return context.error();
-    }
-    bed->context_ = std::move(*context);
+    GLINT_TRY(bed->context_, openDevice(base, bed->features_));
     bed->onCpu_ = isOnCpu(*bed->context_);
-    if (Status settled = bed->settleChoices(); !settled) {
-        return settled.error();
-    }
+    GLINT_TRY_DO(bed->settleChoices());
     if (!base.environment.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
@@ -206,17 +179,14 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
 // A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
 // chosen for this scene.
 Status BenchBed::settleChoices() {
-    const Result<PlanChoice> plan = choosePlan(base_, gltf::SceneList({&scene_, 1}));
-    if (!plan) {
-        return plan.error();
-    }
-    base_.alpha = plan->options.keys.alpha;
+    GLINT_TRY(const auto plan, choosePlan(base_, gltf::SceneList({&scene_, 1})));
+    base_.alpha = plan.options.keys.alpha;
     if (base_.strategy) {
         return okStatus();
     }
     std::vector<Diagnostic> warnings;
     const Result<compiler::StrategyAdvice> advice =
-        adviseRender(base_, plan->options, *context_, scene_, nullptr, warnings);
+        adviseRender(base_, plan.options, *context_, scene_, nullptr, warnings);
     observer_.report(warnings);
     if (!advice) {
         return advice.error();
@@ -245,23 +215,17 @@ Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const c
 
 Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::Settings& render) {
     const gltf::SceneList scenes({&scene_, 1});
-    const Result<PlanChoice> plan = choosePlan(render, scenes);
-    if (!plan) {
-        return plan.error();
-    }
+    GLINT_TRY(const auto plan, choosePlan(render, scenes));
     Result<Package> package = Diagnostic{};
     if (render.package.empty()) {
         package = scene_view::compileAndLoad(
-            scene_, compileSettings(render, plan->options, context_->handles().tracers, scene_), cache_);
+            scene_, compileSettings(render, plan.options, context_->handles().tracers, scene_), cache_);
     } else {
         package = Package::load(render.package);
         if (package) {
             const scene_view::PackageDemand demand{*render.strategy, render.renderer.tracer,
                                                    !render.environment.empty()};
-            if (Status checked = scene_view::checkPackage(*package, render.package, demand, scene_);
-                !checked) {
-                return checked.error();
-            }
+            GLINT_TRY_DO(scene_view::checkPackage(*package, render.package, demand, scene_));
         }
     }
     if (!package) {
@@ -272,16 +236,9 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::S
     scene_view::SceneViewData data = sceneView(render, scene_);
     data.packageScene = scene_view::sceneIn(*mounted->package, scene_).value_or(0);
     scene_view::useLayoutOf(*mounted->package, scene_, data);
-    Result<std::shared_ptr<const scene_view::TextureSet>> images = textures(render, *mounted->package);
-    if (!images) {
-        return images.error();
-    }
-    useTextures(std::move(*images), data);
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(*context_, *mounted->package, data.view());
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    mounted->scene = std::move(*uploaded);
+    GLINT_TRY(auto images, textures(render, *mounted->package));
+    useTextures(std::move(images), data);
+    GLINT_TRY(mounted->scene, GpuScene::upload(*context_, *mounted->package, data.view()));
     return mounted;
 }
 
@@ -304,12 +261,8 @@ Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t f
     if (!mounted) {
         return mounted;
     }
-    Result<std::unique_ptr<PictureFilter>> made = filter.make(
-        *context_, *mounted->renderer_, render.renderer.width, render.renderer.height, render.samples);
-    if (!made) {
-        return made.error();
-    }
-    mounted->filter_ = std::move(*made);
+    GLINT_TRY(mounted->filter_, filter.make(*context_, *mounted->renderer_, render.renderer.width,
+                                            render.renderer.height, render.samples));
     mounted->frames_ = frames;
     return mounted;
 }
@@ -324,11 +277,7 @@ Result<Mount> BenchBed::mount(compiler::Settings render) {
                                         }));
     std::shared_ptr<MountedPackage> shared = packages_[key].lock();
     if (!shared) {
-        Result<std::shared_ptr<MountedPackage>> made = mountPackage(render);
-        if (!made) {
-            return made.error();
-        }
-        shared = std::move(*made);
+        GLINT_TRY(shared, mountPackage(render));
         packages_[key] = shared;
     }
     const std::string rendererKey =
@@ -337,12 +286,8 @@ Result<Mount> BenchBed::mount(compiler::Settings render) {
                     }));
     std::shared_ptr<Renderer> renderer = renderers_[rendererKey].lock();
     if (!renderer) {
-        Result<std::unique_ptr<Renderer>> made =
-            Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(render));
-        if (!made) {
-            return made.error();
-        }
-        renderer = std::move(*made);
+        GLINT_TRY(renderer,
+                  Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(render)));
         renderers_[rendererKey] = renderer;
     }
     Mount mount;

@@ -36,19 +36,14 @@ public:
         : observer_(observer), settings_(settings), bed_(bed), store_(store), report_(report) {}
 
     Status run(const compiler::PlanOptions& plan) {
-        if (Status made = makeTruth(plan); !made) {
-            return made;
-        }
+        GLINT_TRY_DO(makeTruth(plan));
         base_ = makePoint(PointKind::Default, {});
         const MeasureOptions options{static_cast<std::uint32_t>(settings_.rounds), report_.seed,
                                      static_cast<std::uint32_t>(settings_.batch), settings_.filter,
                                      report_.metric};
         const Truth truth{report_.reference.image, report_.reference.exposure};
         observer_.progress("compiling the default");
-        Result<Measurer> measurer = Measurer::create(observer_, bed_, options, truth, base_);
-        if (!measurer) {
-            return measurer.error();
-        }
+        GLINT_TRY(auto measurer, Measurer::create(observer_, bed_, options, truth, base_));
         std::vector<BenchPoint> points;
         for (const Candidate& candidate : settings_.candidates) {
             BenchPoint point = makePoint(PointKind::Package, {});
@@ -67,7 +62,7 @@ public:
         if (compiler::Configuration exact = exactTogether(report_.settings, report_.base); exact.size() > 1) {
             add(points, PointKind::Exact, {std::move(exact)});
         }
-        Status measured = measure(*measurer, std::move(points));
+        Status measured = measure(measurer, std::move(points));
         for (std::size_t i = 0; measured && i < searches(); ++i) {
             std::vector<BenchPoint> found;
             const std::size_t count = settings_.quick ? kQuickProposals : kProposals;
@@ -75,7 +70,7 @@ public:
             if (found.empty()) {
                 break;
             }
-            measured = measure(*measurer, std::move(found));
+            measured = measure(measurer, std::move(found));
         }
         if (!measured) {
             return measured;
@@ -105,11 +100,7 @@ private:
         facts.fullTransport = settings_.reference == "full";
         const ReferenceOptions options{settings_.referenceError,
                                        static_cast<std::uint32_t>(settings_.referenceSamples)};
-        Result<Reference> reference = makeReference(observer_, bed_, facts, options, store_);
-        if (!reference) {
-            return reference.error();
-        }
-        report_.reference = std::move(*reference);
+        GLINT_TRY(report_.reference, makeReference(observer_, bed_, facts, options, store_));
         if (!report_.reference.reached) {
             observer_.report(makeWarning(
                 "bench-reference", report_.scene.file,
@@ -151,9 +142,7 @@ private:
     }
 
     Status measure(Measurer& measurer, std::vector<BenchPoint> points) {
-        if (Status measured = measurer.measure(points); !measured) {
-            return measured;
-        }
+        GLINT_TRY_DO(measurer.measure(points));
         for (BenchPoint& point : points) {
             if (!point.times.empty()) {
                 report_.points.push_back(std::move(point));

@@ -76,15 +76,11 @@ public:
             if (!groups[i]) {
                 return groups[i].error();
             }
-            if (Status measured = measureGroup(*groups[i]); !measured) {
-                return measured;
-            }
+            GLINT_TRY_DO(measureGroup(*groups[i]));
             groups[i] = Diagnostic{};  // its memory
             report_.complete = i + 1 == groups.size();
             report_.seconds = secondsSinceStart();
-            if (Status written = write(); !written) {
-                return written;
-            }
+            GLINT_TRY_DO(write());
         }
         return okStatus();
     }
@@ -145,15 +141,10 @@ private:
     }
 
     Status measureGroup(const CompiledGroup& compiled) {
-        Result<CalibrationGroup> group = uploadGroup(context_, compiled);
-        if (!group) {
-            return group.error();
-        }
-        for (const CalibrationScene& scene : group->scenes) {
+        GLINT_TRY(auto group, uploadGroup(context_, compiled));
+        for (const CalibrationScene& scene : group.scenes) {
             for (const std::uint64_t rays : rays_) {
-                if (Status measured = measure(*group, scene, rays); !measured) {
-                    return measured;
-                }
+                GLINT_TRY_DO(measure(group, scene, rays));
             }
         }
         return checkValidation(observer_, context_);
@@ -172,11 +163,8 @@ private:
                             synthetic::nameOf(scene.options.coherence));
             options.picture = (fs::path(settings_.pictures) / file).string();
         }
-        Result<CalibrationEntry> entry = measurePoint(context_, group, scene, settings_, options);
-        if (!entry) {
-            return entry.error();
-        }
-        for (const StrategyMeasure& one : entry->strategies) {
+        GLINT_TRY(auto entry, measurePoint(context_, group, scene, settings_, options));
+        for (const StrategyMeasure& one : entry.strategies) {
             if (!one.skipped.empty()) {
                 observer_.report(makeWarning("calibrate-point", name,
                                              fmt::format("{} was left out: {}", one.strategy, one.skipped),
@@ -192,8 +180,8 @@ private:
                     "this is a defect of Glint or of the driver"));
             }
         }
-        observer_.detail(fmt::format("fastest: {}", fmt::join(entry->fastest, ", ")));
-        report_.entries.push_back(std::move(*entry));
+        observer_.detail(fmt::format("fastest: {}", fmt::join(entry.fastest, ", ")));
+        report_.entries.push_back(std::move(entry));
         return okStatus();
     }
 
@@ -232,12 +220,9 @@ Status runCalibration(const Observer& observer, const CalibrationSettings& setti
 }
 
 Result<std::optional<DeviceFile>> fitCalibration(const Observer& observer, const fs::path& folder) {
-    Result<CalibrationPoints> read = readCalibrationPoints(folder / kCalibrationFile);
-    if (!read) {
-        return read.error();
-    }
+    GLINT_TRY(auto read, readCalibrationPoints(folder / kCalibrationFile));
     std::vector<Diagnostic> notes;
-    Result<DeviceFile> fitted = fitDevice(std::move(read->device), read->points, notes);
+    Result<DeviceFile> fitted = fitDevice(std::move(read.device), read.points, notes);
     for (const Diagnostic& note : notes) {
         observer.report(note);
     }
@@ -247,9 +232,7 @@ Result<std::optional<DeviceFile>> fitCalibration(const Observer& observer, const
         observer.report(note);
         return std::optional<DeviceFile>();
     }
-    if (Status written = base::writeFile(folder / kDeviceFile, toText(*fitted)); !written) {
-        return written.error();
-    }
+    GLINT_TRY_DO(base::writeFile(folder / kDeviceFile, toText(*fitted)));
     return std::optional(std::move(*fitted));
 }
 

@@ -67,37 +67,23 @@ Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uin
         group.scenes.push_back(synthetic::makeCasesScene(one));
     }
     group.options = std::move(options);
-    Result<compiler::CompiledPackage> compiled =
-        compilePackage(group.scenes, settingsOf(settings, tracers), cache);
-    if (!compiled) {
-        return compiled.error();
-    }
-    group.package = std::move(*compiled);
+    GLINT_TRY(group.package, compilePackage(group.scenes, settingsOf(settings, tracers), cache));
     return group;
 }
 
 Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled) {
     CalibrationGroup group;
     group.work = workOf(compiled.package);
-    Result<Package> package = scene_view::loadPackage(compiled.package);
-    if (!package) {
-        return package.error();
-    }
-    group.package = std::make_unique<Package>(std::move(*package));
+    GLINT_TRY(auto package, scene_view::loadPackage(compiled.package));
+    group.package = std::make_unique<Package>(std::move(package));
     for (std::size_t i = 0; i < compiled.scenes.size(); ++i) {
         const gltf::Scene& scene = compiled.scenes[i];
         const synthetic::CasesOptions& options = compiled.options[i];
         scene_view::SceneViewData data = scene_view::makeSceneView(scene);
         data.packageScene = static_cast<std::uint32_t>(i);
-        const Result<CameraView> camera = scene_view::sceneCamera(scene, 0, options.aspect);
-        if (!camera) {
-            return camera.error();
-        }
-        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, *group.package, data.view());
-        if (!uploaded) {
-            return uploaded.error();
-        }
-        group.scenes.push_back({options, std::move(*uploaded), *camera, effectOf(options.coherence)});
+        GLINT_TRY(const auto camera, scene_view::sceneCamera(scene, 0, options.aspect));
+        GLINT_TRY(auto uploaded, GpuScene::upload(context, *group.package, data.view()));
+        group.scenes.push_back({options, std::move(uploaded), camera, effectOf(options.coherence)});
     }
     return group;
 }

@@ -70,16 +70,12 @@ public:
 
     Result<CalibrationEntry> run() {
         describe();
-        if (Status made = makeRunners(); !made) {
-            return made.error();
-        }
+        GLINT_TRY_DO(makeRunners());
         const bool onCpu = context_.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
         entry_.samples = onCpu ? 1 : samplesFor(uberMs_);
         std::mt19937_64 random(options_.seed);
         for (std::uint32_t round = 0; !runners_.empty() && round < options_.rounds; ++round) {
-            if (Status measured = measureRound(round, random, !onCpu); !measured) {
-                return measured.error();
-            }
+            GLINT_TRY_DO(measureRound(round, random, !onCpu));
         }
         for (Runner& runner : runners_) {
             entry_.strategies[runner.strategy].split /= options_.rounds;
@@ -109,19 +105,14 @@ private:
     // Returns the time of the passes in which strategies differ, for the last sample of `renderer`, in
     // milliseconds.
     static Result<double> hitMs(Renderer& renderer) {
-        const Result<std::vector<PassTiming>> timings = renderer.timings();
-        if (!timings) {
-            return timings.error();
-        }
-        return stretchMs(*timings, Pass::Hits);
+        GLINT_TRY(const auto timings, renderer.timings());
+        return stretchMs(timings, Pass::Hits);
     }
 
     Status makeRunners() {
         for (const std::string& name : strategiesFor(context_.handles().tracers)) {
             entry_.strategies.emplace_back().strategy = name;
-            if (Status made = makeRunner(entry_.strategies.size() - 1); !made) {
-                return made;
-            }
+            GLINT_TRY_DO(makeRunner(entry_.strategies.size() - 1));
         }
         reference_ = {};
         return okStatus();
@@ -165,11 +156,8 @@ private:
             return image.error();
         }
         measure.firstMs = base::millisecondsSince(start);
-        const Result<FrameCounters> counters = renderer.counters();
-        if (!counters) {
-            return counters.error();
-        }
-        countHits(*counters);
+        GLINT_TRY(const auto counters, renderer.counters());
+        countHits(counters);
         if (runners_.size() > 1) {
             measure.difference = differenceOf(*image, reference_);
             return okStatus();
@@ -177,16 +165,11 @@ private:
         measure.difference.pixels = image->pixels.size();
         reference_ = std::move(*image);
         if (!options_.picture.empty()) {
-            if (Status written =
-                    image::writeImage(options_.picture, reference_, image::automaticExposure(reference_));
-                !written) {
-                return written;
-            }
+            GLINT_TRY_DO(
+                image::writeImage(options_.picture, reference_, image::automaticExposure(reference_)));
         }
         // It renders again, because the first sample may have included compilation.
-        if (Status again = renderer.renderSamples(frame_, 1); !again) {
-            return again;
-        }
+        GLINT_TRY_DO(renderer.renderSamples(frame_, 1));
         const Result<double> milliseconds = hitMs(renderer);
         uberMs_ = milliseconds ? *milliseconds : 0.0;
         return milliseconds ? okStatus() : Status(milliseconds.error());
@@ -213,17 +196,13 @@ private:
     Status warmUp(Runner& runner, Milliseconds time) const {
         const base::Clock::time_point start = base::Clock::now();
         while (base::Clock::now() - start < time) {
-            if (Status warm = runner.renderer->renderSamples(frame_, 1); !warm) {
-                return warm;
-            }
+            GLINT_TRY_DO(runner.renderer->renderSamples(frame_, 1));
         }
         return okStatus();
     }
 
     Status measureRound(std::uint32_t round, std::mt19937_64& random, bool warms) {
-        if (Status warm = warms ? warmUp(runners_.front(), kRoundWarmUp) : okStatus(); !warm) {
-            return warm;
-        }
+        GLINT_TRY_DO(warms ? warmUp(runners_.front(), kRoundWarmUp) : okStatus());
         FrameOptions frame = frame_;
         frame.seed = options_.seed + round;
         for (const std::size_t i : shuffled(runners_.size(), random)) {
@@ -256,14 +235,9 @@ private:
     // Measures the passes one by one on one more sample. Measuring each pass keeps passes from overlapping.
     Status measureSplit(Runner& runner, FrameOptions frame) {
         frame.timing = Timing::Passes;
-        if (Status rendered = runner.renderer->renderSamples(frame, 1); !rendered) {
-            return rendered;
-        }
-        const Result<std::vector<PassTiming>> passes = runner.renderer->timings();
-        if (!passes) {
-            return passes.error();
-        }
-        entry_.strategies[runner.strategy].split += hitTimesOf(*passes);
+        GLINT_TRY_DO(runner.renderer->renderSamples(frame, 1));
+        GLINT_TRY(const auto passes, runner.renderer->timings());
+        entry_.strategies[runner.strategy].split += hitTimesOf(passes);
         return okStatus();
     }
 

@@ -252,21 +252,18 @@ std::string toText(const DeviceFile& file) {
 
 Result<DeviceFile> readDeviceFile(const std::filesystem::path& path) {
     base::JsonReader reader(path, "calibration-format", "make the file again with glint bench --calibrate");
-    const Result<base::Json> json = reader.read(kMaxDeviceBytes);
-    if (!json) {
-        return json.error();
-    }
-    if (!json->is_object() || reader.text(*json, "", "format") != kDeviceFormat) {
+    GLINT_TRY(const auto json, reader.read(kMaxDeviceBytes));
+    if (!json.is_object() || reader.text(json, "", "format") != kDeviceFormat) {
         return makeError("calibration-format", path.string(), "is no device file",
                          "give the device.json that glint bench --calibrate wrote");
     }
-    const std::uint64_t version = reader.count(*json, "", "version", kMaxPoints);
+    const std::uint64_t version = reader.count(json, "", "version", kMaxPoints);
     if (reader.ok() && version != kDeviceVersion) {
         reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kDeviceVersion));
     }
     DeviceFile file;
     if (reader.ok()) {
-        readMembers(reader, *json, file);
+        readMembers(reader, json, file);
     }
     return reader.ok() ? Result<DeviceFile>(std::move(file)) : Result<DeviceFile>(reader.error());
 }
@@ -274,13 +271,10 @@ Result<DeviceFile> readDeviceFile(const std::filesystem::path& path) {
 Result<CalibrationPoints> readCalibrationPoints(const std::filesystem::path& path) {
     base::JsonReader reader(path, "calibration-format",
                             "give the calibration.json that glint bench --calibrate wrote");
-    const Result<base::Json> json = reader.read(kMaxPointsBytes);
-    if (!json) {
-        return json.error();
-    }
+    GLINT_TRY(const auto json, reader.read(kMaxPointsBytes));
     CalibrationPoints read;
-    read.device = readMachine(reader, *json);
-    reader.each(*json, "", "points", [&](const base::Json& point, const std::string& place) {
+    read.device = readMachine(reader, json);
+    reader.each(json, "", "points", [&](const base::Json& point, const std::string& place) {
         read.points.push_back(readPoint(reader, point, place));
     });
     return reader.ok() ? Result<CalibrationPoints>(std::move(read))

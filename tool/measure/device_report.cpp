@@ -69,27 +69,15 @@ public:
         : observer_(observer), settings_(settings), cache_(cache), store_(store) {}
 
     Result<base::Json> make(const gltf::Scene* scene) {
-        Result<std::unique_ptr<Context>> context = open(settings_.render, false, false);
-        if (!context) {
-            return context.error();
-        }
-        context_ = std::move(*context);
+        GLINT_TRY(context_, open(settings_.render, false, false));
         for (const Group& group : groupsOf(settings_.quick)) {
-            if (Status measured = measureGroup(group); !measured) {
-                return measured.error();
-            }
+            GLINT_TRY_DO(measureGroup(group));
         }
         base::Json picture = nullptr;
         if (scene != nullptr) {
-            Result<base::Json> measured = measureScene(*scene);
-            if (!measured) {
-                return measured.error();
-            }
-            picture = std::move(*measured);
+            GLINT_TRY(picture, measureScene(*scene));
         }
-        if (Status valid = checkValidation(observer_, *context_); !valid) {
-            return valid.error();
-        }
+        GLINT_TRY_DO(checkValidation(observer_, *context_));
         return base::Json{{"format", "glint-device-report"},
                           {"version", 1},
                           {"tool", GLINT_VERSION},
@@ -110,12 +98,8 @@ private:
         observer_.progress("making the pipelines of " + name);
         inspect::Manifest manifest;
         manifest.merge = compiler::nameOf(compiler::MergePolicy::None);
-        const Result<inspect::PipelineReport> report =
-            inspect::reportPipelines(*context_, package, manifest, name);
-        if (!report) {
-            return report.error();
-        }
-        pipelines_.push_back(inspect::toJson(*report));
+        GLINT_TRY(const auto report, inspect::reportPipelines(*context_, package, manifest, name));
+        pipelines_.push_back(inspect::toJson(report));
         return okStatus();
     }
 
@@ -131,50 +115,33 @@ private:
         }
         const std::string name = fmt::format("{} {} cases", group.cases, synthetic::nameOf(group.cost));
         observer_.progress("compiling " + name);
-        const Result<CompiledGroup> compiled =
-            compileGroup(settings, context_->handles().tracers, std::move(scenes), cache_);
-        if (!compiled) {
-            return compiled.error();
-        }
-        Result<CalibrationGroup> uploaded = uploadGroup(*context_, *compiled);
-        if (!uploaded) {
-            return uploaded.error();
-        }
-        for (const CalibrationScene& scene : uploaded->scenes) {
+        GLINT_TRY(const auto compiled,
+                  compileGroup(settings, context_->handles().tracers, std::move(scenes), cache_));
+        GLINT_TRY(auto uploaded, uploadGroup(*context_, compiled));
+        for (const CalibrationScene& scene : uploaded.scenes) {
             observer_.progress(fmt::format("{}, {}", name, synthetic::nameOf(scene.options.coherence)));
             PointOptions options;
             options.rays = raysOf(settings_.quick, isOnCpu(*context_));
             options.rounds = settings_.rounds;
             options.seed = settings_.seed;
-            const Result<CalibrationEntry> entry =
-                measurePoint(*context_, *uploaded, scene, settings, options);
-            if (!entry) {
-                return entry.error();
-            }
-            points_.push_back(toJson(*entry));
+            GLINT_TRY(const auto entry, measurePoint(*context_, uploaded, scene, settings, options));
+            points_.push_back(toJson(entry));
         }
-        return addPipelines(*uploaded->package, name);
+        return addPipelines(*uploaded.package, name);
     }
 
     // Times the picture of the user's scene with each strategy. A strategy that the device can't run is left
     // out with its reason.
     Result<base::Json> measureScene(const gltf::Scene& scene) {
         observer_.progress("timing the scene");
-        const Result<std::unique_ptr<BenchBed>> bed =
-            BenchBed::create(observer_, settings_.render, scene, cache_, store_);
-        if (!bed) {
-            return bed.error();
-        }
+        GLINT_TRY(const auto bed, BenchBed::create(observer_, settings_.render, scene, cache_, store_));
         base::Json strategies = base::Json::array();
         for (const package::StrategyInfo& info : package::strategyTable()) {
-            Result<base::Json> measured = measureStrategy(**bed, std::string(info.name));
-            if (!measured) {
-                return measured.error();
-            }
-            strategies.push_back(std::move(*measured));
+            GLINT_TRY(auto measured, measureStrategy(*bed, std::string(info.name)));
+            strategies.push_back(std::move(measured));
         }
         return base::Json{
-            {"triangles", (*bed)->sceneSize().triangles}, {"instances", (*bed)->sceneSize().instances},
+            {"triangles", bed->sceneSize().triangles},    {"instances", bed->sceneSize().instances},
             {"materials", scene.materials.size()},        {"width", settings_.render.renderer.width},
             {"height", settings_.render.renderer.height}, {"samples", settings_.render.samples},
             {"strategies", std::move(strategies)}};
@@ -189,18 +156,13 @@ private:
         std::vector<double> hits;
         // The first picture may include what the driver compiles late.
         for (std::uint32_t round = 0; round <= settings_.rounds; ++round) {
-            const Result<Exposure> exposure = mount->expose(settings_.seed + round);
-            if (!exposure) {
-                return exposure.error();
-            }
+            GLINT_TRY(const auto exposure, mount->expose(settings_.seed + round));
             if (round > 0) {
-                times.push_back(exposure->milliseconds);
-                hits.push_back(exposure->hitMs);
+                times.push_back(exposure.milliseconds);
+                hits.push_back(exposure.hitMs);
             }
         }
-        if (Status added = addPipelines(mount->package(), "scene, " + strategy); !added) {
-            return added.error();
-        }
+        GLINT_TRY_DO(addPipelines(mount->package(), "scene, " + strategy));
         return base::Json{{"strategy", strategy},
                           {"cases", mount->cases()},
                           {"time", toJson(intervalOf(times))},

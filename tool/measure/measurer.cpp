@@ -63,32 +63,24 @@ double ratio(double x, double y) {
 Result<Measurer> Measurer::create(const Observer& observer, BenchBed& bed, const MeasureOptions& options,
                                   const Truth& truth, BenchPoint& base) {
     Measurer measurer(observer, bed, options, truth, base);
-    Result<Entry> entry = measurer.mount(base);
-    if (!entry) {
-        return entry.error();
-    }
-    measurer.baseEntry_.push_back(std::move(*entry));
+    GLINT_TRY(auto entry, measurer.mount(base));
+    measurer.baseEntry_.push_back(std::move(entry));
     return measurer;
 }
 
 Result<Measurer::Entry> Measurer::mount(BenchPoint& point) const {
-    Result<Mount> mount = point.filteredFrames > 0
+    GLINT_TRY(auto mount, point.filteredFrames > 0
                               ? bed_.mountFiltered(*options_.filter, point.filteredFrames)
-                              : bed_.mount(point.configuration, point.package);
-    if (!mount) {
-        return mount.error();
-    }
+                              : bed_.mount(point.configuration, point.package));
     // Drivers may compile a pipeline when it first runs.
-    if (const Result<LinearImage> first = mount->exposeSamples(0, 1); !first) {
-        return first.error();
+    GLINT_TRY_DO(mount.exposeSamples(0, 1));
+    point.footprint = mount.renderer().footprint();
+    point.cases = mount.cases();
+    point.tracer = std::string(package::nameOf(mount.renderer().tracer()));
+    if (mount.ordersHits()) {
+        point.ordering = std::string(package::nameOf(mount.renderer().ordering()));
     }
-    point.footprint = mount->renderer().footprint();
-    point.cases = mount->cases();
-    point.tracer = std::string(package::nameOf(mount->renderer().tracer()));
-    if (mount->ordersHits()) {
-        point.ordering = std::string(package::nameOf(mount->renderer().ordering()));
-    }
-    return Entry{&point, std::move(*mount), {}, {}};
+    return Entry{&point, std::move(mount), {}, {}};
 }
 
 Status Measurer::measure(std::span<BenchPoint> points) {
@@ -108,9 +100,7 @@ Status Measurer::measure(std::span<BenchPoint> points) {
             }
         }
         observer_.progress(fmt::format("measuring {} to {} of {}", begin + 1, end, points.size()));
-        if (Status measured = measureBatch(entries, ++batches_); !measured) {
-            return measured;
-        }
+        GLINT_TRY_DO(measureBatch(entries, ++batches_));
     }
     return okStatus();
 }
@@ -123,13 +113,9 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // spreads small seeds over 64 bits
     std::mt19937_64 random(options_.seed + kOdd * seed);
     for (std::uint32_t round = 0; round < options_.rounds; ++round) {
-        if (Status warm = warmUp(baseEntry_.front(), kRoundWarmUp); !warm) {
-            return warm;
-        }
+        GLINT_TRY_DO(warmUp(baseEntry_.front(), kRoundWarmUp));
         for (const std::size_t i : shuffled(all.size(), random)) {
-            if (Status exposed = expose(*all[i], options_.seed + round); !exposed) {
-                return exposed;
-            }
+            GLINT_TRY_DO(expose(*all[i], options_.seed + round));
         }
         keep(all, round);
     }
@@ -149,22 +135,14 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
 Status Measurer::warmUp(const Entry& entry, std::chrono::milliseconds time) const {
     const base::Clock::time_point start = base::Clock::now();
     while (!bed_.onCpu() && base::Clock::now() - start < time) {
-        if (const Result<LinearImage> warm = entry.mount.exposeSamples(0, 16); !warm) {
-            return warm.error();
-        }
+        GLINT_TRY_DO(entry.mount.exposeSamples(0, 16));
     }
     return okStatus();
 }
 
 Status Measurer::expose(Entry& entry, std::uint32_t seed) const {
-    if (Status warm = warmUp(entry, kWarmUp); !warm) {
-        return warm;
-    }
-    Result<Exposure> exposure = entry.mount.expose(seed);
-    if (!exposure) {
-        return exposure.error();
-    }
-    entry.exposure = std::move(*exposure);
+    GLINT_TRY_DO(warmUp(entry, kWarmUp));
+    GLINT_TRY(entry.exposure, entry.mount.expose(seed));
     return okStatus();
 }
 

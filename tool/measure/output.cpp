@@ -57,16 +57,10 @@ image::DisplayImage shrunk(const image::DisplayImage& image, std::uint32_t facto
 
 Status add(Pictures& pictures, std::uint32_t factor, const std::string& name,
            const image::DisplayImage& image) {
-    Result<base::Bytes> png = encodePng(image, name);
-    if (!png) {
-        return png.error();
-    }
-    Result<base::Bytes> small = factor == 1 ? *png : encodePng(shrunk(image, factor), name);
-    if (!small) {
-        return small.error();
-    }
-    pictures.files.push_back({name, std::move(*png)});
-    pictures.ofPage.push_back({name, std::move(*small)});
+    GLINT_TRY(auto png, encodePng(image, name));
+    GLINT_TRY(auto small, factor == 1 ? png : encodePng(shrunk(image, factor), name));
+    pictures.files.push_back({name, std::move(png)});
+    pictures.ofPage.push_back({name, std::move(small)});
     return okStatus();
 }
 
@@ -129,39 +123,27 @@ Status checkBenchFolder(const fs::path& folder, const char* mark) {
 }
 
 Status writeBench(const BenchReport& report, const fs::path& folder) {
-    const Result<Pictures> pictures = picturesOf(report);
-    if (!pictures) {
-        return pictures.error();
-    }
+    GLINT_TRY(const auto pictures, picturesOf(report));
     std::error_code error;
     fs::create_directories(folder / kImages, error);
     if (error) {
         return makeError("bench-folder", folder.string(), "can't be made: " + error.message(),
                          "give another -o");
     }
-    for (const PageImage& picture : pictures->files) {
-        if (Status written = base::writeFile(folder / picture.name, picture.png); !written) {
-            return written;
-        }
+    for (const PageImage& picture : pictures.files) {
+        GLINT_TRY_DO(base::writeFile(folder / picture.name, picture.png));
     }
     if (report.advice && report.advice->point) {
         compiler::Configuration settings = report.base;
         for (const auto& [name, value] : report.points[*report.advice->point].configuration) {
             settings[name] = value;
         }
-        if (Status written = base::writeFile(folder / kSettingsFile, settingsText(settings, report.command));
-            !written) {
-            return written;
-        }
+        GLINT_TRY_DO(base::writeFile(folder / kSettingsFile, settingsText(settings, report.command)));
     }
     const base::Json json = toJson(report);
-    if (Status written = base::writeFile(folder / kReportFile, base::toText(json)); !written) {
-        return written;
-    }
-    if (Status written = base::writeFile(folder / kPageFile, makePage(json, pictures->ofPage)); !written) {
-        return written;
-    }
-    removeOthers(folder, pictures->files);
+    GLINT_TRY_DO(base::writeFile(folder / kReportFile, base::toText(json)));
+    GLINT_TRY_DO(base::writeFile(folder / kPageFile, makePage(json, pictures.ofPage)));
+    removeOthers(folder, pictures.files);
     return okStatus();
 }
 

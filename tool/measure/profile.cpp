@@ -268,12 +268,9 @@ std::string toText(const Profile& profile) {
 
 Result<Profile> readProfile(const std::filesystem::path& path) {
     base::JsonReader reader(path, "profile-format", "make the profile again with glint render --profile");
-    const Result<base::Json> json = reader.read(kMaxProfileBytes);
-    if (!json) {
-        return json.error();
-    }
-    readFormat(reader, *json);
-    Profile profile = reader.ok() ? readMembers(reader, *json) : Profile{};
+    GLINT_TRY(const auto json, reader.read(kMaxProfileBytes));
+    readFormat(reader, json);
+    Profile profile = reader.ok() ? readMembers(reader, json) : Profile{};
     return reader.ok() ? Result<Profile>(std::move(profile)) : Result<Profile>(reader.error());
 }
 
@@ -281,32 +278,24 @@ Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::Sc
     PlanChoice choice;
     choice.options = settings.compile.plan;
     if (!settings.gpu.empty() && settings.gpu != compiler::kThisDevice) {
-        const Result<compiler::GpuCosts> gpu = inspect::readGpuCosts(settings.gpu);
-        if (!gpu) {
-            return gpu.error();
-        }
-        choice.options.branchFactor = branchFactor(*gpu);
+        GLINT_TRY(const auto gpu, inspect::readGpuCosts(settings.gpu));
+        choice.options.branchFactor = branchFactor(gpu);
     }
     chooseAlpha(settings, scenes, choice);
-    if (Status kept = keepPackLobes(settings, scenes, choice.options.keys); !kept) {
-        return kept.error();
-    }
+    GLINT_TRY_DO(keepPackLobes(settings, scenes, choice.options.keys));
     if (settings.profile.empty()) {
         return choice;
     }
-    const Result<Profile> profile = readProfile(settings.profile);
-    if (!profile) {
-        return profile.error();
-    }
+    GLINT_TRY(const auto profile, readProfile(settings.profile));
     const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(),
                                                    {choice.options.keys, compiler::MergePolicy::None});
     const Profile expected = makeProfile(scenes, plan, choice.options.keys);
-    checkSettings(*profile, expected, settings.profile, choice.warnings);
-    if (isStale(*profile, expected)) {
+    checkSettings(profile, expected, settings.profile, choice.warnings);
+    if (isStale(profile, expected)) {
         choice.notes.push_back({Severity::Note, "profile-stale", settings.profile,
                                 "was counted in another version of the scene", ""});
     }
-    takeHits(*profile, expected, *plan.model, settings.profile, choice);
+    takeHits(profile, expected, *plan.model, settings.profile, choice);
     return choice;
 }
 

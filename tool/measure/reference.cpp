@@ -48,11 +48,8 @@ Result<std::string> keyOf(BenchBed& bed, const compiler::Configuration& configur
         .add(std::string_view(bed.context().deviceName()))
         .add(std::string_view(bed.context().driverName()));
     if (!base.environment.empty()) {
-        const Result<base::FileDigest> digest = base::digestFile(base.environment);
-        if (!digest) {
-            return digest.error();
-        }
-        packer.add(digest->bytes).add(digest->hash);
+        GLINT_TRY(const auto digest, base::digestFile(base.environment));
+        packer.add(digest.bytes).add(digest.hash);
     }
     return packer.take();
 }
@@ -121,11 +118,8 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const c
     reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
     const std::uint32_t width = bed.base().renderer.width;
     const std::uint32_t height = bed.base().renderer.height;
-    const Result<std::string> key = keyOf(bed, reference.configuration);
-    if (!key) {
-        return key.error();
-    }
-    std::optional<Kept> kept = findKept(store, *key, width, height);
+    GLINT_TRY(const auto key, keyOf(bed, reference.configuration));
+    std::optional<Kept> kept = findKept(store, key, width, height);
     reference.cached = kept.has_value();
     image::MeanImage sum = kept ? std::move(kept->mean) : image::MeanImage(width, height);
     std::vector<std::uint8_t> surfaces = kept ? std::move(kept->surfaces) : std::vector<std::uint8_t>();
@@ -143,23 +137,12 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const c
         }
         if (!mount) {
             observer.progress("compiling the reference");
-            Result<Mount> made = bed.mount(reference.configuration);
-            if (!made) {
-                return made.error();
-            }
-            mount = std::move(*made);
+            GLINT_TRY(mount, bed.mount(reference.configuration));
         }
-        const Result<LinearImage> block = mount->exposeSamples(kFirstSeed + sum.blocks(), kBlock);
-        if (!block) {
-            return block.error();
-        }
-        sum.add(*block);
+        GLINT_TRY(const auto block, mount->exposeSamples(kFirstSeed + sum.blocks(), kBlock));
+        sum.add(block);
         if (surfaces.empty()) {
-            Result<std::vector<std::uint8_t>> seen = mount->surfaces();
-            if (!seen) {
-                return seen.error();
-            }
-            surfaces = std::move(*seen);
+            GLINT_TRY(surfaces, mount->surfaces());
         }
     }
     if (store != nullptr && sum.blocks() > before) {
@@ -168,7 +151,7 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const c
             .add(std::string_view(pack(sum.mean())))
             .add(std::string_view(pack(sum.standardError())))
             .add(std::string_view(std::string(surfaces.begin(), surfaces.end())));
-        store->put(kKind, *key, packer.take());
+        store->put(kKind, key, packer.take());
     }
     reference.seconds = std::chrono::duration<double>(base::Clock::now() - start).count();
     return reference;

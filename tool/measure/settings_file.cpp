@@ -54,14 +54,11 @@ std::string settingsText(const compiler::Configuration& settings, const std::str
 
 Result<compiler::Configuration> readSettings(const std::filesystem::path& file) {
     constexpr std::uint64_t kMostBytes = 1U << 20;
-    const Result<base::Bytes> bytes = base::readFile(file, kMostBytes);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    GLINT_TRY(const auto bytes, base::readFile(file, kMostBytes));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     constexpr const char* kHint = "give a file that `glint bench --budget-ms` or --max-error wrote";
     const base::Json json =
-        base::nestsTooDeep(*bytes) ? base::Json() : base::Json::parse(text, nullptr, false);
+        base::nestsTooDeep(bytes) ? base::Json() : base::Json::parse(text, nullptr, false);
     if (!json.is_object() || json.value("format", base::Json()) != base::Json(kSettingsFormat) ||
         !json.contains("settings") || !json["settings"].is_object()) {
         return settingsError(file, "", "is no file of settings", kHint);

@@ -55,16 +55,10 @@ Status askDevice(const compiler::Settings& render, Context& context, const Packa
             package == nullptr ? "give --package, or the name of a GPU" : "leave out --gpu device"));
         return okStatus();
     }
-    const Result<inspect::Manifest> manifest = inspect::readManifest(render.package);
-    if (!manifest) {
-        return manifest.error();
-    }
-    const Result<inspect::PipelineReport> report = inspect::reportPipelines(
-        context, *package, *manifest, render.package, render.renderer.pipelineThreads);
-    if (!report) {
-        return report.error();
-    }
-    costs.gpu = inspect::gpuOf(std::string(compiler::kThisDevice), {&*report, 1});
+    GLINT_TRY(const auto manifest, inspect::readManifest(render.package));
+    GLINT_TRY(const auto report, inspect::reportPipelines(context, *package, manifest, render.package,
+                                                          render.renderer.pipelineThreads));
+    costs.gpu = inspect::gpuOf(std::string(compiler::kThisDevice), {&report, 1});
     costs.device = withGpu(std::move(costs.device), *costs.gpu);
     return okStatus();
 }
@@ -74,19 +68,13 @@ Status askDevice(const compiler::Settings& render, Context& context, const Packa
 Result<KnownCosts> knownCosts(const compiler::Settings& settings, bool onCpu) {
     KnownCosts costs{compiler::builtInCosts(onCpu), true};
     if (!settings.calibration.empty()) {
-        Result<DeviceFile> read = readDeviceFile(settings.calibration);
-        if (!read) {
-            return read.error();
-        }
-        costs = {std::move(read->costs), false};
+        GLINT_TRY(auto read, readDeviceFile(settings.calibration));
+        costs = {std::move(read.costs), false};
     }
     if (!settings.gpu.empty() && settings.gpu != compiler::kThisDevice) {
-        Result<compiler::GpuCosts> gpu = inspect::readGpuCosts(settings.gpu);
-        if (!gpu) {
-            return gpu.error();
-        }
-        costs.device = withGpu(std::move(costs.device), *gpu);
-        costs.gpu = std::move(*gpu);
+        GLINT_TRY(auto gpu, inspect::readGpuCosts(settings.gpu));
+        costs.device = withGpu(std::move(costs.device), gpu);
+        costs.gpu = std::move(gpu);
     }
     return costs;
 }
@@ -144,22 +132,17 @@ Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& render,
                                               const compiler::PlanOptions& plan, Context& context,
                                               const gltf::Scene& scene, const Package* package,
                                               std::vector<Diagnostic>& warnings) {
-    Result<KnownCosts> costs = knownCosts(render, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU);
-    if (!costs) {
-        return costs.error();
-    }
-    if (costs->builtIn && !costs->gpu && context.subgroupSize() > 0) {
-        costs->device.subgroupSize = context.subgroupSize();
-    } else if (!costs->builtIn && costs->device.device != context.deviceName()) {
+    GLINT_TRY(auto costs, knownCosts(render, context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU));
+    if (costs.builtIn && !costs.gpu && context.subgroupSize() > 0) {
+        costs.device.subgroupSize = context.subgroupSize();
+    } else if (!costs.builtIn && costs.device.device != context.deviceName()) {
         warnings.push_back(makeWarning("calibration-device", render.calibration,
                                        fmt::format("was measured on {}, but this device is {}",
-                                                   costs->device.device, context.deviceName()),
+                                                   costs.device.device, context.deviceName()),
                                        "measure this device with glint bench --calibrate"));
     }
     if (render.gpu == compiler::kThisDevice) {
-        if (Status asked = askDevice(render, context, package, *costs, warnings); !asked) {
-            return asked.error();
-        }
+        GLINT_TRY_DO(askDevice(render, context, package, costs, warnings));
     }
     const std::uint32_t tracers = context.handles().tracers;
     const gltf::SceneList scenes({&scene, 1});
@@ -167,7 +150,7 @@ Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& render,
         const compiler::CompileSettings settings = compileSettings(render, plan, tracers, scene);
         const compiler::FrameShape shape = shapeOf(render, planEffects(scenes, settings).effects.all);
         const compiler::Plan made = makePlan(scenes.materials(), scenes.primitives(), plan);
-        return adviseStrategy(*costs, roundsOf(scenes, made, plan, shape),
+        return adviseStrategy(costs, roundsOf(scenes, made, plan, shape),
                               runnableStrategies(tracers, render.renderer.tracer, nullptr), shape.pixels);
     }
     const compiler::FrameShape shape = shapeOf(render, package->shape().effects.all);
@@ -176,7 +159,7 @@ Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& render,
         // What the device lacks is reported when the package is used.
         available = compiler::strategyNames(package->shape().strategies);
     }
-    return adviseStrategy(*costs, roundsOf(*package, scene, shape), available, shape.pixels);
+    return adviseStrategy(costs, roundsOf(*package, scene, shape), available, shape.pixels);
 }
 
 }  // namespace glint::measure

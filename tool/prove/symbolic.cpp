@@ -99,9 +99,7 @@ SymbolicValue Executor::valueOf(const Frame& frame, const SymbolicState& state, 
 }
 
 Result<Program> Executor::run(const SpirvFunctionBody& function) {
-    if (Status status = operations_.readConstants(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(operations_.readConstants());
     SymbolicState state;
     std::vector<SymbolicValue> arguments;
     for (const SpirvOperation& parameter : function.parameters) {
@@ -127,12 +125,9 @@ Result<Program> Executor::run(const SpirvFunctionBody& function) {
         }
     }
     const std::uint32_t outputs = arguments.empty() ? 0 : arguments.back().pointer->memory;
-    Result<Returned> returned = call(function, std::move(arguments), state);
-    if (!returned) {
-        return returned.error();
-    }
+    GLINT_TRY(auto returned, call(function, std::move(arguments), state));
     Program program = builder_.take();
-    program.outputs = *returned->state.memories.at(outputs);
+    program.outputs = *returned.state.memories.at(outputs);
     return program;
 }
 
@@ -157,9 +152,7 @@ Result<Returned> Executor::call(const SpirvFunctionBody& function, std::vector<S
             return unsupported(fmt::format(
                 "{} has more operations than can be followed, or a loop without a known end", function.name));
         }
-        if (Status status = runBlock(frame, block, std::move(edges)); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(runBlock(frame, block, std::move(edges)));
     }
     if (frame.returns.empty()) {
         return unsupported(function.name + " does not return");
@@ -218,9 +211,7 @@ Status Executor::runBlock(Frame& frame, const SpirvBlock& block, std::vector<Inc
         if (&operation == &block.operations.back()) {
             return branch(frame, block, state);
         }
-        if (Status status = runOperation(frame, state, operation); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(runOperation(frame, state, operation));
     }
     return okStatus();
 }
@@ -309,9 +300,7 @@ Status Executor::chooseBySwitch(Frame& frame, const SpirvBlock& block, const Sym
         const NodeId literal =
             builder_.constant(last.operands[k], Format::Integer, builder_.node(selector).isSigned);
         const NodeId chosen = builder_.make(Op::Equal, Format::Integer, selector, literal);
-        if (Status status = leave(frame, block, last.operands[k + 1], state, chosen, true); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(leave(frame, block, last.operands[k + 1], state, chosen, true));
         builder_.setGuard(state.guard);
         none = builder_.make(Op::And, Format::Integer, none, builder_.opposite(chosen));
     }
@@ -328,9 +317,7 @@ Status Executor::branch(Frame& frame, const SpirvBlock& block, SymbolicState& st
             if (last.operands[1] == last.operands[2]) {
                 return leave(frame, block, last.operands[1], state, kNoNode, true);
             }
-            if (Status status = leave(frame, block, last.operands[1], state, condition, true); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(leave(frame, block, last.operands[1], state, condition, true));
             return leave(frame, block, last.operands[2], state, condition, false);
         }
         case spv::OpSwitch:
@@ -357,12 +344,9 @@ Status Executor::callFunction(Frame& frame, SymbolicState& state, const SpirvOpe
     for (const SpirvId argument : operation.operands.subspan(1)) {
         arguments.push_back(valueOf(frame, state, argument));
     }
-    Result<Returned> returned = call(*callee, std::move(arguments), state);
-    if (!returned) {
-        return returned.error();
-    }
-    state = std::move(returned->state);
-    frame.values[operation.result] = std::move(returned->value);
+    GLINT_TRY(auto returned, call(*callee, std::move(arguments), state));
+    state = std::move(returned.state);
+    frame.values[operation.result] = std::move(returned.value);
     return okStatus();
 }
 
@@ -469,26 +453,19 @@ Status Executor::runOperation(Frame& frame, SymbolicState& state, const SpirvOpe
                                ? SymbolicValue{}
                                : valueOf(frame, state, operation.operands[k]));
     }
-    Result<SymbolicValue> value = operations_.apply(operation, operands);
-    if (!value) {
-        return value.error();
-    }
-    frame.values[operation.result] = std::move(*value);
+    GLINT_TRY(frame.values[operation.result], operations_.apply(operation, operands));
     return okStatus();
 }
 
 }  // namespace
 
 Result<Program> executeSymbolically(std::span<const std::uint32_t> words, const std::string& name) {
-    const Result<SpirvModule> module = readModule(words);
-    if (!module) {
-        return module.error();
-    }
-    const SpirvFunctionBody* const function = module->find(name);
+    GLINT_TRY(const auto module, readModule(words));
+    const SpirvFunctionBody* const function = module.find(name);
     if (function == nullptr) {
         return unsupported("the module has no function " + name);
     }
-    return Executor(*module).run(*function);
+    return Executor(module).run(*function);
 }
 
 }  // namespace glint::prove

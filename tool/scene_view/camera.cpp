@@ -361,11 +361,8 @@ Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& 
     if (!index) {
         return unknownCamera(scene, wanted);
     }
-    const Result<CameraView> camera = sceneCamera(scene, *index, aspect);
-    if (!camera) {
-        return camera.error();
-    }
-    return CameraChoice{*camera, cameraName(scene, *index)};
+    GLINT_TRY(const auto camera, sceneCamera(scene, *index, aspect));
+    return CameraChoice{camera, cameraName(scene, *index)};
 }
 
 }  // namespace glint::scene_view

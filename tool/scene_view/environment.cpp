@@ -38,17 +38,14 @@ std::vector<Diagnostic> describe(const std::string& file, const LinearImage& ima
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
                                                      const EnvironmentOptions& options,
                                                      std::vector<Diagnostic>& notes) {
-    const Result<LinearImage> image = image::readRadiance(file);
-    if (!image) {
-        return image.error();
-    }
-    Result<std::unique_ptr<Environment>> environment = Environment::create(context, *image, options);
+    GLINT_TRY(const auto image, image::readRadiance(file));
+    Result<std::unique_ptr<Environment>> environment = Environment::create(context, image, options);
     if (!environment) {
         Diagnostic error = environment.error();
         error.where = file;
         return error;
     }
-    const std::vector<Diagnostic> more = describe(file, *image, (*environment)->statistics());
+    const std::vector<Diagnostic> more = describe(file, image, (*environment)->statistics());
     notes.insert(notes.end(), more.begin(), more.end());
     return environment;
 }

@@ -151,9 +151,7 @@ Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
     if (!optimized) {
         return optimized;
     }
-    if (Status valid = validateSpirv(*optimized, source.name); !valid) {
-        return valid.error();
-    }
+    GLINT_TRY_DO(validateSpirv(*optimized, source.name));
     return optimized;
 }
 
@@ -165,17 +163,11 @@ Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, c
     }
     std::vector<std::string> apart = source.functionsApart;
     std::ranges::copy(linkedFunctions(names), std::back_inserter(apart));
-    const Result<std::vector<std::uint32_t>> optimized =
-        optimizeSpirv(*translated, source.name, apart, true, options.halvesAll);
-    if (!optimized) {
-        return optimized.error();
-    }
+    GLINT_TRY(const auto optimized, optimizeSpirv(*translated, source.name, apart, true, options.halvesAll));
     Result<std::vector<std::uint32_t>> linkable =
-        makeLinkable(*optimized, names, source.name, options.debugInfo);
+        makeLinkable(optimized, names, source.name, options.debugInfo);
     if (linkable) {
-        if (Status valid = validateSpirv(*linkable, source.name, SpirvUse::Link); !valid) {
-            return valid.error();
-        }
+        GLINT_TRY_DO(validateSpirv(*linkable, source.name, SpirvUse::Link));
     }
     return linkable;
 }
@@ -187,23 +179,16 @@ Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const
         return translated;
     }
     if (!names.exported.empty()) {
-        const Result<ParsedModule> parsed = parseModule(*translated, source.name);
-        if (!parsed) {
-            return parsed.error();
-        }
-        if (sharesVariables(*parsed)) {
+        GLINT_TRY(const auto parsed, parseModule(*translated, source.name));
+        if (sharesVariables(parsed)) {
             translated->resize(kSpirvHeaderWords);
             return translated;
         }
     }
     std::vector<std::string> apart = source.functionsApart;
     std::ranges::copy(linkedFunctions(names), std::back_inserter(apart));
-    const Result<std::vector<std::uint32_t>> optimized =
-        optimizePart(*translated, source.name, apart, options.halvesAll);
-    if (!optimized) {
-        return optimized.error();
-    }
-    return makeLinkable(*optimized, names, source.name, true);
+    GLINT_TRY(const auto optimized, optimizePart(*translated, source.name, apart, options.halvesAll));
+    return makeLinkable(optimized, names, source.name, true);
 }
 
 bool isJoinable(std::span<const std::uint32_t> part) {
@@ -217,19 +202,13 @@ Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std
     if (!joined) {
         return joined;
     }
-    const Result<ParsedModule> parsed = parseModule(*joined, name);
-    if (!parsed) {
-        return parsed.error();
-    }
-    if (std::optional<std::vector<std::uint32_t>> cleared =
-            clearGlobals(*parsed, tracesByPipeline(*joined))) {
+    GLINT_TRY(const auto parsed, parseModule(*joined, name));
+    if (std::optional<std::vector<std::uint32_t>> cleared = clearGlobals(parsed, tracesByPipeline(*joined))) {
         *joined = std::move(*cleared);
     } else if (Status slowly = clearJoined(*joined, name, options.debugInfo); !slowly) {
         return slowly.error();
     }
-    if (Status valid = validateJoined(*joined, name, jobs); !valid) {
-        return valid.error();
-    }
+    GLINT_TRY_DO(validateJoined(*joined, name, jobs));
     return joined;
 }
 

@@ -42,15 +42,10 @@ std::string nameModel(std::uint32_t model) {
 }  // namespace
 
 Result<SpirvLint> lintSpirv(std::span<const std::uint32_t> words) {
-    const Result<SpirvStatistics> statistics = measureSpirv(words);
-    if (!statistics) {
-        return statistics.error();
-    }
-    if (Status valid = checkSpirv(words); !valid) {
-        return valid.error();
-    }
+    GLINT_TRY(const auto statistics, measureSpirv(words));
+    GLINT_TRY_DO(checkSpirv(words));
     SpirvLint lint;
-    lint.statistics = *statistics;
+    lint.statistics = statistics;
     for (const SpirvEntryPoint& entry : findEntryPoints(words)) {
         const std::string stage = nameModel(entry.model);
         if (std::ranges::find(lint.stages, stage) == lint.stages.end()) {
@@ -58,7 +53,7 @@ Result<SpirvLint> lintSpirv(std::span<const std::uint32_t> words) {
         }
     }
     const std::map<std::size_t, SpirvPlace> places = findPlaces(words);
-    if (statistics->rayQueries > 0) {
+    if (statistics.rayQueries > 0) {
         lintQueries(words, places, lint.findings);
     }
     lintPipelines(words, places, lint.findings);

@@ -146,9 +146,7 @@ Status inlineByLevel(std::vector<std::uint32_t>& words, const std::string& name,
             }
         }
         keepApart(words, functions, others);
-        if (Status status = runPasses(words, name, registerLevel); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(runPasses(words, name, registerLevel));
     }
     const std::vector<SpirvFunction> functions = findFunctions(words);
     keepApart(words, functions, idsOf(functions, apart));
@@ -172,9 +170,7 @@ Status makeHalves(std::vector<std::uint32_t>& words, const std::string& name, bo
         optimizer.RegisterPass(spvtools::CreateSimplificationPass())
             .RegisterPass(spvtools::CreateRedundancyEliminationPass());
     };
-    if (Status status = runPasses(words, name, fold); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(runPasses(words, name, fold));
     hideExtractions(words);
     Status status = runPasses(words, name, convert);
     showExtractions(words);
@@ -225,13 +221,9 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
                                                  bool halvesAll) {
     std::vector<std::uint32_t> optimized = words;
     if (!apart.empty()) {
-        if (Status status = inlineByLevel(optimized, name, apart); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(inlineByLevel(optimized, name, apart));
     }
-    if (Status status = inlineAndClear(optimized, name, keepNames, halvesAll); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(inlineAndClear(optimized, name, keepNames, halvesAll));
     return optimized;
 }
 
@@ -241,9 +233,7 @@ Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>
     std::vector<std::uint32_t> optimized = words;
     const std::vector<SpirvFunction> functions = findFunctions(optimized);
     keepApart(optimized, functions, idsOf(functions, apart));
-    if (Status status = inlineAndClear(optimized, name, true, halvesAll); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(inlineAndClear(optimized, name, true, halvesAll));
     return optimized;
 }
 

@@ -152,9 +152,7 @@ Result<Build> Builder::build(const BuildOrder& order) {
          {+[](Builder&self, const BuildOrder&what, Build&made) { return self.readScene(what, made); },
           +[](Builder&self, const BuildOrder&what, Build&made) { return self.makePackage(what, made); },
           +[](Builder&self, const BuildOrder&, Build&made) { return self.readTextures(made); }}) {
-        if (Status done = step(*this, order, build); !done) {
-            return done.error();
-        }
+        GLINT_TRY_DO(step(*this, order, build));
     }
     wholes_[order.picture].reset();
     if (made_) {
@@ -173,21 +171,15 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
                     settings.strictPaths, settings.compile.trustTextures, fmt::join(settings.materials, "|"));
     if (!order.changed.empty() || key != sceneKey_) {
         say("reading " + order.scene);
-        const Result<gltf::ImportOptions> import = request_.importOptions(settings);
-        if (!import) {
-            return import.error();
-        }
-        Result<gltf::Scene> scene = importScene(order.scene, *import);
-        if (!scene) {
-            return scene.error();
-        }
+        GLINT_TRY(const auto import, request_.importOptions(settings));
+        GLINT_TRY(auto scene, importScene(order.scene, import));
         // What pictures hold depends on their files alone.
-        if (!scene_ || !haveSameFiles(*scene_, *scene)) {
+        if (!scene_ || !haveSameFiles(*scene_, scene)) {
             textures_.reset();
         }
         const std::lock_guard lock(mutex_);
-        messages_.insert(messages_.end(), scene->warnings.begin(), scene->warnings.end());
-        scene_ = std::make_shared<const gltf::Scene>(std::move(*scene));
+        messages_.insert(messages_.end(), scene.warnings.begin(), scene.warnings.end());
+        scene_ = std::make_shared<const gltf::Scene>(std::move(scene));
         sceneKey_ = key;
     }
     build.scene = scene_;
@@ -251,34 +243,22 @@ Status Builder::makePackage(const BuildOrder& order, Build& build) {
     std::optional<Package> given;
     if (!settings.package.empty()) {
         planned.alpha = package::AlphaPolicy::Opaque;  // the package has decided
-        Result<Package> loaded = Package::load(settings.package);
-        if (!loaded) {
-            return loaded.error();
-        }
-        given = std::move(*loaded);
+        GLINT_TRY(given, Package::load(settings.package));
     }
-    Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
-    if (!plan) {
-        return plan.error();
-    }
-    build.options = std::move(plan->options);
-    std::vector<Diagnostic> messages = std::move(plan->warnings);
-    messages.insert(messages.end(), plan->notes.begin(), plan->notes.end());
+    GLINT_TRY(auto plan, measure::choosePlan(planned, scenes));
+    build.options = std::move(plan.options);
+    std::vector<Diagnostic> messages = std::move(plan.warnings);
+    messages.insert(messages.end(), plan.notes.begin(), plan.notes.end());
     if (!settings.strategy) {
-        Result<compiler::StrategyAdvice> advice = measure::adviseRender(
-            settings, build.options, context_, *build.scene, given ? &*given : nullptr, messages);
-        if (!advice) {
-            return advice.error();
-        }
-        settings.strategy = valueNamed<package::Strategy>(advice->choice.strategy);
-        settings.compile.strategyChoice = std::move(*advice);
+        GLINT_TRY(auto advice, measure::adviseRender(settings, build.options, context_, *build.scene,
+                                                     given ? &*given : nullptr, messages));
+        settings.strategy = valueNamed<package::Strategy>(advice.choice.strategy);
+        settings.compile.strategyChoice = std::move(advice);
     }
     if (given) {
         const scene_view::PackageDemand demand{*settings.strategy, settings.renderer.tracer,
                                                !settings.environment.empty()};
-        if (Status fits = scene_view::checkPackage(*given, settings.package, demand, *build.scene); !fits) {
-            return fits;
-        }
+        GLINT_TRY_DO(scene_view::checkPackage(*given, settings.package, demand, *build.scene));
         build.plan = compiler::makePlan(scenes.materials(), scenes.primitives(), build.options);
         build.package = std::make_shared<const Package>(std::move(*given));
         for (const package::PackageLayer& layer : build.package->layers()) {
@@ -307,11 +287,8 @@ Status Builder::makePackage(const BuildOrder& order, Build& build) {
         if (!compiled) {
             return compiled.error();
         }
-        Result<Package> loaded = scene_view::loadPackage(*compiled);
-        if (!loaded) {
-            return loaded.error();
-        }
-        build.package = std::make_shared<const Package>(std::move(*loaded));
+        GLINT_TRY(auto loaded, scene_view::loadPackage(*compiled));
+        build.package = std::make_shared<const Package>(std::move(loaded));
         build.instructions.resize(compiled->plan.cases.size());
         for (const compiler::CompiledModule& module : compiled->modules) {
             (module.compiled ? build.modulesCompiled : build.modulesKept) += 1;
@@ -338,12 +315,7 @@ Status Builder::readTextures(Build& build) {
     const std::string key = fmt::format("{} {}", options.fit.compress, options.fit.decodeEmission);
     if (!textures_ || key != texturesKey_) {
         say("reading textures");
-        Result<std::shared_ptr<const scene_view::TextureSet>> textures =
-            scene_view::loadTextures(*build.scene, options);
-        if (!textures) {
-            return textures.error();
-        }
-        textures_ = std::move(*textures);
+        GLINT_TRY(textures_, scene_view::loadTextures(*build.scene, options));
         texturesKey_ = key;
         build.texturesMs = textures_->milliseconds;
         const std::lock_guard lock(mutex_);

@@ -16,9 +16,7 @@ constexpr std::uint32_t kGroup = 8;  // pixels each way, as in the shader
 
 Result<std::unique_ptr<Display>> Display::create(Context& context) {
     std::unique_ptr<Display> made(new Display(context));
-    if (Status status = made->createPipeline(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(made->createPipeline());
     return made;
 }
 
@@ -102,11 +100,7 @@ Result<bool> Display::resize(std::uint32_t width, std::uint32_t height) {
     if (image_.width == width && image_.height == height) {
         return false;
     }
-    Result<DeviceImage> made = DeviceImage::create(context_, width, height);
-    if (!made) {
-        return made.error();
-    }
-    image_ = std::move(*made);
+    GLINT_TRY(image_, DeviceImage::create(context_, width, height));
     fresh_ = true;
     return true;
 }
@@ -124,11 +118,7 @@ Status Display::keep(const image::DisplayImage& picture) {
     constexpr std::size_t kPixelBytes = 4;
     const std::size_t bytes = picture.pixels.size() * kPixelBytes;
     if (kept_.bytes() < bytes) {
-        Result<HostBuffer> made = HostBuffer::create(context_, bytes);
-        if (!made) {
-            return made.error();
-        }
-        kept_ = std::move(*made);
+        GLINT_TRY(kept_, HostBuffer::create(context_, bytes));
     }
     std::uint8_t* to = kept_.data();
     for (const std::array<std::uint8_t, 3>& pixel : picture.pixels) {

@@ -49,9 +49,7 @@ void setLook(float scale) {
 Result<std::unique_ptr<Interface>> Interface::create(Context& context, GLFWwindow* window,
                                                      const Presenter& presenter) {
     std::unique_ptr<Interface> made(new Interface(context));
-    if (Status started = made->start(window, presenter); !started) {
-        return started.error();
-    }
+    GLINT_TRY_DO(made->start(window, presenter));
     return made;
 }
 

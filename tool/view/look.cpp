@@ -141,13 +141,10 @@ Result<measure::View> makeLook(const Look& look, Picture& picture, double exposu
 }
 
 Result<image::ExrLayer> layerForFile(const Look& look, Picture& picture) {
-    Result<LayerValues> values = picture.renderer().readLayer(look.layer);
-    if (!values) {
-        return values.error();
-    }
+    GLINT_TRY(auto values, picture.renderer().readLayer(look.layer));
     const package::LayerInfo& info = *package::findLayer(partsOf(look.layer).layer);
     return image::ExrLayer{look.layer, std::string(info.channels), info.format == package::LayerFormat::Half4,
-                           std::move(*values)};
+                           std::move(values)};
 }
 
 }  // namespace glint::view

@@ -62,10 +62,7 @@ void addCost(const Picture& picture, std::uint32_t shaderId, std::vector<Field>&
 Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x, std::uint32_t y,
                        double exposure) {
     Pick pick{x, y, {}, -1};
-    const Result<std::optional<SurfacePlace>> place = picture.renderer().readPlace(x, y);
-    if (!place) {
-        return place.error();
-    }
+    GLINT_TRY(const auto place, picture.renderer().readPlace(x, y));
     const Result<LinearImage> image = picture.renderer().readOutput();
     if (!image) {
         return image.error();
@@ -75,13 +72,13 @@ Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x
     const std::array<std::uint8_t, 3> shown = image::toDisplay({value[0], value[1], value[2]}, exposure);
     pick.fields.push_back({"radiance", fmt::format("{:.5g} {:.5g} {:.5g}", value[0], value[1], value[2])});
     pick.fields.push_back({"shown as", fmt::format("{} {} {}", shown[0], shown[1], shown[2])});
-    if (!*place) {
+    if (!place) {
         pick.fields.push_back({"surface", "none: the pixel sees the sky"});
         addRays(picture, pixel, pick.fields);
         return pick;
     }
     const gltf::Scene& scene = picture.scene();
-    const SurfacePlace& surface = **place;
+    const SurfacePlace& surface = *place;
     const std::size_t node = picture.data().sources[surface.instance].node;
     pick.fields.push_back({"instance", fmt::format("{} (/nodes/{})", surface.instance, node)});
     pick.fields.push_back(

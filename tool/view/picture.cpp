@@ -73,12 +73,8 @@ Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& not
     environment_.reset();
     environmentKey_.clear();
     if (!file.empty()) {
-        Result<std::unique_ptr<Environment>> read =
-            scene_view::loadEnvironment(context_, file, {.sampled = build.package->skyLight()}, notes);
-        if (!read) {
-            return read.error();
-        }
-        environment_ = std::move(*read);
+        GLINT_TRY(environment_,
+                  scene_view::loadEnvironment(context_, file, {.sampled = build.package->skyLight()}, notes));
     }
     environmentKey_ = key;
     return okStatus();
@@ -115,15 +111,9 @@ bool Picture::isLoading() const {
 Status Picture::adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame) {
     Device made;
     made.loaded = std::move(loaded);
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(context_, *made.loaded.source.package, *made.loaded.scene, options);
-    if (!renderer) {
-        return renderer.error();
-    }
-    made.renderer = std::move(*renderer);
-    if (Status submitted = made.loaded.commands.submit(context_); !submitted) {
-        return submitted;
-    }
+    GLINT_TRY(made.renderer,
+              Renderer::create(context_, *made.loaded.source.package, *made.loaded.scene, options));
+    GLINT_TRY_DO(made.loaded.commands.submit(context_));
     made.uploadedIn = frame;
     if (isReady()) {
         // The frame may not be there yet that follows its upload.
@@ -157,12 +147,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     if (recordedIn_ == 0 || !device_.renderer->renderSamples(lastFrame_, 1)) {
         return false;
     }
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(context_, *build.package, gpuScene(), options);
-    if (!renderer) {
-        return renderer.error();
-    }
-    device_.renderer = std::move(*renderer);
+    GLINT_TRY(device_.renderer, Renderer::create(context_, *build.package, gpuScene(), options));
     inFlight_.clear();
     lastChange_ = fmt::format("{} pipelines made", device_.renderer->footprint().pipelines);
     return true;
@@ -175,15 +160,10 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
         loaded = loading_.get();
     }
     const bool isLoaded = loaded.has_value();
-    if (Status read = readEnvironment(build, notes); !read) {
-        return read;
-    }
+    GLINT_TRY_DO(readEnvironment(build, notes));
     const RendererOptions options = optionsOf(build.settings, *build.package, width, height);
-    const Result<bool> replaced = loaded ? Result<bool>(false) : replace(build, options);
+    GLINT_TRY(const auto replaced, loaded ? Result<bool>(false) : replace(build, options));
     if (!replaced) {
-        return replaced.error();
-    }
-    if (!*replaced) {
         const bool keepsPose = posed_ && build.scene == build_.scene;
         if (!loaded) {
             loaded = loadScene(context_, sourceOf(build), keepsPose ? posed_.get() : nullptr);
@@ -192,9 +172,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
             return loaded->error();
         }
         const base::Clock::time_point start = base::Clock::now();
-        if (Status adopted = adopt(std::move(**loaded), options, frame); !adopted) {
-            return adopted;
-        }
+        GLINT_TRY_DO(adopt(std::move(**loaded), options, frame));
         // A pose may have been taken while the thread recorded a scene that stands still: the next one
         // uploads it to move.
         if (build.scene != build_.scene || isLoaded) {
@@ -228,9 +206,7 @@ Status Picture::takeBackEarly() {
     if (!beforeEarly_) {
         return okStatus();
     }
-    if (auto replaced = device_.renderer->replacePackage(beforeEarly_); !replaced) {
-        return replaced.error();
-    }
+    GLINT_TRY_DO(device_.renderer->replacePackage(beforeEarly_));
     build_.package = std::exchange(beforeEarly_, nullptr);
     restart();
     return okStatus();
@@ -239,12 +215,7 @@ Status Picture::takeBackEarly() {
 Status Picture::change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height) {
     const RendererOptions options = optionsOf(settings, *build_.package, width, height);
     if (!drawAlike(options, options_)) {
-        Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(context_, *build_.package, gpuScene(), options);
-        if (!renderer) {
-            return renderer.error();
-        }
-        device_.renderer = std::move(*renderer);
+        GLINT_TRY(device_.renderer, Renderer::create(context_, *build_.package, gpuScene(), options));
         options_ = options;
         inFlight_.clear();
     }
@@ -281,24 +252,17 @@ Status Picture::pose(const std::optional<Moment>& moment, std::uint64_t frame) {
 
 Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timing timing,
                        std::uint64_t number) {
-    if (const Result<bool> compacted = gpuScene().recordCompaction(commands, number); !compacted) {
-        return compacted.error();
-    }
+    GLINT_TRY_DO(gpuScene().recordCompaction(commands, number));
     // The upload has the memory of poses until the device is done with it.
     if (poseIsNew_ && gpuScene().isUploaded()) {
-        if (Status moved = gpuScene().update(commands, data().motion()); !moved) {
-            return moved;
-        }
+        GLINT_TRY_DO(gpuScene().update(commands, data().motion()));
         poseIsNew_ = false;
         restart();
     }
     if (missingLevels() > 0) {
-        const Result<std::uint32_t> levels = gpuScene().textureStream()->record(commands, number);
-        if (!levels) {
-            return levels.error();
-        }
+        GLINT_TRY(const auto levels, gpuScene().textureStream()->record(commands, number));
         levelsIn_ = number;
-        if (*levels > 0) {
+        if (levels > 0) {
             restart();
         }
     }
@@ -313,9 +277,7 @@ Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timin
     lastFrame_ = frame;
     lastFrame_.sampleIndex = 0;
     lastFrame_.timing = Timing::Frame;
-    if (Status recorded = device_.renderer->record(commands, frame); !recorded) {
-        return recorded;
-    }
+    GLINT_TRY_DO(device_.renderer->record(commands, frame));
     samples_ = wasDraft ? 0 : samples_ + 1;
     recordedIn_ = number;
     inFlight_.push_back({number, device_.renderer->recordings()});

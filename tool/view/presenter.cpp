@@ -97,9 +97,7 @@ Status Presenter::createRenderPass() {
 Status Presenter::createFrames() {
     VkDevice device = context_.handles().device;
     for (InFlight& frame : inFlight_) {
-        if (Status made = createCommands(context_, frame.pool, frame.commands); !made) {
-            return made;
-        }
+        GLINT_TRY_DO(createCommands(context_, frame.pool, frame.commands));
         VkFenceCreateInfo fence{};
         fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         VkSemaphoreCreateInfo semaphore{};
@@ -225,9 +223,7 @@ Result<bool> Presenter::begin(Frame& frame) {
         completed_ = own.number;
     }
     if (stale_) {
-        if (Status made = createSwapchain(); !made) {
-            return made.error();
-        }
+        GLINT_TRY_DO(createSwapchain());
         if (stale_) {
             return false;
         }

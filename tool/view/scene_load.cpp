@@ -14,9 +14,7 @@ namespace glint::view {
 Result<OneTimeCommands> OneTimeCommands::create(const Context& context) {
     OneTimeCommands made;
     made.device_ = context.handles().device;
-    if (Status created = createCommands(context, made.pool_, made.commands_); !created) {
-        return created.error();
-    }
+    GLINT_TRY_DO(createCommands(context, made.pool_, made.commands_));
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -67,20 +65,11 @@ Result<LoadedScene> loadScene(Context& context, SceneSource source, const gltf::
         scene_view::poseSceneView(scene, *made.data);
         measure::sizeLights(source.settings, *made.data);
     }
-    Result<OneTimeCommands> commands = OneTimeCommands::create(context);
-    if (!commands) {
-        return commands.error();
-    }
-    made.commands = std::move(*commands);
+    GLINT_TRY(made.commands, OneTimeCommands::create(context));
     SceneView view = made.data->view();
     view.streamsTextures = true;
     // The number of the frame is not known here. complete() is not called before that frame is done.
-    Result<std::unique_ptr<GpuScene>> recorded =
-        GpuScene::record(context, package, view, made.commands.handle(), 0);
-    if (!recorded) {
-        return recorded.error();
-    }
-    made.scene = std::move(*recorded);
+    GLINT_TRY(made.scene, GpuScene::record(context, package, view, made.commands.handle(), 0));
     made.source = std::move(source);
     made.milliseconds = base::millisecondsSince(start);
     return made;

@@ -63,17 +63,12 @@ Script::Script(std::string file, const ScriptHost& host)
     : file_(std::move(file)), host_(host), input_(host.window) {}
 
 Result<std::unique_ptr<Script>> Script::read(const std::string& file, const ScriptHost& host) {
-    const Result<base::Bytes> bytes = base::readFile(file);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, base::readFile(file));
     std::unique_ptr<Script> script(new Script(file, host));
     if (!script->input_.isAvailable()) {
         return scriptError(file, 0, "the X server takes no input from programs (XTEST)");
     }
-    if (Status parsed = script->parse(std::string(base::asText(*bytes))); !parsed) {
-        return parsed.error();
-    }
+    GLINT_TRY_DO(script->parse(std::string(base::asText(bytes))));
     return script;
 }
 
@@ -204,9 +199,7 @@ Status Script::parse(const std::string& text) {
             const std::size_t second = line.find(words[1], line.find(words[0]) + words[0].size());
             rest = line.substr(line.find_first_not_of(' ', second + words[1].size()));
         }
-        if (Status parsed = parseLine(words, rest); !parsed) {
-            return parsed;
-        }
+        GLINT_TRY_DO(parseLine(words, rest));
     }
     return okStatus();
 }

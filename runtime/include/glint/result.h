@@ -69,11 +69,14 @@ public:
     const T* operator->() const {
         return &value();
     }
-    T& operator*() {
+    T& operator*() & {
         return value();
     }
-    const T& operator*() const {
+    const T& operator*() const& {
         return value();
+    }
+    T&& operator*() && {
+        return std::move(value());
     }
 
 private:
@@ -96,3 +99,29 @@ inline Diagnostic makeWarning(std::string id, std::string where, std::string mes
 }
 
 }  // namespace glint
+
+#define GLINT_JOIN_NAMES_(first, second) first##second
+#define GLINT_JOIN_NAMES(first, second) GLINT_JOIN_NAMES_(first, second)
+
+#define GLINT_TRY_AS_(result, declaration, ...) \
+    auto result = __VA_ARGS__;                  \
+    if (!result) {                              \
+        return result.error();                  \
+    }                                           \
+    declaration = *std::move(result)
+
+#define GLINT_TRY_DO_AS_(result, ...)             \
+    do {                                          \
+        if (auto result = __VA_ARGS__; !result) { \
+            return result.error();                \
+        }                                         \
+    } while (false)
+
+// Declares or assigns a variable with the value of a `Result`, or returns the error from the function:
+// `GLINT_TRY(const auto bytes, base::readFile(path));`. It is several statements, so an `if` needs braces.
+#define GLINT_TRY(variable, ...) \
+    GLINT_TRY_AS_(GLINT_JOIN_NAMES(resultOfLine, __LINE__), variable, __VA_ARGS__)
+
+// Does work that gives a `Status`, or a `Result` whose value nobody needs, and returns its error from the
+// function: `GLINT_TRY_DO(base::writeFile(path, bytes));`.
+#define GLINT_TRY_DO(...) GLINT_TRY_DO_AS_(GLINT_JOIN_NAMES(resultOfLine, __LINE__), __VA_ARGS__)

@@ -87,16 +87,10 @@ Status CommandRunner::submitAndWait() {
 }
 
 Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record) {
-    Result<CommandRunner> runner = CommandRunner::create(context);
-    if (!runner) {
-        return runner.error();
-    }
-    const Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    const Status recorded = record(*commands);
-    return recorded ? runner->submitAndWait() : recorded;
+    GLINT_TRY(auto runner, CommandRunner::create(context));
+    GLINT_TRY(const auto commands, runner.begin());
+    const Status recorded = record(commands);
+    return recorded ? runner.submitAndWait() : recorded;
 }
 
 void recordDependency(const Context::State& context, VkCommandBuffer commands,

@@ -45,9 +45,7 @@ constexpr float kMaxAnisotropy = 16.0F;
 // Fills the limit `multiprocessors` and the features. Error "vulkan-call".
 Status queryReport(Context::State& state) {
     DeviceReport report;
-    if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(queryDevice(state.instance, state.handles.physicalDevice, report));
     state.features = moduleFeatures(report, state.handles);
     if (hasExtension(report, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME)) {
         VkPhysicalDeviceShaderSMBuiltinsPropertiesNV builtins{};
@@ -179,36 +177,19 @@ Status checkHandles(const DeviceHandles& handles) {
 }  // namespace
 
 Status finishContext(Context::State& state) {
-    Result<DeviceTable> table =
-        loadDeviceTable(state.instance, state.handles.device, state.handles.debugUtils);
-    if (!table) {
-        return table.error();
-    }
-    state.vk = *table;
+    GLINT_TRY(state.vk, loadDeviceTable(state.instance, state.handles.device, state.handles.debugUtils));
     if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
-        if (Status status = loadRayPipelineFunctions(state.instance, state.handles.device, state.vk);
-            !status) {
-            return status;
-        }
+        GLINT_TRY_DO(loadRayPipelineFunctions(state.instance, state.handles.device, state.vk));
     }
     if (state.handles.pipelineStatistics) {
-        if (Status status = loadPipelineStatisticsFunctions(state.instance, state.handles.device, state.vk);
-            !status) {
-            return status;
-        }
+        GLINT_TRY_DO(loadPipelineStatisticsFunctions(state.instance, state.handles.device, state.vk));
     }
     if (state.handles.opacityMicromaps) {
-        if (Status status = loadMicromapFunctions(state.instance, state.handles.device, state.vk); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(loadMicromapFunctions(state.instance, state.handles.device, state.vk));
     }
     queryLimits(state);
-    if (Status status = queryReport(state); !status) {
-        return status;
-    }
-    if (Status status = checkQueueFamily(state); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(queryReport(state));
+    GLINT_TRY_DO(checkQueueFamily(state));
     VkPipelineCacheCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
     const VkResult result =
@@ -228,29 +209,17 @@ VkShaderStageFlags passStages(const Context::State& state) {
 }
 
 Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
-    if (Status status = checkHandles(handles); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkHandles(handles));
     auto state = std::make_unique<State>();
     DeviceHandles complete = handles;
     if (complete.getInstanceProcAddr == nullptr) {
-        Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
-        if (!library) {
-            return library.error();
-        }
-        state->library = *library;
+        GLINT_TRY(state->library, VulkanLibrary::open());
         complete.getInstanceProcAddr = state->library->getInstanceProcAddr();
     }
-    Result<InstanceTable> instance = loadInstanceTable(complete.getInstanceProcAddr, complete.instance);
-    if (!instance) {
-        return instance.error();
-    }
-    state->instance = *instance;
+    GLINT_TRY(state->instance, loadInstanceTable(complete.getInstanceProcAddr, complete.instance));
     state->handles = complete;
     DeviceReport report;
-    if (Status status = queryDevice(state->instance, complete.physicalDevice, report); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(queryDevice(state->instance, complete.physicalDevice, report));
     if (const std::vector<std::string> missing = missingFrom(report); !missing.empty()) {
         return makeError("device-features", "", "the device lacks " + joinNames(missing),
                          "update the driver or use another device");
@@ -273,9 +242,7 @@ Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
             std::string("DeviceHandles::pipelineStatistics is set, and the device lacks ") + kStatistics,
             "leave it false");
     }
-    if (Status status = finishContext(*state); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(finishContext(*state));
     return std::unique_ptr<Context>(new Context(std::move(state)));
 }
 

@@ -65,9 +65,7 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     VkPhysicalDeviceProperties properties{};
     table.GetPhysicalDeviceProperties(device, &properties);
     report.apiVersion = properties.apiVersion;
-    if (Status status = queryExtensions(table, device, report); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(queryExtensions(table, device, report));
     // A device leaves structures of extensions that it lacks untouched, so the query starts from cleared
     // features.
     clearFeatures(report);

@@ -121,11 +121,7 @@ Status createInstance(const GlobalTable& table, const HeadlessOptions& options, 
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateInstance", result);
     }
-    Result<InstanceTable> functions = loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance);
-    if (!functions) {
-        return functions.error();
-    }
-    state.instance = *functions;
+    GLINT_TRY(state.instance, loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance));
     state.ownsInstance = true;
     state.handles.debugUtils = labels;
     if (validation != Validation::Off) {
@@ -161,13 +157,10 @@ Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& sta
 Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const HeadlessOptions& options,
                                       std::uint32_t& tracers) {
     const std::string& wanted = options.deviceName;
-    Result<std::vector<VkPhysicalDevice>> devices = enumerateDevices(state);
-    if (!devices) {
-        return devices.error();
-    }
+    GLINT_TRY(auto devices, enumerateDevices(state));
     std::vector<std::string> names;
     std::vector<std::string> complaints;
-    for (VkPhysicalDevice device : *devices) {
+    for (VkPhysicalDevice device : devices) {
         VkPhysicalDeviceProperties properties{};
         state.instance.GetPhysicalDeviceProperties(device, &properties);
         const std::string name = properties.deviceName;
@@ -176,9 +169,7 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
             continue;
         }
         DeviceReport report;
-        if (Status status = queryDevice(state.instance, device, report); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(queryDevice(state.instance, device, report));
         std::vector<std::string> missing = missingFrom(report);
         const std::uint32_t common = tracersOf(report) & tracers;
         if (missing.empty() && common == 0) {
@@ -237,9 +228,7 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
                                     state.handles.shaderFloat16, state.handles.pipelineStatistics,
                                     state.handles.opacityMicromaps, state.handles.shaderClock);
     DeviceReport report;
-    if (Status status = queryDevice(state.instance, state.handles.physicalDevice, report); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(queryDevice(state.instance, state.handles.physicalDevice, report));
     leaveOutLacking(report, requirements);
     const VkBool32 anisotropy = report.features.features.features.samplerAnisotropy;
     requirements.features.features.samplerAnisotropy = anisotropy;
@@ -267,9 +256,7 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
         return vulkanError("vkCreateDevice", result);
     }
     state.ownsDevice = true;
-    if (Status status = finishContext(state); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(finishContext(state));
     state.vk.GetDeviceQueue(state.handles.device, state.handles.queueFamily, 0, &state.handles.queue);
     return okStatus();
 }
@@ -278,33 +265,19 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
 
 Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& options) {
     auto state = std::make_unique<State>();
-    Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
-    if (!library) {
-        return library.error();
-    }
-    state->library = *library;
+    GLINT_TRY(state->library, VulkanLibrary::open());
     state->handles.getInstanceProcAddr = state->library->getInstanceProcAddr();
-    Result<GlobalTable> table = loadGlobalTable(state->handles.getInstanceProcAddr);
-    if (!table) {
-        return table.error();
-    }
-    if (Status status = createInstance(*table, options, *state); !status) {
-        return status.error();
-    }
+    GLINT_TRY(auto table, loadGlobalTable(state->handles.getInstanceProcAddr));
+    GLINT_TRY_DO(createInstance(table, options, *state));
     state->handles.tracers = options.tracers;
     state->handles.positionFetch = options.positionFetch;
     state->handles.shaderFloat16 = options.shaderFloat16;
     state->handles.shaderClock = options.shaderClock;
-    Result<VkPhysicalDevice> device = chooseDevice(*state, options, state->handles.tracers);
-    if (!device) {
-        return device.error();
-    }
-    state->handles.physicalDevice = *device;
+    GLINT_TRY(auto device, chooseDevice(*state, options, state->handles.tracers));
+    state->handles.physicalDevice = device;
     if (options.pipelineStatistics || options.opacityMicromaps) {
         DeviceReport report;
-        if (Status status = queryDevice(state->instance, *device, report); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(queryDevice(state->instance, device, report));
         // A device that supports one of these extensions supports its feature too (Vulkan 1.3 specification,
         // "Feature Requirements").
         state->handles.pipelineStatistics =
@@ -313,9 +286,7 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
         state->handles.opacityMicromaps =
             options.opacityMicromaps && hasExtension(report, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME);
     }
-    if (Status status = createDevice(*state, options.deviceExtensions); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(createDevice(*state, options.deviceExtensions));
     return std::unique_ptr<Context>(new Context(std::move(state)));
 }
 

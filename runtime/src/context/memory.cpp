@@ -129,12 +129,9 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
         }
         // Few resources share memory, so these blocks are no larger than they need to be.
         const VkDeviceSize usual = tiling == Tiling::Shared ? 0 : std::min({kBlockBytes, heap / 8, taken});
-        Result<Block> made =
-            makeBlock(*type, tiling, std::max(usual, requirements.size), use != MemoryUse::Device);
-        if (!made) {
-            return made.error();
-        }
-        blocks_.push_back(std::move(*made));
+        GLINT_TRY(auto made,
+                  makeBlock(*type, tiling, std::max(usual, requirements.size), use != MemoryUse::Device));
+        blocks_.push_back(std::move(made));
         block = blocks_.end() - 1;
     }
     Allocation allocation;

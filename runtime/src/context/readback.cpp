@@ -51,20 +51,12 @@ Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner
     MemoryPool pool(state.context);
     std::vector<Pixel> pixels(count);
     const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
-    Result<Buffer> buffer =
-        createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback);
-    if (!buffer) {
-        return buffer.error();
-    }
-    Result<VkCommandBuffer> commands = runner.begin();
-    if (!commands) {
-        return commands.error();
-    }
-    recordCopy(state, *commands, image, *buffer);
-    if (Status status = runner.submitAndWait(); !status) {
-        return status.error();
-    }
-    std::memcpy(pixels.data(), buffer->mapped, bytes);
+    GLINT_TRY(auto buffer, createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                        MemoryUse::Readback));
+    GLINT_TRY(auto commands, runner.begin());
+    recordCopy(state, commands, image, buffer);
+    GLINT_TRY_DO(runner.submitAndWait());
+    std::memcpy(pixels.data(), buffer.mapped, bytes);
     return pixels;
 }
 
@@ -115,11 +107,8 @@ void moveToWorld(const std::array<double, 3>& origin, LayerValues& values) {
 using SurfaceIdentity = std::array<std::uint32_t, 2>;
 
 Result<std::vector<SurfaceIdentity>> readIdentities(const Renderer::State& state) {
-    Result<CommandRunner> runner = CommandRunner::create(state.context);
-    if (!runner) {
-        return runner.error();
-    }
-    return readImage<SurfaceIdentity>(state, *runner, imageOf(state.frame, gpu::kBindingSurface),
+    GLINT_TRY(auto runner, CommandRunner::create(state.context));
+    return readImage<SurfaceIdentity>(state, runner, imageOf(state.frame, gpu::kBindingSurface),
                                       std::size_t{state.size.width} * state.size.height);
 }
 
@@ -133,12 +122,9 @@ Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state,
         return readImage<std::array<float, 4>>(state, runner, image, count);
     }
     using HalfPixel = std::array<std::uint16_t, 4>;
-    const Result<std::vector<HalfPixel>> pixels = readImage<HalfPixel>(state, runner, image, count);
-    if (!pixels) {
-        return pixels.error();
-    }
+    GLINT_TRY(const auto pixels, readImage<HalfPixel>(state, runner, image, count));
     std::vector<std::array<float, 4>> widened(count);
-    std::ranges::transform(*pixels, widened.begin(), [](const HalfPixel& pixel) {
+    std::ranges::transform(pixels, widened.begin(), [](const HalfPixel& pixel) {
         std::array<float, 4> wide{};
         std::ranges::transform(pixel, wide.begin(),
                                [](std::uint16_t value) { return glm::unpackHalf1x16(value); });
@@ -150,23 +136,15 @@ Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state,
 Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
                                                   const Buffer& buffer) {
     MemoryPool pool(state.context);
-    Result<Buffer> target = createBuffer(state.context, pool, buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                         MemoryUse::Readback);
-    if (!target) {
-        return target.error();
-    }
-    Result<VkCommandBuffer> commands = runner.begin();
-    if (!commands) {
-        return commands.error();
-    }
-    recordDependency(state.context, *commands, kWriteToCopy);
+    GLINT_TRY(auto target, createBuffer(state.context, pool, buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                        MemoryUse::Readback));
+    GLINT_TRY(auto commands, runner.begin());
+    recordDependency(state.context, commands, kWriteToCopy);
     const VkBufferCopy region{0, 0, buffer.bytes};
-    state.context.vk.CmdCopyBuffer(*commands, buffer.handle.get(), target->handle.get(), 1, &region);
-    recordDependency(state.context, *commands, kCopyToHost);
-    if (Status status = runner.submitAndWait(); !status) {
-        return status.error();
-    }
-    return std::vector<std::uint8_t>(target->mapped, target->mapped + buffer.bytes);
+    state.context.vk.CmdCopyBuffer(commands, buffer.handle.get(), target.handle.get(), 1, &region);
+    recordDependency(state.context, commands, kCopyToHost);
+    GLINT_TRY_DO(runner.submitAndWait());
+    return std::vector<std::uint8_t>(target.mapped, target.mapped + buffer.bytes);
 }
 
 std::vector<LayerImage> Renderer::layers() const {
@@ -189,21 +167,14 @@ Result<LayerValues> Renderer::readLayer(std::string_view name) {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
+    GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     const DeviceImage& image =
         state_->frame.layers[static_cast<std::size_t>(found - state_->size.layers.begin())];
     const package::LayerFormatInfo& format = package::infoOf(found->info->format);
     const std::size_t count = std::size_t{state_->size.width} * state_->size.height;
-    Result<std::vector<std::uint8_t>> bytes =
-        readImage<std::uint8_t>(*state_, *runner, image, count * format.bytes);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(auto bytes, readImage<std::uint8_t>(*state_, runner, image, count * format.bytes));
     LayerValues values =
-        toValues(*bytes, format, {state_->size.width, state_->size.height, format.components, {}, {}});
+        toValues(bytes, format, {state_->size.width, state_->size.height, format.components, {}, {}});
     if (found->info->isPlace) {
         moveToWorld(state_->scene.origin, values);
     }
@@ -214,12 +185,9 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    const Result<std::vector<SurfaceIdentity>> identities = readIdentities(*state_);
-    if (!identities) {
-        return identities.error();
-    }
-    std::vector<std::uint8_t> surfaces(identities->size());
-    std::ranges::transform(*identities, surfaces.begin(), [](const SurfaceIdentity& pixel) {
+    GLINT_TRY(const auto identities, readIdentities(*state_));
+    std::vector<std::uint8_t> surfaces(identities.size());
+    std::ranges::transform(identities, surfaces.begin(), [](const SurfaceIdentity& pixel) {
         return static_cast<std::uint8_t>(pixel[0] != gpu::kNoSurface ? 1 : 0);
     });
     return surfaces;
@@ -237,11 +205,8 @@ Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::ui
         return makeError("scene-edited", "", "the scene is edited, so the numbers of its upload may be stale",
                          "ask its SceneEditor, or upload the scene without SceneView::editable");
     }
-    const Result<std::vector<SurfaceIdentity>> identities = readIdentities(*state_);
-    if (!identities) {
-        return identities.error();
-    }
-    const std::uint32_t geometry = (*identities)[std::size_t{y} * state_->size.width + x][0];
+    GLINT_TRY(const auto identities, readIdentities(*state_));
+    const std::uint32_t geometry = identities[std::size_t{y} * state_->size.width + x][0];
     if (geometry == gpu::kNoSurface) {
         return std::optional<SurfacePlace>();
     }
@@ -254,15 +219,9 @@ Result<LinearImage> Renderer::readOutput() {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
-    auto pixels = readFrameImage(*state_, *runner, gpu::kBindingAccumulated);
-    if (!pixels) {
-        return pixels.error();
-    }
-    return LinearImage{state_->size.width, state_->size.height, std::move(*pixels)};
+    GLINT_TRY(auto runner, CommandRunner::create(state_->context));
+    GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
+    return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
 }
 
 Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
@@ -273,23 +232,17 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
         return makeError("effect-missing", "", "the package has no such effect with rays",
                          "compile the package with that effect");
     }
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
+    GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     if (state_->size.bandRows > 0) {
         return makeError(
             "frame-options", "",
             "the frame was lit in bands, which share the memory that says how pixels found light",
             "make the renderer with RendererOptions::bands at 1");
     }
-    const auto starts = readFrameBuffer(*state_, *runner, state_->frame.sampleStarts);
-    if (!starts) {
-        return starts.error();
-    }
+    GLINT_TRY(const auto starts, readFrameBuffer(*state_, runner, state_->frame.sampleStarts));
     Result<std::vector<std::uint8_t>> radiance = std::vector<std::uint8_t>{};
     if (state_->size.paths) {
-        radiance = readFrameBuffer(*state_, *runner, state_->frame.radiance);
+        radiance = readFrameBuffer(*state_, runner, state_->frame.radiance);
         if (!radiance) {
             return radiance.error();
         }
@@ -298,7 +251,7 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     const std::size_t first = paths.size() * package::effectSlot(state_->size.effects, effect);
     for (std::size_t i = 0; i < paths.size(); ++i) {
         gpu::SampleStart start{};
-        std::memcpy(&start, starts->data() + (first + i) * sizeof(start), sizeof(start));
+        std::memcpy(&start, starts.data() + (first + i) * sizeof(start), sizeof(start));
         const bool packed = state_->size.packedSamples;
         const std::uint32_t outcome = start.state & (packed ? gpu::kPackedOutcomeMask : gpu::kOutcomeMask);
         std::uint32_t path = packed ? start.state >> gpu::kPackedPathShift & gpu::kPackedPathMask

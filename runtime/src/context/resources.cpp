@@ -99,20 +99,13 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     VkMemoryRequirements requirements{};
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
     image.bytes = requirements.size;
-    Result<Allocation> memory = pool.allocate(requirements, MemoryUse::Device, tiling);
-    if (!memory) {
-        return memory.error();
-    }
-    result = context.vk.BindImageMemory(device, handle, memory->memory, memory->offset);
+    GLINT_TRY(auto memory, pool.allocate(requirements, MemoryUse::Device, tiling));
+    result = context.vk.BindImageMemory(device, handle, memory.memory, memory.offset);
     if (result != VK_SUCCESS) {
         return vulkanError("vkBindImageMemory", result);
     }
-    image.memory = *memory;
-    Result<UniqueImageView> view = createImageView(context, handle, info, 0);
-    if (!view) {
-        return view.error();
-    }
-    image.view = std::move(*view);
+    image.memory = memory;
+    GLINT_TRY(image.view, createImageView(context, handle, info, 0));
     return image;
 }
 

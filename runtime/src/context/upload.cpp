@@ -28,11 +28,8 @@ constexpr MemoryDependency kToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCES
 
 Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
     std::unique_ptr<Uploader> uploader(new Uploader(context, nullptr, kStagingBytes));
-    Result<CommandRunner> runner = CommandRunner::create(context);
-    if (!runner) {
-        return runner.error();
-    }
-    uploader->runner_ = std::make_unique<CommandRunner>(std::move(*runner));
+    GLINT_TRY(auto runner, CommandRunner::create(context));
+    uploader->runner_ = std::make_unique<CommandRunner>(std::move(runner));
     return uploader;
 }
 
@@ -57,23 +54,17 @@ Status Uploader::finish() {
         return okStatus();
     }
     if (!runner_) {
-        Result<CommandRunner> runner = CommandRunner::create(*context_);
-        if (!runner) {
-            return runner.error();
-        }
-        runner_ = std::make_unique<CommandRunner>(std::move(*runner));
+        GLINT_TRY(auto runner, CommandRunner::create(*context_));
+        runner_ = std::make_unique<CommandRunner>(std::move(runner));
     }
-    const Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(const auto commands, runner_->begin());
     for (const Command& command : queued_) {
-        command(*commands);
+        command(commands);
     }
     queued_.clear();
     current_ = 0;
     used_ = 0;
-    recordDependency(*context_, *commands, kToAll);
+    recordDependency(*context_, commands, kToAll);
     return runner_->submitAndWait();
 }
 
@@ -85,22 +76,17 @@ Status Uploader::nextStaging(VkDeviceSize wanted, VkDeviceSize unit) {
     auto next = std::find_if(staging_.begin() + static_cast<std::ptrdiff_t>(filled), staging_.end(), fits);
     const VkDeviceSize size = std::clamp(std::max(wanted, staged_), kFirstStagingBytes, kStagingBytes);
     if (next == staging_.end() && !queued_.empty() && staged_ + size > mostStaged_) {
-        if (Status status = finish(); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(finish());
         next = std::ranges::find_if(staging_, fits);
     }
     if (next != staging_.end()) {
         current_ = static_cast<std::size_t>(next - staging_.begin());
         return okStatus();
     }
-    Result<Buffer> staging =
-        createBuffer(*context_, *pool_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
-    if (!staging) {
-        return staging.error();
-    }
+    GLINT_TRY(auto staging,
+              createBuffer(*context_, *pool_, size, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
     staged_ += size;
-    staging_.push_back(std::move(*staging));
+    staging_.push_back(std::move(staging));
     current_ = staging_.size() - 1;
     return okStatus();
 }
@@ -108,9 +94,7 @@ Status Uploader::nextStaging(VkDeviceSize wanted, VkDeviceSize unit) {
 Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
     used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
     if (staging_.empty() || used_ + unit > staging_[current_].bytes) {
-        if (Status status = nextStaging(wanted, unit); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(nextStaging(wanted, unit));
     }
     const VkDeviceSize room = (staging_[current_].bytes - used_) / unit * unit;
     return std::min(wanted, room);
@@ -119,18 +103,15 @@ Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
 Status Uploader::copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target,
                               VkDeviceSize offset) {
     while (!bytes.empty()) {
-        Result<VkDeviceSize> room = reserve(bytes.size(), 1);
-        if (!room) {
-            return room.error();
-        }
-        std::memcpy(staging_[current_].mapped + used_, bytes.data(), *room);
-        add([&vk = context_->vk, region = VkBufferCopy{used_, offset, *room},
+        GLINT_TRY(auto room, reserve(bytes.size(), 1));
+        std::memcpy(staging_[current_].mapped + used_, bytes.data(), room);
+        add([&vk = context_->vk, region = VkBufferCopy{used_, offset, room},
              from = staging_[current_].handle.get(), to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBuffer(commands, from, to, 1, &region);
         });
-        used_ += *room;
-        offset += *room;
-        bytes = bytes.subspan(*room);
+        used_ += room;
+        offset += room;
+        bytes = bytes.subspan(room);
     }
     return okStatus();
 }
@@ -171,12 +152,9 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
     const std::uint32_t height = sizeAtLevel(target.extent.height, rows.mip);
     const VkDeviceSize rowBytes = rowSizeOf(rows).bytes;
     while (first < end) {
-        Result<VkDeviceSize> room = reserve(rowBytes * (end - first), rowBytes);
-        if (!room) {
-            return room.error();
-        }
-        const auto count = static_cast<std::uint32_t>(*room / rowBytes);
-        std::memcpy(staging_[current_].mapped + used_, rows.texels.data() + first * rowBytes, *room);
+        GLINT_TRY(auto room, reserve(rowBytes * (end - first), rowBytes));
+        const auto count = static_cast<std::uint32_t>(room / rowBytes);
+        std::memcpy(staging_[current_].mapped + used_, rows.texels.data() + first * rowBytes, room);
         const std::uint32_t top = first * rows.block.height;
         VkBufferImageCopy region{};
         region.bufferOffset = used_;
@@ -187,7 +165,7 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
              to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBufferToImage(commands, from, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
         });
-        used_ += *room;
+        used_ += room;
         first += count;
     }
     return okStatus();
@@ -198,9 +176,7 @@ Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips
     startImage(target);
     for (std::uint32_t mip = 0; mip < mips.size(); ++mip) {
         const MipRows rows{&target, mip, 0, mips[mip], block};
-        if (Status status = copyRows(rows, 0, rowSizeOf(rows).rows); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(copyRows(rows, 0, rowSizeOf(rows).rows));
     }
     addMips(target, static_cast<std::uint32_t>(mips.size()));
     return okStatus();
@@ -218,9 +194,7 @@ Result<std::uint32_t> Uploader::copyMipRows(const MipRows& rows, VkDeviceSize mo
                     rows.mip,
                     1});
     }
-    if (Status status = copyRows(rows, rows.firstRow, rows.firstRow + room); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(copyRows(rows, rows.firstRow, rows.firstRow + room));
     if (rows.firstRow + room == size.rows) {
         transition({rows.target->handle.get(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                     VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kToShaders, rows.mip, 1});

@@ -126,12 +126,8 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
 }
 
 Result<Shading> CaseTable::find(const MaterialKey& key, const std::string& where) const {
-    if (Status status = checkKnown(key, where); !status) {
-        return status.error();
-    }
-    if (Status status = checkEmitter(key, where); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkKnown(key, where));
+    GLINT_TRY_DO(checkEmitter(key, where));
     Shading shading{key.features, key.geometryFlags, 0, false};
     if (const auto own = shaderOfKey_.find(key.features); own != shaderOfKey_.end()) {
         shading.shaderId = own->second;

@@ -48,9 +48,7 @@ Status checkSource(const SceneEditor::State& state, const MaterialSource& source
     }
     for (std::size_t i = 0; i < source.textures.size(); ++i) {
         const TextureUse& use = source.textures[i];
-        if (Status status = checkUse(state, use, where); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(checkUse(state, use, where));
         const auto earlier = std::span(source.textures).first(i);
         if (std::ranges::find(earlier, use.slot, &TextureUse::slot) != earlier.end()) {
             return badValue(where, "two textures have the slot " + std::to_string(use.slot),
@@ -58,9 +56,7 @@ Status checkSource(const SceneEditor::State& state, const MaterialSource& source
         }
     }
     for (const MaterialKey& key : source.keys) {
-        if (Status status = state.cases.checkAttributes(key, where); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(state.cases.checkAttributes(key, where));
     }
     return okStatus();
 }
@@ -94,11 +90,8 @@ void settleTextures(const SceneEditor::State& state, std::span<const TextureUse>
 Result<std::vector<std::uint8_t>> makeRecord(SceneEditor::State& state, const MaterialSource& source) {
     std::vector<std::uint32_t> samplers;
     for (const TextureUse& use : source.textures) {
-        Result<std::uint32_t> sampler = samplerIndex(state, use.sampler);
-        if (!sampler) {
-            return sampler.error();
-        }
-        samplers.push_back(*sampler);
+        GLINT_TRY(auto sampler, samplerIndex(state, use.sampler));
+        samplers.push_back(sampler);
     }
     std::vector<std::uint8_t> record(source.record.begin(), source.record.end());
     settleTextures(state, source.textures, samplers, record);
@@ -117,9 +110,7 @@ Result<DeviceImage> makeImage(SceneEditor::State& state, const ImageView& image,
                               std::uint32_t texture) {
     GpuScene::State& scene = state.scene;
     const std::string where = placeOf("texture", texture);
-    if (Status s = checkImage(image, srgb, where, imageLimits(scene.context)); !s) {
-        return s.error();
-    }
+    GLINT_TRY_DO(checkImage(image, srgb, where, imageLimits(scene.context)));
     const std::size_t before = state.uploader->waiting();
     Result<DeviceImage> made = uploadSceneTexture(scene, *state.uploader, texture, image, srgb);
     if (!made && state.upload == nullptr) {
@@ -193,11 +184,8 @@ Result<std::uint32_t> samplerIndex(SceneEditor::State& state, const package::Sam
                              " kinds of samplers, and no room for another",
                          "set SceneView::samplerRoom, or use fewer kinds of samplers");
     }
-    Result<UniqueSampler> sampler = createSampler(state.scene.context, entry);
-    if (!sampler) {
-        return sampler.error();
-    }
-    state.scene.samplers.push_back(std::move(*sampler));
+    GLINT_TRY(auto sampler, createSampler(state.scene.context, entry));
+    state.scene.samplers.push_back(std::move(sampler));
     state.samplers.push_back(entry);
     state.setDirty = true;
     return static_cast<std::uint32_t>(state.samplers.size() - 1);
@@ -232,14 +220,11 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
                              " textures, and no room for another",
                          "set SceneView::textureRoom, or remove a texture");
     }
-    Result<DeviceImage> made = makeImage(*state_, image, srgb, next.index);
-    if (!made) {
-        return made.error();
-    }
+    GLINT_TRY(auto made, makeImage(*state_, image, srgb, next.index));
     const TextureHandle texture =
         state_->textures.add({image.width, image.height, srgb, 0, emissionTexels(*state_, image, srgb)});
     scene.textures.resize(std::max<std::size_t>(scene.textures.size(), state_->textures.end()));
-    scene.textures[texture.index] = std::move(*made);
+    scene.textures[texture.index] = std::move(made);
     state_->setDirty = true;
     return texture;
 }
@@ -253,13 +238,10 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
         return makeError("texture-trusted", "", "the shaders of the package rely on what its textures hold",
                          "compile it with --no-trust-textures, or with --fallback");
     }
-    Result<DeviceImage> made = makeImage(*state_, image, entry->srgb, texture.index);
-    if (!made) {
-        return made.error();
-    }
+    GLINT_TRY(auto made, makeImage(*state_, image, entry->srgb, texture.index));
     DeviceImage& place = state_->scene.textures[texture.index];
     state_->retired.add(std::move(place));
-    place = std::move(*made);
+    place = std::move(made);
     state_->setDirty = true;
     entry->width = image.width;
     entry->height = image.height;
@@ -305,17 +287,12 @@ Status SceneEditor::removeTexture(TextureHandle texture) {
 
 Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) {
     const std::string where = placeOf("material", state_->materialSlots.next().index);
-    if (Status status = checkSource(*state_, source, where); !status) {
-        return status.error();
-    }
-    Result<std::vector<std::uint8_t>> record = makeRecord(*state_, source);
-    if (!record) {
-        return record.error();
-    }
+    GLINT_TRY_DO(checkSource(*state_, source, where));
+    GLINT_TRY(auto record, makeRecord(*state_, source));
     const MaterialHandle material = state_->materialSlots.add(
         {{source.keys.begin(), source.keys.end()}, {source.textures.begin(), source.textures.end()}, 0});
     countUses(*state_, source.textures, true);
-    state_->materials.writeBytes(material.index, *record);
+    state_->materials.writeBytes(material.index, record);
     return material;
 }
 
@@ -325,30 +302,22 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
         return unknownHandle("material");
     }
     const std::string where = placeOf("material", material.index);
-    if (Status status = checkSource(*state_, source, where); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkSource(*state_, source, where));
     EditReport report;
     bool changes = false;
     for (const AttributeMask attributes : attributesWith(*state_, material)) {
-        Result<Shading> shading = shadingBy(*state_, source.keys, attributes, where);
-        if (!shading) {
-            return shading.error();
-        }
-        addTo(report, *state_, material, *shading);
+        GLINT_TRY(auto shading, shadingBy(*state_, source.keys, attributes, where));
+        addTo(report, *state_, material, shading);
         const Result<Shading> before = shadingBy(*state_, entry->keys, attributes, where);
-        changes = changes || !before || !(*before == *shading);
+        changes = changes || !before || !(*before == shading);
     }
-    Result<std::vector<std::uint8_t>> record = makeRecord(*state_, source);
-    if (!record) {
-        return record.error();
-    }
+    GLINT_TRY(auto record, makeRecord(*state_, source));
     // The new textures may be some of the old.
     countUses(*state_, source.textures, true);
     countUses(*state_, entry->textures, false);
     entry->keys.assign(source.keys.begin(), source.keys.end());
     entry->textures.assign(source.textures.begin(), source.textures.end());
-    writeMaterial(*state_, material.index, *record);
+    writeMaterial(*state_, material.index, record);
     if (changes) {
         state_->instanceSlots.forEach([&](InstanceHandle handle, const EditedInstance& instance) {
             for (std::size_t i = 0; i < state_->meshes.find(instance.mesh)->primitives.size(); ++i) {

@@ -23,9 +23,7 @@ Diagnostic notFinite(const std::string& where) {
 Status checkPrimitive(const SceneEditor::State& state, const EditedPrimitive& primitive,
                       const std::string& where) {
     const PrimitiveView& view = primitive.geometry;
-    if (Status status = checkGeometry(view, where); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkGeometry(view, where));
     if (view.indices.empty()) {
         return makeError("scene-edit-value", where, "the primitive has no triangle",
                          "leave such primitives out");
@@ -90,13 +88,9 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, const
     if (!package.attributes().empty()) {
         declared = joinAllAttributes(package, view);
     }
-    Result<GpuPrimitive> device = uploadPrimitive(scene.context, scene.pool, *state.uploader, view,
-                                                  {indices, declared, positions.words},
-                                                  {state.vertices, state.capacity.triangles, &scene.pool});
-    if (!device) {
-        return device.error();
-    }
-    made.device = std::move(*device);
+    GLINT_TRY(made.device, uploadPrimitive(scene.context, scene.pool, *state.uploader, view,
+                                           {indices, declared, positions.words},
+                                           {state.vertices, state.capacity.triangles, &scene.pool}));
     made.attributes = attributesOf(package, view);
     if (state.emission != nullptr) {
         made.shape = std::make_shared<EmitterShape>(*state.emission, view, indices);
@@ -112,13 +106,8 @@ Status makePrimitive(SceneEditor::State& state, const PrimitiveView& view, const
             inputs->push_back(input);
         } else {
             BlasBuild build = describeBuild(scene.context, input);
-            Result<AccelerationStructure> blas =
-                createStructure(scene.context, scene.pool, build.structureBytes,
-                                VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
-            if (!blas) {
-                return blas.error();
-            }
-            part.blas = std::move(*blas);
+            GLINT_TRY(part.blas, createStructure(scene.context, scene.pool, build.structureBytes,
+                                                 VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
             build.info.dstAccelerationStructure = part.blas.handle.get();
             state.builds.push_back({std::move(build), {}});
         }
@@ -160,11 +149,8 @@ Result<EditReport> checkMaterials(const SceneEditor::State& state, const EditedM
         if (materials[i].generation == 0) {
             continue;
         }
-        Result<Shading> shading = shadingOf(state, materials[i], mesh.primitives[i].attributes);
-        if (!shading) {
-            return shading.error();
-        }
-        addTo(report, state, materials[i], *shading);
+        GLINT_TRY(auto shading, shadingOf(state, materials[i], mesh.primitives[i].attributes));
+        addTo(report, state, materials[i], shading);
     }
     return report;
 }
@@ -287,26 +273,18 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
     for (const EditedPrimitive& primitive : primitives) {
         const std::string where = placeOf("mesh", state_->meshes.next().index) + ", " +
                                   placeOf("primitive", static_cast<std::uint32_t>(views.size()));
-        if (Status status = checkPrimitive(*state_, primitive, where); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(checkPrimitive(*state_, primitive, where));
         const AttributeMask attributes = attributesOf(state_->cases.package(), primitive.geometry);
-        Result<Shading> shading = shadingOf(*state_, primitive.material, attributes);
-        if (!shading) {
-            return shading.error();
-        }
-        addTo(added.report, *state_, primitive.material, *shading);
+        GLINT_TRY(auto shading, shadingOf(*state_, primitive.material, attributes));
+        addTo(added.report, *state_, primitive.material, shading);
         views.push_back(primitive.geometry);
     }
-    Result<EditedMesh> mesh = makeMesh(*state_, views, nullptr);
-    if (!mesh) {
-        return mesh.error();
-    }
+    GLINT_TRY(auto mesh, makeMesh(*state_, views, nullptr));
     for (std::size_t i = 0; i < primitives.size(); ++i) {
-        mesh->primitives[i].material = primitives[i].material;
+        mesh.primitives[i].material = primitives[i].material;
         countUse(*state_, primitives[i].material, true);
     }
-    added.mesh = state_->meshes.add(std::move(*mesh));
+    added.mesh = state_->meshes.add(std::move(mesh));
     return added;
 }
 
@@ -321,12 +299,9 @@ Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t p
                          "the mesh has no primitive " + std::to_string(primitive), "count from 0");
     }
     EditedMeshPrimitive& place = entry->primitives[primitive];
-    Result<Shading> shading = shadingOf(*state_, material, place.attributes);
-    if (!shading) {
-        return shading.error();
-    }
+    GLINT_TRY(auto shading, shadingOf(*state_, material, place.attributes));
     EditReport report;
-    addTo(report, *state_, material, *shading);
+    addTo(report, *state_, material, shading);
     countUse(*state_, place.material, false);
     countUse(*state_, material, true);
     place.material = material;
@@ -364,10 +339,7 @@ Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) {
     if (!isFinite(placed.objectToWorld)) {
         return notFinite(where);
     }
-    Result<EditReport> report = checkMaterials(*state_, *mesh, placed.materials, where);
-    if (!report) {
-        return report.error();
-    }
+    GLINT_TRY(auto report, checkMaterials(*state_, *mesh, placed.materials, where));
     if (state_->geometryRuns.end() > kMostGeometries - mesh->partCount) {
         return makeError("scene-geometries", where,
                          "the scene's instances have more than 2^24 - 2 primitives altogether",
@@ -378,7 +350,7 @@ Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) {
     instance.objectToWorld = placed.objectToWorld;
     instance.visible = placed.visible;
     instance.materials.assign(placed.materials.begin(), placed.materials.end());
-    return AddedInstance{placeInstance(*state_, std::move(instance)), std::move(*report)};
+    return AddedInstance{placeInstance(*state_, std::move(instance)), std::move(report)};
 }
 
 Status SceneEditor::moveInstance(InstanceHandle instance, const std::array<float, 12>& objectToWorld) {
@@ -454,11 +426,8 @@ Result<EditReport> SceneEditor::setInstanceMaterial(InstanceHandle instance, std
     }
     EditReport report;
     if (material.generation != 0) {
-        Result<Shading> shading = shadingOf(*state_, material, mesh.primitives[primitive].attributes);
-        if (!shading) {
-            return shading.error();
-        }
-        addTo(report, *state_, material, *shading);
+        GLINT_TRY(auto shading, shadingOf(*state_, material, mesh.primitives[primitive].attributes));
+        addTo(report, *state_, material, shading);
     }
     entry->materials.resize(mesh.primitives.size());
     countUse(*state_, entry->materials[primitive], false);

@@ -78,9 +78,7 @@ public:
         }
         for (const auto& step : {&EditRecorder::prepareArrays, &EditRecorder::prepareTlas,
                                  &EditRecorder::prepareStaging, &EditRecorder::prepareSet}) {
-            if (Status status = (this->*step)(); !status) {
-                return status;
-            }
+            GLINT_TRY_DO((this->*step)());
         }
         if (state_.drawsDirty) {
             scene_.batches = batchDraws(drawsOf());
@@ -204,12 +202,8 @@ private:
             const std::uint32_t capacity = capacityFor(store.count(), store.capacity, store.firstCapacity);
             prepared_.capacities[i] = capacity;
             if (capacity != store.capacity && isRead) {
-                Result<Buffer> buffer =
-                    createBuffer(context_, scene_.pool, capacity * store.stride(), kRecordUsage);
-                if (!buffer) {
-                    return buffer.error();
-                }
-                prepared_.arrays[i] = std::move(*buffer);
+                GLINT_TRY(prepared_.arrays[i],
+                          createBuffer(context_, scene_.pool, capacity * store.stride(), kRecordUsage));
             }
             ++i;
         }
@@ -227,25 +221,15 @@ private:
         const auto count = static_cast<std::uint32_t>(placed_.size());
         const std::uint32_t capacity = capacityFor(count, state_.tlasCapacity, state_.firstTlasCapacity);
         TlasBuild& build = prepared_.build;
-        if (Status status = describeTlas(context_, 0, capacity, false, build); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(describeTlas(context_, 0, capacity, false, build));
         if (capacity == state_.tlasCapacity) {
             return okStatus();
         }
         prepared_.tlasCapacity = capacity;
-        Result<AccelerationStructure> tlas =
-            createStructure(context_, scene_.pool, build.sizes.accelerationStructureSize,
-                            VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
-        if (!tlas) {
-            return tlas.error();
-        }
-        prepared_.tlas = std::move(*tlas);
-        Result<Scratch> scratch = createScratch(context_, scene_.pool, build.sizes.buildScratchSize);
-        if (!scratch) {
-            return scratch.error();
-        }
-        prepared_.tlasScratch = std::move(*scratch);
+        GLINT_TRY(prepared_.tlas,
+                  createStructure(context_, scene_.pool, build.sizes.accelerationStructureSize,
+                                  VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR));
+        GLINT_TRY(prepared_.tlasScratch, createScratch(context_, scene_.pool, build.sizes.buildScratchSize));
         return okStatus();
     }
 
@@ -260,23 +244,15 @@ private:
             }
         }
         if (state_.tlasDirty || bytes > recordsFrom_) {
-            Result<Buffer> staging =
-                createBuffer(context_, scene_.pool, bytes,
-                             VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                 VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR,
-                             MemoryUse::Upload);
-            if (!staging) {
-                return staging.error();
-            }
-            prepared_.staging = std::move(*staging);
+            GLINT_TRY(prepared_.staging,
+                      createBuffer(context_, scene_.pool, bytes,
+                                   VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                       VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR,
+                                   MemoryUse::Upload));
         }
         scratchBytes_ = scratchBytesOf(context_, pendingBuilds());
         if (scratchBytes_ > 0) {
-            Result<Scratch> scratch = createScratch(context_, scene_.pool, scratchBytes_);
-            if (!scratch) {
-                return scratch.error();
-            }
-            prepared_.scratch = std::move(*scratch);
+            GLINT_TRY(prepared_.scratch, createScratch(context_, scene_.pool, scratchBytes_));
         }
         return okStatus();
     }
@@ -287,13 +263,9 @@ private:
         if (!state_.setDirty && !newTlas) {
             return okStatus();
         }
-        Result<SceneSet> set =
-            makeSceneSet(scene_, newTlas ? prepared_.tlas.handle.get() : scene_.tlas.handle.get(),
-                         state_.white.view.get());
-        if (!set) {
-            return set.error();
-        }
-        prepared_.set = std::move(*set);
+        GLINT_TRY(prepared_.set,
+                  makeSceneSet(scene_, newTlas ? prepared_.tlas.handle.get() : scene_.tlas.handle.get(),
+                               state_.white.view.get()));
         return okStatus();
     }
 

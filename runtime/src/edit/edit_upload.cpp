@@ -26,12 +26,8 @@ Status checkEditable(const SceneView& view) {
 
 Status addTextures(SceneEditor::State& state, const PackageScene& known, const SceneView& view) {
     GpuScene::State& scene = state.scene;
-    Result<DeviceImage> white =
-        uploadTexture(scene.context, scene.pool, *state.uploader, {1, 1, kWhiteTexel}, false);
-    if (!white) {
-        return white.error();
-    }
-    state.white = std::move(*white);
+    GLINT_TRY(state.white,
+              uploadTexture(scene.context, scene.pool, *state.uploader, {1, 1, kWhiteTexel}, false));
     if (scene.textureRoom > scene.context.limits.maxTextures) {
         return makeError("scene-textures", "",
                          "the scene has room for " + std::to_string(scene.textureRoom) +
@@ -41,13 +37,10 @@ Status addTextures(SceneEditor::State& state, const PackageScene& known, const S
     }
     for (const package::TextureEntry& entry : known.textures) {
         const ImageView& image = view.images[entry.image];
-        Result<DeviceImage> made =
-            uploadSceneTexture(scene, *state.uploader, static_cast<std::uint32_t>(scene.textures.size()),
-                               image, entry.srgb != 0);
-        if (!made) {
-            return made.error();
-        }
-        scene.textures.push_back(std::move(*made));
+        GLINT_TRY(auto made, uploadSceneTexture(scene, *state.uploader,
+                                                static_cast<std::uint32_t>(scene.textures.size()), image,
+                                                entry.srgb != 0));
+        scene.textures.push_back(std::move(made));
         const bool srgb = entry.srgb != 0;
         state.firstTextures.push_back(
             state.textures.add({image.width, image.height, srgb, 0, emissionTexels(state, image, srgb)}));
@@ -58,11 +51,7 @@ Status addTextures(SceneEditor::State& state, const PackageScene& known, const S
 
 // Samplers keep the package's numbers, which its records have.
 Status addSamplers(SceneEditor::State& state, const PackageScene& known) {
-    Result<std::vector<UniqueSampler>> samplers = createSamplers(state.scene.context, known.samplers);
-    if (!samplers) {
-        return samplers.error();
-    }
-    state.scene.samplers = std::move(*samplers);
+    GLINT_TRY(state.scene.samplers, createSamplers(state.scene.context, known.samplers));
     state.samplers.assign(known.samplers.begin(), known.samplers.end());
     if (state.samplers.empty()) {
         state.samplers.push_back({0, 0, 1, 1, 1, 1});
@@ -84,11 +73,7 @@ std::vector<TextureUse> usesOf(const SceneEditor::State& state, const PackageSce
 
 Status addMaterials(SceneEditor::State& state, const PackageScene& known, const SceneView& view) {
     std::vector<std::uint8_t> records = materialsWithSizes(state.scene.context, known, view.images);
-    Result<std::vector<ChangingMaterial>> replaced =
-        replaceMaterials(view.materials, known.materials, records);
-    if (!replaced) {
-        return replaced.error();
-    }
+    GLINT_TRY_DO(replaceMaterials(view.materials, known.materials, records));
     const std::size_t bytes = state.layout.recordBytes;
     for (std::size_t i = 0; i < known.materials.size(); ++i) {
         EditedMaterial material;
@@ -118,38 +103,32 @@ Status addMeshes(SceneEditor::State& state, const PackageScene& known, const Sce
         const std::uint32_t number = view.primitives[first].mesh;
         const PrimitiveRange range = primitivesOf(view.primitives, number);
         const std::span<const PrimitiveView> own = view.primitives.subspan(first, range.end - first);
-        Result<EditedMesh> mesh = makeMesh(state, own, &inputs);
-        if (!mesh) {
-            return mesh.error();
-        }
+        GLINT_TRY(auto mesh, makeMesh(state, own, &inputs));
         for (std::size_t i = 0; i < own.size(); ++i) {
             const package::PrimitiveEntry& entry = *known.findPrimitive(number, own[i].primitive);
-            EditedMeshPrimitive& primitive = mesh->primitives[i];
+            EditedMeshPrimitive& primitive = mesh.primitives[i];
             primitive.material = state.firstMaterials[entry.materialIndex];
             ++state.materialSlots.find(primitive.material)->uses;
             addKey(state, entry, primitive.attributes);
         }
-        state.firstMeshes[number] = state.meshes.add(std::move(*mesh));
+        state.firstMeshes[number] = state.meshes.add(std::move(mesh));
         first = range.end;
     }
     BlasStatistics statistics;
-    Result<std::vector<AccelerationStructure>> built = addBlases(*state.upload, inputs, statistics);
-    if (!built) {
-        return built.error();
-    }
+    GLINT_TRY(auto built, addBlases(*state.upload, inputs, statistics));
     std::size_t next = 0;
     for (const auto& [number, handle] : state.firstMeshes) {
         std::vector<EditedMeshPrimitive>& primitives = state.meshes.find(handle)->primitives;
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             for (std::size_t part = 0; part < primitives[i].parts.size(); ++part) {
-                primitives[i].parts[part].blas = std::move((*built)[next++]);
+                primitives[i].parts[part].blas = std::move(built[next++]);
                 state.upload->compaction->parts.push_back({handle, i, part});
             }
             state.retired.add(std::move(primitives[i].device.buildInput));
         }
     }
     GpuScene::Statistics& scene = state.scene.statistics;
-    scene.blasCount = static_cast<std::uint32_t>(built->size());
+    scene.blasCount = static_cast<std::uint32_t>(built.size());
     scene.blasBytes = statistics.bytes;
     scene.blasUncompactedBytes = statistics.bytes;
     return okStatus();
@@ -159,9 +138,7 @@ Status addMeshes(SceneEditor::State& state, const PackageScene& known, const Sce
 
 Status uploadEditable(GpuScene::State& scene, const Package& package, const PackageScene& known,
                       const SceneView& view, SceneUpload& upload, VkCommandBuffer commands) {
-    if (Status status = checkEditable(view); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkEditable(view));
     auto owned = std::make_unique<SceneEditor::State>(scene, package, view);
     SceneEditor::State& state = *owned;
     scene.textureRoom = std::max({view.textureRoom, static_cast<std::uint32_t>(known.textures.size()), 1U});
@@ -170,13 +147,9 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
     scene.materialLayout = state.layout;
     state.upload = &upload;
     state.uploader = upload.uploader.get();
-    if (Status status = addSamplers(state, known); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(addSamplers(state, known));
     for (const auto step : {addTextures, addMaterials, addMeshes}) {
-        if (Status status = step(state, known, view); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(step(state, known, view));
     }
     for (const InstanceView& instance : view.instances) {
         const auto mesh = state.firstMeshes.find(instance.mesh);
@@ -194,12 +167,8 @@ Status uploadEditable(GpuScene::State& scene, const Package& package, const Pack
         state.firstLights.push_back(state.lightSlots.add(light));
         state.lightOrder.push_back(state.firstLights.back());
     }
-    if (Status status = createSetLayout(scene); !status) {
-        return status;
-    }
-    if (Status status = recordEdits(state, commands, upload.frame); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(createSetLayout(scene));
+    GLINT_TRY_DO(recordEdits(state, commands, upload.frame));
     for (RecordStore* const store : {&state.geometries, &state.instances, &state.materials, &state.lights,
                                      &state.lightNodes, &state.emitters, &state.firstEmitters}) {
         store->firstCapacity = store->capacity;

@@ -67,9 +67,7 @@ LightHandle SceneEditor::light(std::uint32_t number) const {
 }
 
 Result<LightHandle> SceneEditor::addLight(const LightView& light) {
-    if (Status status = checkLights(std::span(&light, 1)); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkLights(std::span(&light, 1)));
     const LightHandle handle = state_->lightSlots.add(light);
     state_->lightOrder.push_back(handle);
     state_->lightsDirty = true;
@@ -81,9 +79,7 @@ Status SceneEditor::setLight(LightHandle light, const LightView& view) {
     if (entry == nullptr) {
         return unknownHandle("light");
     }
-    if (Status status = checkLights(std::span(&view, 1)); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkLights(std::span(&view, 1)));
     *entry = view;
     state_->lightsDirty = true;
     return okStatus();

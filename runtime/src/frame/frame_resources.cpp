@@ -116,11 +116,7 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
         if (binding == gpu::kBindingAccumulated) {
             info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // the caller can draw it
         }
-        Result<DeviceImage> image = createImage(context, frame.pool, info);
-        if (!image) {
-            return image.error();
-        }
-        frame.images[binding] = std::move(*image);
+        GLINT_TRY(frame.images[binding], createImage(context, frame.pool, info));
     }
     for (const package::PackageLayer& layer : size.layers) {
         ImageInfo info;
@@ -128,22 +124,15 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
         info.format = vulkanFormat(layer.info->format);
         info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                      VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        Result<DeviceImage> image = createImage(context, frame.pool, info);
-        if (!image) {
-            return image.error();
-        }
-        frame.layers.push_back(std::move(*image));
+        GLINT_TRY(auto image, createImage(context, frame.pool, info));
+        frame.layers.push_back(std::move(image));
     }
     ImageInfo info;
     info.extent = {size.width, size.height};
     info.format = kDepthFormat;
     info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    Result<DeviceImage> depth = createImage(context, frame.pool, info, Tiling::Shared);
-    if (!depth) {
-        return depth.error();
-    }
-    frame.depth = std::move(*depth);
+    GLINT_TRY(frame.depth, createImage(context, frame.pool, info, Tiling::Shared));
     return okStatus();
 }
 
@@ -228,12 +217,8 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         if (entry.bytes == 0) {
             continue;
         }
-        Result<Buffer> buffer = createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use,
-                                             entry.followsDepth() ? &ofDepth : nullptr);
-        if (!buffer) {
-            return buffer.error();
-        }
-        frame.*entry.member = std::move(*buffer);
+        GLINT_TRY(frame.*entry.member, createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use,
+                                                    entry.followsDepth() ? &ofDepth : nullptr));
     }
     return okStatus();
 }
@@ -257,11 +242,7 @@ std::vector<VkDescriptorSetLayoutBinding> setBindings(const Context::State& cont
 }
 
 Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
-    Result<UniqueSetLayout> made = createFrameSetLayout(context, size);
-    if (!made) {
-        return made.error();
-    }
-    frame.setLayout = std::move(*made);
+    GLINT_TRY(frame.setLayout, createFrameSetLayout(context, size));
     const VkDescriptorSetLayout layout = frame.setLayout.get();
     const VkDevice device = context.handles.device;
     std::vector<VkDescriptorPoolSize> poolSizes;
@@ -357,15 +338,9 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
     if (size.hostRays) {
         return createBuffers(context, size, frame);
     }
-    if (Status status = createImages(context, size, frame); !status) {
-        return status;
-    }
-    if (Status status = createBuffers(context, size, frame); !status) {
-        return status;
-    }
-    if (Status status = createSet(context, size, frame); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(createImages(context, size, frame));
+    GLINT_TRY_DO(createBuffers(context, size, frame));
+    GLINT_TRY_DO(createSet(context, size, frame));
     fillSet(context, size, frame);
     return okStatus();
 }
@@ -445,12 +420,7 @@ Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& 
         }
         Buffer made;
         if (wanted.bytes > 0) {
-            Result<Buffer> buffer =
-                createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use);
-            if (!buffer) {
-                return buffer.error();
-            }
-            made = std::move(*buffer);
+            GLINT_TRY(made, createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use));
             ++buffers.made;
         }
         buffers.exchanges.push_back({place, wanted.member, std::move(made)});

@@ -48,27 +48,20 @@ Result<std::unique_ptr<MotionHistory>> MotionHistory::create(const GpuScene::Sta
     std::unique_ptr<MotionHistory> history(new MotionHistory(scene));
     const bool moves = scene.motion != nullptr || scene.editor != nullptr;
     if (moves) {
-        if (Status status = history->makeRoom(); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(history->makeRoom());
     }
     if (scene.motion != nullptr && !scene.deformed.addresses.empty()) {
-        if (Status status = history->createVertices(); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(history->createVertices());
     }
     return history;
 }
 
 Status MotionHistory::makeRoom() {
-    Result<Buffer> buffer = createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage));
     if (instances_.handle.get() != VK_NULL_HANDLE) {
         outgrown_.push_back(std::move(instances_));
     }
-    instances_ = std::move(*buffer);
+    instances_ = std::move(buffer);
     hasInstances_ = false;
     return okStatus();
 }
@@ -103,20 +96,12 @@ Status MotionHistory::createVertices() {
         table.clear();
         return okStatus();
     }
-    Result<Buffer> vertices = createBuffer(scene_->context, pool_, bytes, kHistoryUsage);
-    if (!vertices) {
-        return vertices.error();
-    }
-    vertices_ = std::move(*vertices);
+    GLINT_TRY(vertices_, createBuffer(scene_->context, pool_, bytes, kHistoryUsage));
     for (std::size_t i = 0; i < deformed.size(); ++i) {
         table[deformed[i]].positions = vertices_.address + copies_[copyOf[i]].region.dstOffset;
     }
-    Result<Buffer> uploaded =
-        createBuffer(scene_->context, pool_, table.size() * sizeof(gpu::PreviousVertices), kHistoryUsage);
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    table_ = std::move(*uploaded);
+    GLINT_TRY(table_, createBuffer(scene_->context, pool_, table.size() * sizeof(gpu::PreviousVertices),
+                                   kHistoryUsage));
     return okStatus();
 }
 
@@ -138,9 +123,7 @@ void MotionHistory::recordTable(VkCommandBuffer commands) {
 Status MotionHistory::fill(gpu::FrameConstants& constants) {
     fillView(constants, next_.rows);
     if (instances_.handle.get() != VK_NULL_HANDLE && instances_.bytes < scene_->instances.bytes) {
-        if (Status status = makeRoom(); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(makeRoom());
     }
     std::ranges::copy(view_ ? view_->rows : next_.rows, constants.previousView);
     constants.previousInstances = hasInstances_ ? instances_.address : scene_->instances.address;

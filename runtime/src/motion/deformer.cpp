@@ -109,15 +109,9 @@ Result<std::unique_ptr<Deformer>> Deformer::create(Context::State& context, cons
                          "compile the package from this scene");
     }
     std::unique_ptr<Deformer> deformer(new Deformer(context));
-    if (Status status = deformer->createPipeline(package); !status) {
-        return status.error();
-    }
-    if (Status status = deformer->createPoseBuffers(scene); !status) {
-        return status.error();
-    }
-    if (Status status = deformer->createRecords(scene, primitives, uploader, targetPool, target); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(deformer->createPipeline(package));
+    GLINT_TRY_DO(deformer->createPoseBuffers(scene));
+    GLINT_TRY_DO(deformer->createRecords(scene, primitives, uploader, targetPool, target));
     return deformer;
 }
 
@@ -138,17 +132,9 @@ Result<UniquePipelineLayout> createDeformLayout(Context::State& context) {
 }
 
 Status Deformer::createPipeline(const Package& package) {
-    Result<UniquePipelineLayout> layout = createDeformLayout(*context_);
-    if (!layout) {
-        return layout.error();
-    }
-    layout_ = std::move(*layout);
-    Result<UniquePipeline> pipeline =
-        createComputePipeline(*context_, package.spirv({package::ModuleRole::Deform}), layout_.get());
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    pipeline_ = std::move(*pipeline);
+    GLINT_TRY(layout_, createDeformLayout(*context_));
+    GLINT_TRY(pipeline_,
+              createComputePipeline(*context_, package.spirv({package::ModuleRole::Deform}), layout_.get()));
     return okStatus();
 }
 
@@ -170,17 +156,9 @@ Status Deformer::createPoseBuffers(const SceneView& scene) {
         slots_.push_back(slot);
     }
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-    Result<Buffer> pose = createBuffer(*context_, pool_, bytes + kAlignment, usage);
-    if (!pose) {
-        return pose.error();
-    }
-    pose_ = std::move(*pose);
-    Result<Buffer> staging =
-        createBuffer(*context_, pool_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
-    if (!staging) {
-        return staging.error();
-    }
-    staging_ = std::move(*staging);
+    GLINT_TRY(pose_, createBuffer(*context_, pool_, bytes + kAlignment, usage));
+    GLINT_TRY(staging_,
+              createBuffer(*context_, pool_, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
     std::memset(staging_.mapped, 0, bytes);
     setPose(scene.instances);
     return okStatus();
@@ -195,14 +173,11 @@ Result<Deformer::Source> Deformer::uploadSource(const PrimitiveView& view, Uploa
     const std::vector<float> weights(view.jointWeights.begin(), view.jointWeights.end());
     const VkDeviceSize offsets[] = {packing.add(positions), packing.add(normals), packing.add(tangents),
                                     packing.add(joints), packing.add(weights)};
-    Result<Buffer> buffer =
-        createBuffer(*context_, pool_, packing.bytes().size() + kAlignment,
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer,
+              createBuffer(*context_, pool_, packing.bytes().size() + kAlignment,
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     Source source;
-    const VkDeviceAddress begin = aligned(buffer->address);
+    const VkDeviceAddress begin = aligned(buffer.address);
     source.targetPositions = positions.empty() ? 0 : begin + offsets[0];
     source.targetNormals = normals.empty() ? 0 : begin + offsets[1];
     source.targetTangents = tangents.empty() ? 0 : begin + offsets[2];
@@ -210,11 +185,9 @@ Result<Deformer::Source> Deformer::uploadSource(const PrimitiveView& view, Uploa
     source.jointWeights = begin + offsets[4];
     source.influences = static_cast<std::uint32_t>(joints.size() / view.positions.size());
     if (!packing.bytes().empty()) {
-        if (Status s = uploader.copyToBuffer(packing.bytes(), *buffer, begin - buffer->address); !s) {
-            return s.error();
-        }
+        GLINT_TRY_DO(uploader.copyToBuffer(packing.bytes(), buffer, begin - buffer.address));
     }
-    source.buffer = std::move(*buffer);
+    source.buffer = std::move(buffer);
     return source;
 }
 
@@ -230,21 +203,16 @@ Status Deformer::createRecords(const SceneView& scene, std::span<const GpuPrimit
                 continue;
             }
             if (!sources_.contains(i)) {
-                Result<Source> source = uploadSource(view, uploader);
-                if (!source) {
-                    return source.error();
-                }
-                sources_.emplace(i, std::move(*source));
+                GLINT_TRY(auto source, uploadSource(view, uploader));
+                sources_.emplace(i, std::move(source));
             }
             const Source& source = sources_.at(i);
-            Result<Buffer> buffer =
+            GLINT_TRY(
+                auto buffer,
                 createBuffer(*context_, targetPool, targetBytes(primitives[i]),
                              VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-            if (!buffer) {
-                return buffer.error();
-            }
-            gpu::DeformRecord record = placeTargets(primitives[i], buffer->address);
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+            gpu::DeformRecord record = placeTargets(primitives[i], buffer.address);
             record.targetCount = static_cast<std::uint32_t>(view.targets.size());
             record.influenceCount = instance.joints.empty() ? 0 : source.influences;
             record.flags |= (source.targetPositions != 0 ? gpu::kDeformTargetPositions : 0) |
@@ -260,18 +228,16 @@ Status Deformer::createRecords(const SceneView& scene, std::span<const GpuPrimit
             record.targetWeights = pose + slot.weights;
             target.addresses[{slot.instance, i}] = {record.deformedPositions, record.deformedNormals,
                                                     record.deformedTangents};
-            target.buffers.push_back(std::move(*buffer));
+            target.buffers.push_back(std::move(buffer));
             records.push_back(record);
             dispatches_.push_back({slot.instance, record.vertexCount});
         }
     }
-    Result<Buffer> buffer =
+    GLINT_TRY(
+        auto buffer,
         createBuffer(*context_, pool_, std::max(records.size(), std::size_t{1}) * sizeof(gpu::DeformRecord),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
-    records_ = std::move(*buffer);
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    records_ = std::move(buffer);
     return uploader.copyToBuffer(bytesOf(std::span<const gpu::DeformRecord>(records)), records_);
 }
 

@@ -270,12 +270,8 @@ Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const Moti
     }
     SceneMotion& motion = *state.motion;
     const MotionShape shape{motion.meshes, motion.jointCounts, motion.weightCounts, motion.lightTypes};
-    if (Status s = checkMotion(view, shape); !s) {
-        return s;
-    }
-    if (Status s = takeMaterials(view.materials, state.materialLayout, state.changing); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(checkMotion(view, shape));
+    GLINT_TRY_DO(takeMaterials(view.materials, state.materialLayout, state.changing));
     state.origin = view.origin;
     const bool changed = place(state, view.instances);
     std::vector<bool> deformed =
@@ -299,13 +295,10 @@ Result<MotionStatistics> readMotion(const GpuScene::State& state) {
     }
     MotionStatistics statistics = state.motion->statistics;
     if (state.motion->timer.available()) {
-        Result<std::vector<double>> milliseconds = state.motion->timer.read(kStretches);
-        if (!milliseconds) {
-            return milliseconds.error();
-        }
-        statistics.deformMs = (*milliseconds)[kDeformStretch];
-        statistics.blasMs = (*milliseconds)[kBlasStretch];
-        statistics.tlasMs = (*milliseconds)[kTlasStretch];
+        GLINT_TRY(auto milliseconds, state.motion->timer.read(kStretches));
+        statistics.deformMs = milliseconds[kDeformStretch];
+        statistics.blasMs = milliseconds[kBlasStretch];
+        statistics.tlasMs = milliseconds[kTlasStretch];
     }
     return statistics;
 }

@@ -31,23 +31,16 @@ Result<RefittedBlases> RefittedBlases::create(Context::State& context, MemoryPoo
     VkDeviceSize largest = 0;
     for (const BlasInput& input : inputs) {
         BlasBuild build = describeBuild(context, input);
-        Result<AccelerationStructure> structure = createStructure(
-            context, pool, build.structureBytes, VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
-        if (!structure) {
-            return structure.error();
-        }
-        build.info.dstAccelerationStructure = structure->handle.get();
+        GLINT_TRY(auto structure, createStructure(context, pool, build.structureBytes,
+                                                  VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
+        build.info.dstAccelerationStructure = structure.handle.get();
         all += scratchOf(build);
         largest = std::max(largest, scratchOf(build));
-        blases.structures_.push_back(std::move(*structure));
+        blases.structures_.push_back(std::move(structure));
         blases.builds_.push_back(std::move(build));
     }
     blases.scratchBytes_ = std::max(largest, std::min(all, kScratchBytes));
-    Result<Scratch> scratch = createScratch(context, pool, blases.scratchBytes_);
-    if (!scratch) {
-        return scratch.error();
-    }
-    blases.scratch_ = std::move(*scratch);
+    GLINT_TRY(blases.scratch_, createScratch(context, pool, blases.scratchBytes_));
     return blases;
 }
 

@@ -37,14 +37,10 @@ void rememberScene(SceneMotion& motion, const SceneView& scene) {
 Status createBuffers(GpuScene::State& state, std::size_t lights) {
     SceneMotion& motion = *state.motion;
     const std::size_t placed = std::max(motion.placed.size(), std::size_t{1});
-    Result<Buffer> placedBuffer =
-        createBuffer(state.context, motion.pool, placed * sizeof(VkAccelerationStructureInstanceKHR),
-                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                         VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!placedBuffer) {
-        return placedBuffer.error();
-    }
-    motion.placedBuffer = std::move(*placedBuffer);
+    GLINT_TRY(motion.placedBuffer,
+              createBuffer(state.context, motion.pool, placed * sizeof(VkAccelerationStructureInstanceKHR),
+                           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                               VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     motion.lightOffset = motion.meshes.size() * sizeof(gpu::InstanceRecord);
     motion.lightNodeOffset = motion.lightOffset + lights * sizeof(gpu::LightRecord);
     motion.emitterOffset = motion.lightNodeOffset + state.lightTree.nodes.size() * sizeof(gpu::LightNode);
@@ -55,36 +51,20 @@ Status createBuffers(GpuScene::State& state, std::size_t lights) {
         motion.placedOffset + motion.placed.size() * sizeof(VkAccelerationStructureInstanceKHR);
     const VkDeviceSize bytes =
         motion.materialOffset + state.changing.size() * state.materialLayout.recordBytes;
-    Result<Buffer> staging = createBuffer(state.context, motion.pool, std::max<VkDeviceSize>(bytes, 1),
-                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
-    if (!staging) {
-        return staging.error();
-    }
-    motion.staging = std::move(*staging);
+    GLINT_TRY(motion.staging, createBuffer(state.context, motion.pool, std::max<VkDeviceSize>(bytes, 1),
+                                           VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
     return okStatus();
 }
 
 Status createTlas(GpuScene::State& state) {
     SceneMotion& motion = *state.motion;
     TlasBuild& build = motion.tlasBuild;
-    if (Status s =
-            describeTlas(state.context, motion.placedBuffer.address, motion.placed.size(), true, build);
-        !s) {
-        return s;
-    }
-    Result<AccelerationStructure> tlas =
-        createStructure(state.context, state.pool, build.sizes.accelerationStructureSize,
-                        VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
-    if (!tlas) {
-        return tlas.error();
-    }
-    state.tlas = std::move(*tlas);
-    Result<Scratch> scratch = createScratch(
-        state.context, motion.pool, std::max(build.sizes.buildScratchSize, build.sizes.updateScratchSize));
-    if (!scratch) {
-        return scratch.error();
-    }
-    motion.tlasScratch = std::move(*scratch);
+    GLINT_TRY_DO(describeTlas(state.context, motion.placedBuffer.address, motion.placed.size(), true, build));
+    GLINT_TRY(state.tlas, createStructure(state.context, state.pool, build.sizes.accelerationStructureSize,
+                                          VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR));
+    GLINT_TRY(motion.tlasScratch,
+              createScratch(state.context, motion.pool,
+                            std::max(build.sizes.buildScratchSize, build.sizes.updateScratchSize)));
     build.info.dstAccelerationStructure = state.tlas.handle.get();
     build.info.scratchData.deviceAddress = motion.tlasScratch.address;
     return okStatus();
@@ -113,20 +93,14 @@ void buildAll(GpuScene::State& state, const SceneView& scene, Uploader& uploader
 Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout,
                     std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer,
                     Uploader& uploader) {
-    Result<Timer> timer = Timer::create(state.context, kStretches);
-    if (!timer) {
-        return timer.error();
-    }
-    state.motion = std::make_unique<SceneMotion>(state.context, std::move(*timer));
+    GLINT_TRY(auto timer, Timer::create(state.context, kStretches));
+    state.motion = std::make_unique<SceneMotion>(state.context, std::move(timer));
     SceneMotion& motion = *state.motion;
     motion.deformer = std::move(deformer);
     rememberScene(motion, scene);
     if (!refitted.empty()) {
-        Result<RefittedBlases> blases = RefittedBlases::create(state.context, motion.pool, refitted);
-        if (!blases) {
-            return blases.error();
-        }
-        motion.blases = std::make_unique<RefittedBlases>(std::move(*blases));
+        GLINT_TRY(auto blases, RefittedBlases::create(state.context, motion.pool, refitted));
+        motion.blases = std::make_unique<RefittedBlases>(std::move(blases));
         state.statistics.blasCount += static_cast<std::uint32_t>(refitted.size());
         state.statistics.blasBytes += motion.blases->bytes();
         state.statistics.blasUncompactedBytes += motion.blases->bytes();
@@ -145,12 +119,8 @@ Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneL
     }
     state.draws = layout.draws;
     place(state, scene.instances);
-    if (Status s = createBuffers(state, scene.lights.size()); !s) {
-        return s;
-    }
-    if (Status s = createTlas(state); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(createBuffers(state, scene.lights.size()));
+    GLINT_TRY_DO(createTlas(state));
     buildAll(state, scene, uploader);
     return okStatus();
 }

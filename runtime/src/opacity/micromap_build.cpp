@@ -37,18 +37,13 @@ struct InputBuffer {
 
 Result<InputBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                 std::span<const std::uint8_t> bytes) {
-    Result<Buffer> buffer = createBuffer(
-        context, pool, bytes.size() + kInputAlignment,
-        VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer, createBuffer(context, pool, bytes.size() + kInputAlignment,
+                                        VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
+                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     const VkDeviceAddress aligned =
-        (buffer->address + kInputAlignment - 1) / kInputAlignment * kInputAlignment;
-    if (Status status = uploader.copyToBuffer(bytes, *buffer, aligned - buffer->address); !status) {
-        return status.error();
-    }
-    return InputBuffer{std::move(*buffer), aligned};
+        (buffer.address + kInputAlignment - 1) / kInputAlignment * kInputAlignment;
+    GLINT_TRY_DO(uploader.copyToBuffer(bytes, buffer, aligned - buffer.address));
+    return InputBuffer{std::move(buffer), aligned};
 }
 
 // What the build of one micromap needs until it is done.
@@ -71,21 +66,11 @@ public:
             return status;
         }
         PendingMicromap pending;
-        Result<InputBuffer> data = uploadInput(context_, upload_.pool, uploader, array.data);
-        if (!data) {
-            return data.error();
-        }
-        pending.data = std::move(*data);
-        Result<InputBuffer> records =
-            uploadInput(context_, upload_.pool, uploader, bytesOf(std::span(array.records)));
-        if (!records) {
-            return records.error();
-        }
-        pending.records = std::move(*records);
+        GLINT_TRY(pending.data, uploadInput(context_, upload_.pool, uploader, array.data));
+        GLINT_TRY(pending.records,
+                  uploadInput(context_, upload_.pool, uploader, bytesOf(std::span(array.records))));
         pending.usages = vulkanUsages(array.usages);
-        if (Status status = create(pending, made); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(create(pending, made));
         upload_.keep(std::move(pending.data.buffer));
         upload_.keep(std::move(pending.records.buffer));
         upload_.keep(std::move(pending.scratch.buffer));
@@ -113,14 +98,11 @@ public:
 private:
     Status addIndices(const opacity::MicromapArray& array, Uploader& uploader, DeviceMicromap& made) {
         const std::span<const std::uint8_t> bytes = bytesOf(std::span(array.indices));
-        Result<Buffer> indices = createBuffer(
-            context_, pool_, bytes.size(),
-            VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-        if (!indices) {
-            return indices.error();
-        }
-        made.indices = std::move(*indices);
+        GLINT_TRY(made.indices,
+                  createBuffer(context_, pool_, bytes.size(),
+                               VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                   VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
+                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT));
         made.usages = vulkanUsages(opacity::usagesOf(array));
         made.bytes = bytes.size();
         return uploader.copyToBuffer(bytes, made.indices);
@@ -141,12 +123,8 @@ private:
         sizes.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT;
         context_.vk.GetMicromapBuildSizesEXT(context_.handles.device,
                                              VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &sizes);
-        Result<Buffer> buffer =
-            createBuffer(context_, pool_, sizes.micromapSize, VK_BUFFER_USAGE_MICROMAP_STORAGE_BIT_EXT);
-        if (!buffer) {
-            return buffer.error();
-        }
-        made.buffer = std::move(*buffer);
+        GLINT_TRY(made.buffer, createBuffer(context_, pool_, sizes.micromapSize,
+                                            VK_BUFFER_USAGE_MICROMAP_STORAGE_BIT_EXT));
         made.bytes += sizes.micromapSize;
         VkMicromapCreateInfoEXT creation{};
         creation.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT;
@@ -161,11 +139,7 @@ private:
         }
         made.handle = UniqueMicromap(context_, handle);
         info.dstMicromap = handle;
-        Result<Scratch> scratch = createScratch(context_, upload_.pool, sizes.buildScratchSize);
-        if (!scratch) {
-            return scratch.error();
-        }
-        pending.scratch = std::move(*scratch);
+        GLINT_TRY(pending.scratch, createScratch(context_, upload_.pool, sizes.buildScratchSize));
         info.scratchData.deviceAddress = pending.scratch.address;
         return okStatus();
     }
@@ -190,9 +164,7 @@ Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool
     std::vector<DeviceMicromap> made(arrays.size());
     MicromapBuilder builder(upload, pool);
     for (std::size_t i = 0; i < arrays.size(); ++i) {
-        if (Status status = builder.add(arrays[i], made[i]); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(builder.add(arrays[i], made[i]));
     }
     builder.build();
     return made;

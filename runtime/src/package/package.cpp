@@ -25,23 +25,13 @@ Result<Package> Package::load(std::span<const package::EmbeddedFile> files) {
 }
 
 Result<Package> Package::loadFrom(const PackageFiles& files) {
-    Result<std::vector<std::uint8_t>> bytes =
-        files.read(package::kTablesFile, "package-missing", kMaxTablesBytes);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(auto bytes, files.read(package::kTablesFile, "package-missing", kMaxTablesBytes));
     auto state = std::make_unique<State>();
-    state->tables = std::move(*bytes);
+    state->tables = std::move(bytes);
     const std::string where = files.where(package::kTablesFile);
-    if (Status status = readTables(*state, where); !status) {
-        return status.error();
-    }
-    if (Status status = checkTables(*state, where); !status) {
-        return status.error();
-    }
-    if (Status status = readModules(*state, files); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(readTables(*state, where));
+    GLINT_TRY_DO(checkTables(*state, where));
+    GLINT_TRY_DO(readModules(*state, files));
     return Package(std::move(state));
 }
 

@@ -259,9 +259,7 @@ Status checkPrimitives(const Package::State& state, const package::SceneEntry& s
             return altered(where, "the primitives are not in order");
         }
         previous = &entry;
-        if (Status status = checkPrimitive(state, scene, entry, where); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(checkPrimitive(state, scene, entry, where));
     }
     return okStatus();
 }
@@ -319,9 +317,7 @@ Status checkScenes(const Package::State& state, const std::string& where) {
             return altered(where, "the name of a scene is out of range, or there twice");
         }
         for (const auto check : {checkPrimitives, checkMaterials}) {
-            if (Status status = check(state, scene, where); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(check(state, scene, where));
         }
     }
     return okStatus();
@@ -444,17 +440,13 @@ package::PackageShape shapeOf(const Package::State& state) {
 }
 
 Status checkTables(Package::State& state, const std::string& where) {
-    if (Status status = checkEffects(state, where); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkEffects(state, where));
     for (const package::EffectEntry& entry : state.effectEntries) {
         state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
     }
     for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkOpacity,
                              checkSamplers, checkAttributes, checkFeatures, checkLayers}) {
-        if (Status status = check(state, where); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(check(state, where));
     }
     state.layers = layersOf(state);
     return okStatus();

@@ -39,24 +39,21 @@ bool resolvesInside(const std::filesystem::path& folder, const std::filesystem::
 Result<std::vector<std::uint32_t>> readModule(const PackageFiles& files, const std::string& name,
                                               const package::ModuleEntry& entry) {
     const std::string where = files.where(name);
-    Result<std::vector<std::uint8_t>> bytes = files.read(name, "package-module-missing", entry.bytes);
-    if (!bytes) {
-        return bytes.error();
-    }
-    if (bytes->size() != entry.bytes) {
+    GLINT_TRY(auto bytes, files.read(name, "package-module-missing", entry.bytes));
+    if (bytes.size() != entry.bytes) {
         return makeError("package-module-altered", where,
-                         "the module has " + std::to_string(bytes->size()) + " bytes, the package says " +
+                         "the module has " + std::to_string(bytes.size()) + " bytes, the package says " +
                              std::to_string(entry.bytes),
                          kRecompile);
     }
-    if (XXH3_64bits(bytes->data(), bytes->size()) != entry.hash) {
+    if (XXH3_64bits(bytes.data(), bytes.size()) != entry.hash) {
         return makeError("package-module-altered", where,
                          "the module's contents differ from the package's hash", kRecompile);
     }
-    std::vector<std::uint32_t> words(bytes->size() / sizeof(std::uint32_t));
-    const bool holdsHeader = bytes->size() % sizeof(std::uint32_t) == 0 && bytes->size() >= kSpirvHeaderBytes;
+    std::vector<std::uint32_t> words(bytes.size() / sizeof(std::uint32_t));
+    const bool holdsHeader = bytes.size() % sizeof(std::uint32_t) == 0 && bytes.size() >= kSpirvHeaderBytes;
     if (holdsHeader) {
-        std::memcpy(words.data(), bytes->data(), bytes->size());
+        std::memcpy(words.data(), bytes.data(), bytes.size());
     }
     if (!holdsHeader || words[0] != kSpirvMagic) {
         return makeError("package-module-altered", where, "the module is not SPIR-V", kRecompile);
@@ -141,12 +138,9 @@ Status readModules(Package::State& state, const PackageFiles& files) {
         if (state.spirv.contains(name)) {
             continue;
         }
-        Result<std::vector<std::uint32_t>> words = readModule(files, name, entry);
-        if (!words) {
-            return words.error();
-        }
-        const XXH128_hash_t hash = XXH3_128bits(words->data(), words->size() * sizeof(std::uint32_t));
-        const auto kept = state.spirv.emplace(name, std::move(*words)).first;
+        GLINT_TRY(auto words, readModule(files, name, entry));
+        const XXH128_hash_t hash = XXH3_128bits(words.data(), words.size() * sizeof(std::uint32_t));
+        const auto kept = state.spirv.emplace(name, std::move(words)).first;
         state.hashes[kept->second.data()] = {hash.low64, hash.high64};
     }
     return okStatus();

@@ -143,9 +143,7 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
 }  // namespace
 
 Status readTables(Package::State& state, const std::string& where) {
-    if (Status status = readHeader(state, where); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(readHeader(state, where));
     const std::uint64_t room = state.tables.size() - sizeof(package::PackageHeader);
     if (state.header.sectionCount > room / sizeof(package::PackageSection)) {
         return makeError("package-altered", where, "the section table does not fit the file", kRecompile);
@@ -161,9 +159,7 @@ Status readTables(Package::State& state, const std::string& where) {
                 "section " + std::to_string(static_cast<std::uint32_t>(section.kind)) + " is there twice",
                 kRecompile);
         }
-        if (Status status = readKnownSection(state, section, where); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(readKnownSection(state, section, where));
     }
     // Every package has those up to the effects. Names of features are for messages only.
     constexpr std::size_t kSectionKinds = 10;

@@ -54,18 +54,14 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
 
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout, PipelineCreation& creation) {
-    Result<UniqueShaderModule> module = creation.halfPicture
-                                            ? createShaderModule(context, withHalfImages(words))
-                                            : createShaderModule(context, words);
-    if (!module) {
-        return module.error();
-    }
+    GLINT_TRY(auto module, creation.halfPicture ? createShaderModule(context, withHalfImages(words))
+                                                : createShaderModule(context, words));
     const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, 1);
     VkComputePipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
     info.pNext = &feedback;
     info.flags = creation.flags;
-    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module->get());
+    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
     const VkSpecializationMapEntry entry{0, 0, sizeof(creation.threads)};
     const VkSpecializationInfo specialization{1, &entry, sizeof(creation.threads), &creation.threads};
     if (creation.threads > 0) {

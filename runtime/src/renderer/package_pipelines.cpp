@@ -72,11 +72,8 @@ Result<Layout> joinSets(Context::State& context, std::vector<UniqueSetLayout> se
     for (const UniqueSetLayout& set : sets) {
         handles.push_back(set.get());
     }
-    Result<UniquePipelineLayout> pipeline = createPipelineLayout(context, handles, pushBytes);
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    return Layout{std::move(sets), std::move(*pipeline)};
+    GLINT_TRY(auto pipeline, createPipelineLayout(context, handles, pushBytes));
+    return Layout{std::move(sets), std::move(pipeline)};
 }
 
 // The layout of a Renderer with the package's first scene.
@@ -85,17 +82,10 @@ Result<Layout> frameLayout(Context::State& context, const Package& package, cons
     const SceneSetSize counts{std::max(static_cast<std::uint32_t>(scene.textures.size()), 1U),
                               std::max(static_cast<std::uint32_t>(scene.samplers.size()), 1U)};
     std::vector<UniqueSetLayout> sets;
-    Result<UniqueSetLayout> ofScene = createSceneSetLayout(context, counts);
-    if (!ofScene) {
-        return ofScene.error();
-    }
-    sets.push_back(std::move(*ofScene));
-    Result<UniqueSetLayout> ofFrame =
-        createFrameSetLayout(context, frameSize(package, choice, {}, counts.textures));
-    if (!ofFrame) {
-        return ofFrame.error();
-    }
-    sets.push_back(std::move(*ofFrame));
+    GLINT_TRY(auto ofScene, createSceneSetLayout(context, counts));
+    sets.push_back(std::move(ofScene));
+    GLINT_TRY(auto ofFrame, createFrameSetLayout(context, frameSize(package, choice, {}, counts.textures)));
+    sets.push_back(std::move(ofFrame));
     return joinSets(context, std::move(sets), sizeof(gpu::PushConstants));
 }
 
@@ -214,11 +204,8 @@ Result<Layout> hostLayout(Context::State& context, const Package& package) {
     const std::uint32_t count = descriptors.empty() ? 0 : descriptors.rbegin()->first + 1;
     std::vector<UniqueSetLayout> sets;
     for (std::uint32_t set = 0; set < count; ++set) {
-        Result<UniqueSetLayout> layout = hostSetLayout(context, descriptors[set]);
-        if (!layout) {
-            return layout.error();
-        }
-        sets.push_back(std::move(*layout));
+        GLINT_TRY(auto layout, hostSetLayout(context, descriptors[set]));
+        sets.push_back(std::move(layout));
     }
     return joinSets(context, std::move(sets), package.bindings().pushOffset + sizeof(gpu::PushConstants));
 }
@@ -286,28 +273,19 @@ void planDeform(Context::State& context, const Package& package, VkPipelineLayou
 Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, const Package& package,
                                                           std::uint32_t threads) {
     Context::State& state = context.state();
-    Result<std::vector<PipelineChoice>> choices = allChoices(state, package);
-    if (!choices) {
-        return choices.error();
-    }
-    Result<Layout> layout = package.passes() == package::Passes::Frame
-                                ? frameLayout(state, package, choices->front())
-                                : hostLayout(state, package);
-    if (!layout) {
-        return layout.error();
-    }
-    Result<UniquePipelineLayout> deformLayout = createDeformLayout(state);
-    if (!deformLayout) {
-        return deformLayout.error();
-    }
+    GLINT_TRY(auto choices, allChoices(state, package));
+    GLINT_TRY(auto layout, package.passes() == package::Passes::Frame
+                               ? frameLayout(state, package, choices.front())
+                               : hostLayout(state, package));
+    GLINT_TRY(auto deformLayout, createDeformLayout(state));
     Planned all;
-    for (const PipelineChoice& choice : *choices) {
+    for (const PipelineChoice& choice : choices) {
         for (const PlannedPipeline& planned :
-             planPipelines(state, package, choice, {}, layout->pipeline.get())) {
+             planPipelines(state, package, choice, {}, layout.pipeline.get())) {
             all.add(package, planned, choice.strategy);
         }
     }
-    planDeform(state, package, deformLayout->get(), all);
+    planDeform(state, package, deformLayout.get(), all);
 
     const bool captures = state.handles.pipelineStatistics;
     const std::vector<Result<MadePipeline>> made =
@@ -323,11 +301,7 @@ Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, cons
         if (!captures) {
             continue;
         }
-        Result<std::vector<PipelineExecutable>> executables = readExecutables(state, made[i]->handle->get());
-        if (!executables) {
-            return executables.error();
-        }
-        pipeline.statistics.executables = std::move(*executables);
+        GLINT_TRY(pipeline.statistics.executables, readExecutables(state, made[i]->handle->get()));
     }
     return std::move(all.pipelines);
 }

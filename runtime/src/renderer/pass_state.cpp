@@ -9,14 +9,11 @@ Result<std::vector<PassTiming>> passTimings(PassState& state) {
         return frameNotRecorded();
     }
     const auto count = static_cast<std::uint32_t>(state.timed.size());
-    Result<std::vector<double>> milliseconds = state.timer.read(count);
-    if (!milliseconds) {
-        return milliseconds.error();
-    }
+    GLINT_TRY(auto milliseconds, state.timer.read(count));
     std::vector<PassTiming> timings;
     for (std::uint32_t i = 0; i < count; ++i) {
         const PassLabel& label = state.timed[i];
-        timings.push_back({label.name, (*milliseconds)[i], label.pass, label.shaderId});
+        timings.push_back({label.name, milliseconds[i], label.pass, label.shaderId});
     }
     return timings;
 }

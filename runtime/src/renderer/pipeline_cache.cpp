@@ -127,16 +127,13 @@ Result<std::vector<std::uint8_t>> Context::pipelineCacheData() const {
 }
 
 Status Context::addPipelineCache(std::span<const std::uint8_t> data) {
-    const Result<std::span<const std::uint8_t>> known = unwrapPipelineCache(state_->limits.cacheOwner, data);
-    if (!known) {
-        return known.error();
-    }
+    GLINT_TRY(const auto known, unwrapPipelineCache(state_->limits.cacheOwner, data));
     const DeviceTable& vk = state_->vk;
     const VkDevice device = state_->handles.device;
     VkPipelineCacheCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
-    info.initialDataSize = known->size();
-    info.pInitialData = known->data();
+    info.initialDataSize = known.size();
+    info.pInitialData = known.data();
     VkPipelineCache added = VK_NULL_HANDLE;
     VkResult result = vk.CreatePipelineCache(device, &info, nullptr, &added);
     if (result != VK_SUCCESS) {

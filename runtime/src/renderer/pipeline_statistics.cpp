@@ -143,13 +143,9 @@ Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const {
     }
     std::vector<PipelineStatistics> list;
     for (const MadePipeline& pipeline : state_->pipelines.owned) {
-        Result<std::vector<PipelineExecutable>> executables =
-            readExecutables(state_->context, pipeline.handle->get());
-        if (!executables) {
-            return executables.error();
-        }
+        GLINT_TRY(auto executables, readExecutables(state_->context, pipeline.handle->get()));
         list.push_back(describe(pipeline));
-        list.back().executables = std::move(*executables);
+        list.back().executables = std::move(executables);
     }
     return list;
 }

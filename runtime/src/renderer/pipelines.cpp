@@ -28,14 +28,10 @@ Status createLayout(Context::State& context, const LayoutSource& source, Pipelin
         pipelines.pushStages = source.givenPushStages;
         return okStatus();
     }
-    Result<UniquePipelineLayout> layout =
-        createPipelineLayout(context, source.sets, sizeof(gpu::PushConstants));
-    if (!layout) {
-        return layout.error();
-    }
+    GLINT_TRY(auto layout, createPipelineLayout(context, source.sets, sizeof(gpu::PushConstants)));
     pipelines.pushStages = pushStages(context);
-    pipelines.layout = layout->get();
-    pipelines.ownLayout = std::make_shared<const UniquePipelineLayout>(std::move(*layout));
+    pipelines.layout = layout.get();
+    pipelines.ownLayout = std::make_shared<const UniquePipelineLayout>(std::move(layout));
     return okStatus();
 }
 
@@ -43,18 +39,10 @@ Status createLayout(Context::State& context, const LayoutSource& source, Pipelin
 // face.
 Result<UniquePipeline> createGBuffer(Context::State& context, const Package& package, VkPipelineLayout layout,
                                      PipelineCreation& creation) {
-    Result<UniqueShaderModule> vertex =
-        createShaderModule(context, package.spirv({ModuleRole::GBufferVertex}));
-    if (!vertex) {
-        return vertex.error();
-    }
-    Result<UniqueShaderModule> fragment =
-        createShaderModule(context, package.spirv({ModuleRole::GBufferFragment}));
-    if (!fragment) {
-        return fragment.error();
-    }
-    const std::array stages{stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex->get()),
-                            stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment->get())};
+    GLINT_TRY(auto vertex, createShaderModule(context, package.spirv({ModuleRole::GBufferVertex})));
+    GLINT_TRY(auto fragment, createShaderModule(context, package.spirv({ModuleRole::GBufferFragment})));
+    const std::array stages{stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex.get()),
+                            stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
     VkPipelineVertexInputStateCreateInfo vertexInput{};
     vertexInput.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
     VkPipelineInputAssemblyStateCreateInfo assembly{};
@@ -367,13 +355,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& source) {
     const auto start = std::chrono::steady_clock::now();
-    if (Status status = checkFeatures(context, package, choice); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkFeatures(context, package, choice));
     Pipelines pipelines(context);
-    if (Status status = createLayout(context, source, pipelines); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(createLayout(context, source, pipelines));
     std::vector<PlannedPipeline> plan = planPipelines(context, package, choice, shaderIds, pipelines.layout);
     const auto later = std::stable_partition(plan.begin(), plan.end(), [](const PlannedPipeline& planned) {
         return planned.turn == PipelineTurn::First;
@@ -390,17 +374,12 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     pipelines.captureStatistics = making.captureStatistics;
     const VkPipelineCreateFlags flags =
         making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
-    Result<std::vector<MadePipeline>> made = makePipelines(jobs, flags, pipelines.threads);
-    if (!made) {
-        return made.error();
-    }
+    GLINT_TRY(auto made, makePipelines(jobs, flags, pipelines.threads));
     if (package::infoOf(choice.strategy).dispatchesCases) {
         pipelines.cases.resize(package.caseCount());
     }
     for (std::size_t i = 0; i < plan.size(); ++i) {
-        if (Status status = addPipeline(context, plan[i], std::move((*made)[i]), pipelines); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(addPipeline(context, plan[i], std::move(made[i]), pipelines));
     }
     pipelines.draft = choice.draft;
     pipelines.drafted = &package;
@@ -426,9 +405,7 @@ namespace {
 Status endDraft(Context::State& context, Pipelines& pipelines) {
     for (BackgroundPipelines::Done& done : pipelines.background->takeFixed()) {
         pipelines.draft = false;
-        if (Status status = addPipeline(context, done.planned, std::move(done.made), pipelines); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(addPipeline(context, done.planned, std::move(done.made), pipelines));
     }
     if (!pipelines.draft) {
         addFallback(*pipelines.drafted, pipelines.choice, pipelines);
@@ -444,18 +421,14 @@ Status adoptPipelines(Context::State& context, Pipelines& pipelines) {
     }
     std::size_t most = pipelines.adoptedAtOnce;
     if (pipelines.draft && most > 0) {
-        if (Status status = endDraft(context, pipelines); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(endDraft(context, pipelines));
         --most;
     }
     if (pipelines.draft) {
         return okStatus();
     }
     for (BackgroundPipelines::Done& done : pipelines.background->take(most)) {
-        if (Status status = addPipeline(context, done.planned, std::move(done.made), pipelines); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(addPipeline(context, done.planned, std::move(done.made), pipelines));
     }
     return okStatus();
 }

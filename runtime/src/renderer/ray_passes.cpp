@@ -182,11 +182,8 @@ std::size_t wordCount(const RayPipelineSource& source) {
 }
 
 Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines) {
-    Result<ShaderBindingTable> table = createTable(context, pipelines.pool, pipeline, pass.source);
-    if (!table) {
-        return table.error();
-    }
-    const PassPipeline made{pipeline, true, table->rayGeneration, table->miss, table->hit};
+    GLINT_TRY(auto table, createTable(context, pipelines.pool, pipeline, pass.source));
+    const PassPipeline made{pipeline, true, table.rayGeneration, table.miss, table.hit};
     if (package::findRole(pass.key.role)->over == package::Over::Buckets) {
         for (const std::uint32_t shaderId : pass.shaderIds) {
             pipelines.cases[shaderId] = made;
@@ -194,7 +191,7 @@ Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipel
     } else {
         pipelines.add(pass.key, made);
     }
-    pipelines.tables.push_back(std::move(table->buffer));
+    pipelines.tables.push_back(std::move(table.buffer));
     return okStatus();
 }
 

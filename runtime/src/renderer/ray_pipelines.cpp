@@ -21,12 +21,9 @@ struct Parts {
 // Returns the index of the new stage.
 Result<std::uint32_t> addStage(Context::State& context, VkShaderStageFlagBits stage, SpirvWords words,
                                Parts& parts) {
-    Result<UniqueShaderModule> module = createShaderModule(context, words);
-    if (!module) {
-        return module.error();
-    }
-    parts.stages.push_back(stageOf(stage, module->get()));
-    parts.modules.push_back(std::move(*module));
+    GLINT_TRY(auto module, createShaderModule(context, words));
+    parts.stages.push_back(stageOf(stage, module.get()));
+    parts.modules.push_back(std::move(module));
     return static_cast<std::uint32_t>(parts.stages.size() - 1);
 }
 
@@ -44,12 +41,9 @@ VkRayTracingShaderGroupCreateInfoKHR emptyGroup(VkRayTracingShaderGroupTypeKHR t
 Status addGeneral(Context::State& context, VkShaderStageFlagBits stage, std::span<const SpirvWords> shaders,
                   Parts& parts) {
     for (const SpirvWords words : shaders) {
-        Result<std::uint32_t> index = addStage(context, stage, words, parts);
-        if (!index) {
-            return index.error();
-        }
+        GLINT_TRY(auto index, addStage(context, stage, words, parts));
         VkRayTracingShaderGroupCreateInfoKHR group = emptyGroup(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR);
-        group.generalShader = *index;
+        group.generalShader = index;
         parts.groups.push_back(group);
     }
     return okStatus();
@@ -58,21 +52,13 @@ Status addGeneral(Context::State& context, VkShaderStageFlagBits stage, std::spa
 Status addHitGroups(Context::State& context, const RayPipelineSource& source, Parts& parts) {
     std::uint32_t anyHit = VK_SHADER_UNUSED_KHR;
     if (!source.anyHit.empty()) {
-        Result<std::uint32_t> index =
-            addStage(context, VK_SHADER_STAGE_ANY_HIT_BIT_KHR, source.anyHit, parts);
-        if (!index) {
-            return index.error();
-        }
-        anyHit = *index;
+        GLINT_TRY(anyHit, addStage(context, VK_SHADER_STAGE_ANY_HIT_BIT_KHR, source.anyHit, parts));
     }
     for (const SpirvWords words : source.closestHit) {
-        Result<std::uint32_t> index = addStage(context, VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, words, parts);
-        if (!index) {
-            return index.error();
-        }
+        GLINT_TRY(auto index, addStage(context, VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, words, parts));
         VkRayTracingShaderGroupCreateInfoKHR group =
             emptyGroup(VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR);
-        group.closestHitShader = *index;
+        group.closestHitShader = index;
         group.anyHitShader = anyHit;
         parts.groups.push_back(group);
     }
@@ -88,17 +74,9 @@ Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source
         withHalf = withHalfImages(rayGeneration);
         rayGeneration = withHalf;
     }
-    if (Status status =
-            addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, std::span(&rayGeneration, 1), parts);
-        !status) {
-        return status.error();
-    }
-    if (Status status = addGeneral(context, VK_SHADER_STAGE_MISS_BIT_KHR, source.miss, parts); !status) {
-        return status.error();
-    }
-    if (Status status = addHitGroups(context, source, parts); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, std::span(&rayGeneration, 1), parts));
+    GLINT_TRY_DO(addGeneral(context, VK_SHADER_STAGE_MISS_BIT_KHR, source.miss, parts));
+    GLINT_TRY_DO(addHitGroups(context, source, parts));
     return parts;
 }
 
@@ -160,11 +138,8 @@ Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeli
 
 Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
                                          const RayPipelineSource& source, PipelineCreation& creation) {
-    Result<Parts> parts = makeParts(context, source, creation.halfPicture);
-    if (!parts) {
-        return parts.error();
-    }
-    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts->stages.size());
+    GLINT_TRY(auto parts, makeParts(context, source, creation.halfPicture));
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts.stages.size());
     VkRayTracingPipelineCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
     info.pNext = &feedback;
@@ -173,10 +148,10 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
         creation.flags | (context.handles.opacityMicromaps
                               ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
                               : 0U);
-    info.stageCount = static_cast<std::uint32_t>(parts->stages.size());
-    info.pStages = parts->stages.data();
-    info.groupCount = static_cast<std::uint32_t>(parts->groups.size());
-    info.pGroups = parts->groups.data();
+    info.stageCount = static_cast<std::uint32_t>(parts.stages.size());
+    info.pStages = parts.stages.data();
+    info.groupCount = static_cast<std::uint32_t>(parts.groups.size());
+    info.pGroups = parts.groups.data();
     info.maxPipelineRayRecursionDepth = 1;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
@@ -191,22 +166,16 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
                                        const RayPipelineSource& source) {
     const std::size_t groupCount = 1 + source.miss.size() + source.closestHit.size();
-    Result<std::vector<std::uint8_t>> handles = groupHandles(context, pipeline, groupCount);
-    if (!handles) {
-        return handles.error();
-    }
+    GLINT_TRY(auto handles, groupHandles(context, pipeline, groupCount));
     const TableLayout layout = layOutTable(context, source);
     const VkDeviceSize alignment = context.limits.rayPipeline.shaderGroupBaseAlignment;
     // Vulkan does not guarantee this alignment for the buffer itself.
-    Result<Buffer> buffer = createBuffer(context, pool, layout.bytes + alignment,
-                                         VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, MemoryUse::Shared);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer, createBuffer(context, pool, layout.bytes + alignment,
+                                        VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, MemoryUse::Shared));
     ShaderBindingTable table;
-    table.buffer = std::move(*buffer);
+    table.buffer = std::move(buffer);
     const VkDeviceAddress start = alignUp(table.buffer.address, alignment);
-    const std::vector<std::uint8_t> bytes = fillTable(source, layout, *handles);
+    const std::vector<std::uint8_t> bytes = fillTable(source, layout, handles);
     std::memcpy(table.buffer.mapped + (start - table.buffer.address), bytes.data(), bytes.size());
     table.rayGeneration = {start, layout.missOffset, layout.missOffset};
     table.miss = {start + layout.missOffset, layout.stride, layout.stride * source.miss.size()};

@@ -36,9 +36,7 @@ Status checkFrame(const FrameOptions& frame, const RendererOptions& made) {
                          "screenSteps is asked of a renderer that was made without the march in screen space",
                          "set RendererOptions::screenMarch, or use 0 for screenSteps");
     }
-    if (Status status = checkCamera(frame.camera); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkCamera(frame.camera));
     if (!std::isfinite(frame.maxReflectionRoughness) || !std::isfinite(frame.mirrorRoughness)) {
         return makeError("frame-options", "", "a limit of roughness is not finite", "use 0 to 1");
     }
@@ -158,49 +156,31 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
         return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
                          "compile it with --passes frame, or use RaySteps");
     }
-    Result<PipelineChoice> choice = choosePipelines(contextState, package, options);
-    if (!choice) {
-        return choice.error();
-    }
+    GLINT_TRY(auto choice, choosePipelines(contextState, package, options));
     if (options.pipelineStatistics && !contextState.handles.pipelineStatistics) {
         return makeError("pipeline-statistics", "", "the device was created without statistics of pipelines",
                          "create it with DeviceRequirements for them, where it has them");
     }
-    const FrameSize size = frameSize(package, *choice, options, textureCapacity(scene.state()));
-    if (Status status = checkFrameSize(contextState, size); !status) {
-        return status.error();
-    }
+    const FrameSize size = frameSize(package, choice, options, textureCapacity(scene.state()));
+    GLINT_TRY_DO(checkFrameSize(contextState, size));
     const std::uint32_t stretches = timerCapacity(package, size);
-    Result<Timer> timer = Timer::create(contextState, stretches);
-    if (!timer) {
-        return timer.error();
-    }
-    auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
-    state->choice = *choice;
+    GLINT_TRY(auto timer, Timer::create(contextState, stretches));
+    auto state = std::make_unique<State>(contextState, scene.state(), std::move(timer));
+    state->choice = choice;
     state->size = size;
     state->options = options;
     state->timerCapacity = stretches;
     state->scenePackage = state->scene.package.number;
     state->effects = effectsOf(package);
     state->caseNames = caseNamesOf(package);
-    if (Status status = createFrameResources(contextState, size, state->frame); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(createFrameResources(contextState, size, state->frame));
     if ((package::demandsOf(size.layers) & package::kLayerHistory) != 0) {
-        Result<std::unique_ptr<MotionHistory>> history = MotionHistory::create(state->scene);
-        if (!history) {
-            return history.error();
-        }
-        state->history = std::move(*history);
+        GLINT_TRY(state->history, MotionHistory::create(state->scene));
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
-    Result<Pipelines> pipelines =
-        createPipelines(contextState, package, *choice, {options.pipelineThreads, options.pipelineStatistics},
-                        state->scene.shaderIds, {layouts});
-    if (!pipelines) {
-        return pipelines.error();
-    }
-    state->pipelines = std::move(*pipelines);
+    GLINT_TRY(state->pipelines, createPipelines(contextState, package, choice,
+                                                {options.pipelineThreads, options.pipelineStatistics},
+                                                state->scene.shaderIds, {layouts}));
     return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
 }
 
@@ -208,12 +188,8 @@ Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Renderer::~Renderer() = default;
 
 Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
-    if (Status status = checkFrame(frame, state_->options); !status) {
-        return status;
-    }
-    if (Status status = checkOutside(state_->size, outsideOf(frame)); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkFrame(frame, state_->options));
+    GLINT_TRY_DO(checkOutside(state_->size, outsideOf(frame)));
     if (state_->scenePackage != state_->scene.package.number) {
         return makeError(
             "package-replaced", "",
@@ -227,9 +203,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     }
     if (state_->pipelines.background) {
         orderByHits(*state_);
-        if (Status status = adoptPipelines(state_->context, state_->pipelines); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
     }
     if (state_->next) {
         switchPackage(*state_, commands);
@@ -237,9 +211,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     beginPicture(*state_, frame.sampleIndex);
     gpu::FrameConstants constants = makeConstants(*state_, frame);
     if (state_->history != nullptr) {
-        if (Status status = state_->history->fill(constants); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(state_->history->fill(constants));
     }
     prepareImages(state_->context, commands, state_->frame);
     recordFrame(*state_, commands, frame, constants);
@@ -307,20 +279,11 @@ Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample
     const Timing asked = sample.timing;
     for (sample.sampleIndex = 0; sample.sampleIndex < sampleCount; ++sample.sampleIndex) {
         sample.timing = sample.sampleIndex + 1 == sampleCount ? asked : Timing::Frame;
-        Result<VkCommandBuffer> commands = runner.begin();
-        if (!commands) {
-            return commands.error();
-        }
-        if (Status status = renderer.record(*commands, sample); !status) {
-            return status;
-        }
-        if (Status status = runner.submitAndWait(); !status) {
-            return status;
-        }
+        GLINT_TRY(auto commands, runner.begin());
+        GLINT_TRY_DO(renderer.record(commands, sample));
+        GLINT_TRY_DO(runner.submitAndWait());
         renderer.finished(renderer.recordings());
-        if (Status status = afterSample ? afterSample() : okStatus(); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(afterSample ? afterSample() : okStatus());
     }
     return okStatus();
 }
@@ -329,18 +292,10 @@ Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample
 
 Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount,
                                      const std::function<Status()>& afterSample) {
-    Result<CommandRunner> runner = CommandRunner::create(state_->context);
-    if (!runner) {
-        return runner.error();
-    }
-    if (Status status = runSamples(*this, *runner, frame, sampleCount, afterSample); !status) {
-        return status.error();
-    }
-    auto pixels = readFrameImage(*state_, *runner, gpu::kBindingAccumulated);
-    if (!pixels) {
-        return pixels.error();
-    }
-    return LinearImage{state_->size.width, state_->size.height, std::move(*pixels)};
+    GLINT_TRY(auto runner, CommandRunner::create(state_->context));
+    GLINT_TRY_DO(runSamples(*this, runner, frame, sampleCount, afterSample));
+    GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
+    return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
 }
 
 Status Renderer::renderSamples(const FrameOptions& frame, std::uint32_t sampleCount,

@@ -106,15 +106,12 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
         return makeError("package-strategy", "", modulesFor(options.strategy),
                          "compile the package with that --strategy, or render with the one that it has");
     }
-    Result<package::Tracer> tracer = chooseTracer(context, package, options);
-    if (!tracer) {
-        return tracer.error();
-    }
+    GLINT_TRY(auto tracer, chooseTracer(context, package, options));
     const std::uint32_t demands = package::demandsOf(package.layers());
-    if ((demands & package::kLayerQueries) != 0 && *tracer != package::kTracerRayQuery) {
+    if ((demands & package::kLayerQueries) != 0 && tracer != package::kTracerRayQuery) {
         return makeError("package-tracer", "",
                          "the package's layer candidates counts what ray queries test, and the tracer is " +
-                             std::string(nameOf(*tracer)),
+                             std::string(nameOf(tracer)),
                          "use the tracer ray-query, with a strategy that has it, or leave out the layer");
     }
     if ((demands & package::kLayerClock) != 0 && !context.handles.shaderClock) {
@@ -146,7 +143,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.showsEdit = options.draft && package.shape().early;
     choice.bounces = options.bounces;
     choice.strategy = options.strategy;
-    choice.tracer = *tracer;
+    choice.tracer = tracer;
     choice.ordering = options.ordering.value_or(orderingFor(context.limits, package.bucketCount()));
     choice.checksOrder = options.checkOrder;
     choice.batchEffects = options.batchEffects;
@@ -154,9 +151,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     // Bands cost a GPU with memory of its own a fifth of its time and more (docs/memory.md).
     const bool isDiscrete = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     choice.bands = options.bands == 0 && isDiscrete ? 1 : options.bands;
-    if (Status status = checkOrdering(context.limits, choice.ordering, package.bucketCount()); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkOrdering(context.limits, choice.ordering, package.bucketCount()));
     return choice;
 }
 

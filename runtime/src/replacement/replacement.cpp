@@ -60,13 +60,9 @@ Status makeNow(std::vector<PlannedPipeline> missing, const PipelineMaking& makin
     for (const PlannedPipeline& planned : missing) {
         jobs.push_back(planned.job);
     }
-    Result<std::vector<MadePipeline>> made =
-        makePipelines(jobs, flags, pipelineThreads(making.threads, jobs.size()));
-    if (!made) {
-        return made.error();
-    }
+    GLINT_TRY(auto made, makePipelines(jobs, flags, pipelineThreads(making.threads, jobs.size())));
     for (std::size_t i = 0; i < missing.size(); ++i) {
-        next.ready.push_back({std::move(missing[i]), std::move((*made)[i])});
+        next.ready.push_back({std::move(missing[i]), std::move(made[i])});
     }
     return okStatus();
 }
@@ -130,21 +126,13 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::share
         return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
                          "compile it with --passes frame");
     }
-    const Result<PipelineChoice> choice = choosePipelines(state.context, *package, state.options);
-    if (!choice) {
-        return choice.error();
-    }
-    const Result<std::uint32_t> scene = findScene(state.scene, *package);
-    if (!scene) {
-        return scene.error();
-    }
+    GLINT_TRY(const auto choice, choosePipelines(state.context, *package, state.options));
+    GLINT_TRY(const auto scene, findScene(state.scene, *package));
     auto next = std::make_unique<NextPackage>(state.context);
-    next->choice = *choice;
-    next->scene = *scene;
-    next->size = frameSize(*package, *choice, state.options, textureCapacity(state.scene));
-    if (Status status = checkFrameSize(state.context, next->size); !status) {
-        return status.error();
-    }
+    next->choice = choice;
+    next->scene = scene;
+    next->size = frameSize(*package, choice, state.options, textureCapacity(state.scene));
+    GLINT_TRY_DO(checkFrameSize(state.context, next->size));
     if (!haveSameImages(state.size, next->size)) {
         return makeError(
             "package-frame", "",
@@ -155,22 +143,13 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::share
     next->package = std::move(package);
     const std::uint32_t stretches = timerCapacity(*next->package, next->size);
     if (stretches > state.timerCapacity) {
-        Result<Timer> timer = Timer::create(state.context, stretches);
-        if (!timer) {
-            return timer.error();
-        }
-        next->timer.emplace(std::move(*timer));
+        GLINT_TRY(auto timer, Timer::create(state.context, stretches));
+        next->timer.emplace(std::move(timer));
     }
-    Result<NextBuffers> buffers = createNextBuffers(state.context, state.size, next->size);
-    if (!buffers) {
-        return buffers.error();
-    }
-    next->buffers = std::move(*buffers);
+    GLINT_TRY(next->buffers, createNextBuffers(state.context, state.size, next->size));
     result.buffersKept = next->buffers.kept;
     result.buffersMade = next->buffers.made;
-    if (Status status = makePipelinesOf(state, *next, result); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(makePipelinesOf(state, *next, result));
     return next;
 }
 
@@ -198,9 +177,7 @@ Status joinPasses(Renderer::State& state, NextPackage& next) {
     }
     collect(next);
     for (const Done& done : next.ready) {
-        if (Status status = addPipeline(state.context, done.planned, done.made, next.pipelines); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(addPipeline(state.context, done.planned, done.made, next.pipelines));
     }
     next.ready.clear();
     return okStatus();
@@ -259,18 +236,13 @@ void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_pt
 Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_ptr<const Package> package) {
     PackageReplacement result;
     if (state.pipelines.background) {
-        if (Status status = adoptPipelines(state.context, state.pipelines); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(adoptPipelines(state.context, state.pipelines));
     }
-    Result<std::unique_ptr<NextPackage>> next = makeNext(state, std::move(package), result);
-    if (!next) {
-        return next.error();
-    }
+    GLINT_TRY(auto next, makeNext(state, std::move(package), result));
     giveUp(state);
     // The threads make the pipelines of the new package instead.
     pauseBackground(state, true);
-    state.next = std::move(*next);
+    state.next = std::move(next);
     state.replacementError.reset();
     return result;
 }

@@ -184,11 +184,7 @@ Result<Changes> changesOf(const GpuScene::State& scene, const PackageScene& know
     for (const ChangingMaterial& material : hostMaterialsOf(scene)) {
         views.push_back({material.material, material.record});
     }
-    Result<std::vector<ChangingMaterial>> host = replaceMaterials(views, known.materials, changes.materials);
-    if (!host) {
-        return host.error();
-    }
-    changes.hostMaterials = std::move(*host);
+    GLINT_TRY(changes.hostMaterials, replaceMaterials(views, known.materials, changes.materials));
     for (std::size_t i = 0; i < now.entryOf.size(); ++i) {
         const auto key = keyOf(known.primitives[now.entryOf[i]]);
         if (key == keyOf(now.entries[now.entryOf[i]])) {
@@ -269,15 +265,9 @@ Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& pac
     if (attributesOf(package) != now.attributes) {
         return otherScene(now.scene, "the package's packs read other attributes of vertices");
     }
-    if (Status status = checkPrimitives(scene, package, known); !status) {
-        return status.error();
-    }
-    if (Status status = checkEmission(now, package, known); !status) {
-        return status.error();
-    }
-    if (Status status = checkDecided(scene, package, known); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkPrimitives(scene, package, known));
+    GLINT_TRY_DO(checkEmission(now, package, known));
+    GLINT_TRY_DO(checkDecided(scene, package, known));
     for (const ChangingMaterial& material : hostMaterialsOf(scene)) {
         if (material.material >= known.materials.size() ||
             material.record.size() != known.materials.recordBytes) {
@@ -299,51 +289,42 @@ std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const Packa
 Result<SceneLeftovers> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
                                          VkCommandBuffer commands) {
     const PackageScene known = package.scene(index);
-    Result<Changes> changes = changesOf(scene, known);
-    if (!changes) {
-        return changes.error();
-    }
+    GLINT_TRY(auto changes, changesOf(scene, known));
     SceneLeftovers leftovers;
     const auto staged = std::make_shared<MemoryPool>(scene.context);
     leftovers.pools.push_back(staged);
-    const VkDeviceSize materialBytes = changes->materials.size();
-    Result<Buffer> staging = createBuffer(scene.context, *staged, materialBytes + changes->keys.size(),
-                                          VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload);
-    if (!staging) {
-        return staging.error();
-    }
-    std::memcpy(staging->mapped, changes->materials.data(), materialBytes);
-    std::memcpy(staging->mapped + materialBytes, changes->keys.data(), changes->keys.size());
+    const VkDeviceSize materialBytes = changes.materials.size();
+    GLINT_TRY(auto staging, createBuffer(scene.context, *staged, materialBytes + changes.keys.size(),
+                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
+    std::memcpy(staging.mapped, changes.materials.data(), materialBytes);
+    std::memcpy(staging.mapped + materialBytes, changes.keys.data(), changes.keys.size());
     if (scene.materials.bytes != std::max<VkDeviceSize>(materialBytes, 1)) {
         auto pool = std::make_shared<MemoryPool>(scene.context);
-        Result<Buffer> materials =
-            createBuffer(scene.context, *pool, materialBytes,
-                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-        if (!materials) {
-            return materials.error();
-        }
-        leftovers.buffers.push_back(std::exchange(scene.materials, std::move(*materials)));
+        GLINT_TRY(auto materials,
+                  createBuffer(scene.context, *pool, materialBytes,
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+        leftovers.buffers.push_back(std::exchange(scene.materials, std::move(materials)));
         leftovers.pools.push_back(std::exchange(scene.package.pool, std::move(pool)));
     }
     const DeviceTable& vk = scene.context.vk;
     recordDependency(scene.context, commands, kAllToAll);
     if (materialBytes > 0) {
         const VkBufferCopy whole{0, 0, materialBytes};
-        vk.CmdCopyBuffer(commands, staging->handle.get(), scene.materials.handle.get(), 1, &whole);
+        vk.CmdCopyBuffer(commands, staging.handle.get(), scene.materials.handle.get(), 1, &whole);
     }
-    if (!changes->geometries.empty()) {
-        vk.CmdCopyBuffer(commands, staging->handle.get(), scene.geometries.handle.get(),
-                         static_cast<std::uint32_t>(changes->geometries.size()), changes->geometries.data());
+    if (!changes.geometries.empty()) {
+        vk.CmdCopyBuffer(commands, staging.handle.get(), scene.geometries.handle.get(),
+                         static_cast<std::uint32_t>(changes.geometries.size()), changes.geometries.data());
     }
     recordDependency(scene.context, commands, kAllToAll);
-    leftovers.buffers.push_back(std::move(*staging));
+    leftovers.buffers.push_back(std::move(staging));
 
     scene.shaderIds = shaderIdsIn(scene, known);
     scene.package.entries.assign(known.primitives.begin(), known.primitives.end());
     ++scene.package.number;
     scene.materialLayout = known.materials.part(0, 0);
     (scene.motion != nullptr ? scene.changing : scene.package.hostMaterials) =
-        std::move(changes->hostMaterials);
+        std::move(changes.hostMaterials);
     return leftovers;
 }
 

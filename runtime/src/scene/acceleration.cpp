@@ -15,12 +15,8 @@ namespace glint {
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                                               VkAccelerationStructureTypeKHR type) {
     AccelerationStructure structure;
-    Result<Buffer> buffer =
-        createBuffer(context, pool, bytes, VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR);
-    if (!buffer) {
-        return buffer.error();
-    }
-    structure.buffer = std::move(*buffer);
+    GLINT_TRY(structure.buffer,
+              createBuffer(context, pool, bytes, VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR));
     VkAccelerationStructureCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
     info.buffer = structure.buffer.handle.get();
@@ -43,13 +39,10 @@ Result<AccelerationStructure> createStructure(Context::State& context, MemoryPoo
 Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes) {
     const VkDeviceSize alignment =
         context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
-    Result<Buffer> buffer =
-        createBuffer(context, pool, bytes + alignment, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer,
+              createBuffer(context, pool, bytes + alignment, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
     Scratch scratch;
-    scratch.buffer = std::move(*buffer);
+    scratch.buffer = std::move(buffer);
     scratch.address = (scratch.buffer.address + alignment - 1) / alignment * alignment;
     return scratch;
 }
@@ -90,29 +83,21 @@ Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
                                  std::span<const VkAccelerationStructureInstanceKHR> instances,
                                  bool updatable, std::vector<Buffer>& kept) {
     // The device's rules for buffers of this usage align it to 16 bytes.
-    Result<Buffer> buffer = createBuffer(
-        context, pool,
-        std::max<VkDeviceSize>(instances.size_bytes(), sizeof(VkAccelerationStructureInstanceKHR)),
-        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, MemoryUse::Upload);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer,
+              createBuffer(
+                  context, pool,
+                  std::max<VkDeviceSize>(instances.size_bytes(), sizeof(VkAccelerationStructureInstanceKHR)),
+                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, MemoryUse::Upload));
     if (!instances.empty()) {
-        std::memcpy(buffer->mapped, instances.data(), instances.size_bytes());
+        std::memcpy(buffer.mapped, instances.data(), instances.size_bytes());
     }
     PreparedTlas prepared;
     prepared.count = static_cast<std::uint32_t>(instances.size());
-    if (Status status = describeTlas(context, buffer->address, instances.size(), updatable, prepared.build);
-        !status) {
-        return status.error();
-    }
-    Result<Scratch> scratch = createScratch(context, pool, prepared.build.sizes.buildScratchSize);
-    if (!scratch) {
-        return scratch.error();
-    }
-    prepared.scratch = scratch->address;
-    kept.push_back(std::move(*buffer));
-    kept.push_back(std::move(scratch->buffer));
+    GLINT_TRY_DO(describeTlas(context, buffer.address, instances.size(), updatable, prepared.build));
+    GLINT_TRY(auto scratch, createScratch(context, pool, prepared.build.sizes.buildScratchSize));
+    prepared.scratch = scratch.address;
+    kept.push_back(std::move(buffer));
+    kept.push_back(std::move(scratch.buffer));
     return prepared;
 }
 

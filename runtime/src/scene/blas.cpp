@@ -89,37 +89,23 @@ Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::s
     builds->all.reserve(inputs.size());
     for (const BlasInput& input : inputs) {
         BlasBuild build = describeBuild(context, input);
-        Result<AccelerationStructure> structure =
-            createStructure(context, upload.compaction->pool, build.structureBytes,
-                            VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
-        if (!structure) {
-            return structure.error();
-        }
+        GLINT_TRY(auto structure, createStructure(context, upload.compaction->pool, build.structureBytes,
+                                                  VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
         statistics.bytes += build.structureBytes;
-        build.info.dstAccelerationStructure = structure->handle.get();
-        builds->handles.push_back(structure->handle.get());
+        build.info.dstAccelerationStructure = structure.handle.get();
+        builds->handles.push_back(structure.handle.get());
         builds->all.push_back(std::move(build));
-        structures.push_back(std::move(*structure));
+        structures.push_back(std::move(structure));
     }
     builds->scratch.bytes = scratchBytesOf(context, builds->pointers());
-    Result<Scratch> scratch = createScratch(context, upload.pool, builds->scratch.bytes);
-    if (!scratch) {
-        return scratch.error();
-    }
-    builds->scratch.address = scratch->address;
-    upload.keep(std::move(scratch->buffer));
+    GLINT_TRY(auto scratch, createScratch(context, upload.pool, builds->scratch.bytes));
+    builds->scratch.address = scratch.address;
+    upload.keep(std::move(scratch.buffer));
     upload.compaction->count = static_cast<std::uint32_t>(inputs.size());
-    Result<UniqueQueryPool> sizes = createSizes(context, upload.compaction->count);
-    if (!sizes) {
-        return sizes.error();
-    }
-    builds->sizes = sizes->get();
-    upload.compaction->sizes = std::move(*sizes);
-    Result<Timer> timer = Timer::create(context, 2);
-    if (!timer) {
-        return timer.error();
-    }
-    upload.timer = std::move(*timer);
+    GLINT_TRY(auto sizes, createSizes(context, upload.compaction->count));
+    builds->sizes = sizes.get();
+    upload.compaction->sizes = std::move(sizes);
+    GLINT_TRY(upload.timer, Timer::create(context, 2));
     upload.stretches = 1;
     upload.uploader->add([&context, &upload, builds](VkCommandBuffer commands) {
         upload.timer->recordReset(commands);

@@ -165,27 +165,19 @@ Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, 
         return false;
     }
     if (!state.compaction->queued) {
-        const Result<std::optional<std::vector<VkDeviceSize>>> sizes = readSizes(state);
+        GLINT_TRY(const auto sizes, readSizes(state));
         if (!sizes) {
-            return sizes.error();
-        }
-        if (!*sizes) {
             return false;
         }
-        Result<std::vector<Replacement>> replacements = makeCopies(state, **sizes);
-        if (!replacements) {
-            return replacements.error();
-        }
+        GLINT_TRY(auto replacements, makeCopies(state, *sizes));
         if (state.editor != nullptr) {
-            queueInEditor(state, std::move(*replacements));
-        } else if (Status status = recordStill(state, commands, std::move(*replacements)); !status) {
+            queueInEditor(state, std::move(replacements));
+        } else if (Status status = recordStill(state, commands, std::move(replacements)); !status) {
             return status.error();
         }
     }
     if (state.editor != nullptr) {
-        if (Status status = state.editor->record(commands, frame); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(state.editor->record(commands, frame));
     }
     state.compaction->frame = frame;
     return true;

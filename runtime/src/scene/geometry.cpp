@@ -86,15 +86,11 @@ std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, const Compa
 // Uploads the positions that acceleration structures are built from.
 Status uploadBuildInput(Context::State& context, Uploader& uploader, const PrimitiveView& view,
                         MemoryPool& pool, GpuPrimitive& primitive) {
-    Result<Buffer> buffer =
-        createBuffer(context, pool, bytesOf(view.positions).size(),
-                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                         VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
-    primitive.buildPositions = buffer->address;
-    primitive.buildInput = std::move(*buffer);
+    GLINT_TRY(auto buffer, createBuffer(context, pool, bytesOf(view.positions).size(),
+                                        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    primitive.buildPositions = buffer.address;
+    primitive.buildInput = std::move(buffer);
     return uploader.copyToBuffer(bytesOf(view.positions), primitive.buildInput, 0);
 }
 
@@ -144,31 +140,24 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
             (attribute.bytes.size() + kAttributeAlignment - 1) / kAttributeAlignment * kAttributeAlignment;
     }
     // The addresses of a buffer are aligned for its usage only. The slack aligns them for attributes too.
-    Result<Buffer> buffer =
-        createBuffer(context, pool, bytes + kAttributeAlignment,
-                     VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
+    GLINT_TRY(auto buffer,
+              createBuffer(context, pool, bytes + kAttributeAlignment,
+                           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     const VkDeviceSize slack =
-        (kAttributeAlignment - buffer->address % kAttributeAlignment) % kAttributeAlignment;
+        (kAttributeAlignment - buffer.address % kAttributeAlignment) % kAttributeAlignment;
     for (const AttributeUpload& attribute : attributes) {
         if (attribute.bytes.empty()) {
             continue;
         }
         const VkDeviceSize offset = slack + attribute.offset;
-        primitive.*attribute.address = buffer->address + offset;
-        if (Status status = uploader.copyToBuffer(attribute.bytes, *buffer, offset); !status) {
-            return status.error();
-        }
+        primitive.*attribute.address = buffer.address + offset;
+        GLINT_TRY_DO(uploader.copyToBuffer(attribute.bytes, buffer, offset));
     }
-    primitive.buffer = std::move(*buffer);
+    primitive.buffer = std::move(buffer);
     primitive.buildPositions = primitive.positions;
     if (!content.positionWords.empty()) {
-        if (Status status = uploadBuildInput(context, uploader, view, *how.builds, primitive); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(uploadBuildInput(context, uploader, view, *how.builds, primitive));
     }
     return primitive;
 }
@@ -405,12 +394,9 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
             ordered.empty() || ordered[i].empty() ? view.indices : std::span(ordered[i]);
         const std::vector<float> attributes =
             joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
-        Result<GpuPrimitive> primitive =
-            uploadPrimitive(context, pool, uploader, view, {indices, attributes, positions[i].words}, how);
-        if (!primitive) {
-            return primitive.error();
-        }
-        uploaded.push_back(std::move(*primitive));
+        GLINT_TRY(auto primitive, uploadPrimitive(context, pool, uploader, view,
+                                                  {indices, attributes, positions[i].words}, how));
+        uploaded.push_back(std::move(primitive));
     }
     return uploaded;
 }

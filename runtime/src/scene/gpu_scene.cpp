@@ -27,14 +27,9 @@ double millisecondsSince(Clock::time_point begin) {
 // is valid.
 template <typename T>
 Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const T> records, Buffer& target) {
-    Result<Buffer> buffer =
-        createBuffer(state.context, state.pool, std::max(records.size_bytes(), sizeof(T)),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
-    target = std::move(*buffer);
+    GLINT_TRY(target, createBuffer(state.context, state.pool, std::max(records.size_bytes(), sizeof(T)),
+                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                       VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
     return uploader.copyToBuffer(bytesOf(records), target);
 }
 
@@ -47,9 +42,7 @@ Status uploadLightTree(GpuScene::State& state, const Package& package, const Sce
     if (package.lightSamples() > 0) {
         state.lightTree = buildLightTree(lights, bounds, scene.moves);
         const std::span<const gpu::LightNode> nodes(state.lightTree.nodes);
-        if (Status s = uploadRecords(state, uploader, nodes, state.lightNodes); !s) {
-            return s;
-        }
+        GLINT_TRY_DO(uploadRecords(state, uploader, nodes, state.lightNodes));
         state.emitters.setLeaves(state.lightTree);
     } else {
         state.emitters.setLeaves(bounds);
@@ -58,9 +51,7 @@ Status uploadLightTree(GpuScene::State& state, const Package& package, const Sce
         return okStatus();
     }
     const std::span<const gpu::EmitterRecord> records(state.emitters.records);
-    if (Status s = uploadRecords(state, uploader, records, state.emitterRecords); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(uploadRecords(state, uploader, records, state.emitterRecords));
     const std::vector<std::uint32_t> firsts = state.emitters.firstsOf(geometries);
     if (!scene.moves) {
         state.emitters = {};
@@ -72,25 +63,16 @@ Status uploadLightTree(GpuScene::State& state, const Package& package, const Sce
 // never empty.
 Status uploadTextures(GpuScene::State& state, Uploader& uploader,
                       std::span<const package::TextureEntry> textures, std::span<const ImageView> images) {
-    if (Status status = checkTextureCount(state.context, textures.size()); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkTextureCount(state.context, textures.size()));
     for (const package::TextureEntry& texture : textures) {
-        Result<DeviceImage> image =
-            uploadSceneTexture(state, uploader, static_cast<std::uint32_t>(state.textures.size()),
-                               images[texture.image], texture.srgb != 0);
-        if (!image) {
-            return image.error();
-        }
-        state.textures.push_back(std::move(*image));
+        GLINT_TRY(auto image,
+                  uploadSceneTexture(state, uploader, static_cast<std::uint32_t>(state.textures.size()),
+                                     images[texture.image], texture.srgb != 0));
+        state.textures.push_back(std::move(image));
     }
     if (state.textures.empty()) {
-        Result<DeviceImage> image =
-            uploadTexture(state.context, state.pool, uploader, {1, 1, kWhiteTexel}, false);
-        if (!image) {
-            return image.error();
-        }
-        state.textures.push_back(std::move(*image));
+        GLINT_TRY(auto image, uploadTexture(state.context, state.pool, uploader, {1, 1, kWhiteTexel}, false));
+        state.textures.push_back(std::move(image));
     }
     return okStatus();
 }
@@ -103,14 +85,11 @@ Status uploadMicromaps(GpuScene::State& state, SceneUpload& upload, const Decide
     for (const auto& [primitive, array] : decided.micromaps) {
         arrays.push_back(array);
     }
-    Result<std::vector<DeviceMicromap>> made = addMicromaps(upload, state.pool, arrays);
-    if (!made) {
-        return made.error();
-    }
+    GLINT_TRY(auto made, addMicromaps(upload, state.pool, arrays));
     std::size_t next = 0;
     for (const auto& [primitive, array] : decided.micromaps) {
-        state.statistics.micromapBytes += (*made)[next].bytes;
-        state.micromaps.emplace(primitive, std::move((*made)[next++]));
+        state.statistics.micromapBytes += made[next].bytes;
+        state.micromaps.emplace(primitive, std::move(made[next++]));
     }
     state.statistics.micromaps = static_cast<std::uint32_t>(state.micromaps.size());
     return okStatus();
@@ -139,9 +118,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     state.statistics.maskedTriangles = decided.tested;
     state.statistics.provedOpaque = decided.opaque;
     state.statistics.provedTransparent = decided.transparent;
-    if (Status s = uploadMicromaps(state, upload, decided); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(uploadMicromaps(state, upload, decided));
     std::vector<std::vector<std::uint32_t>> ordered = std::move(decided.sorted);
     if (leafOrder != nullptr) {
         const Clock::time_point begin = Clock::now();
@@ -149,27 +126,15 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
         ordered = orderedTriangles(scene.primitives, capacity, leafOrder, ordered, decided.splits);
         state.statistics.orderMs = millisecondsSince(begin);
     }
-    Result<std::vector<GpuPrimitive>> primitives =
-        uploadPrimitives(state.context, state.pool, uploader, package, known, scene.primitives, positions,
-                         {scene.vertices, capacity.triangles, &upload.pool}, ordered);
-    if (!primitives) {
-        return primitives.error();
-    }
-    state.primitives = std::move(*primitives);
+    GLINT_TRY(state.primitives,
+              uploadPrimitives(state.context, state.pool, uploader, package, known, scene.primitives,
+                               positions, {scene.vertices, capacity.triangles, &upload.pool}, ordered));
     if (hasDeformedInstance(scene)) {
-        Result<std::unique_ptr<Deformer>> created = Deformer::create(
-            state.context, package, scene, state.primitives, uploader, state.pool, state.deformed);
-        if (!created) {
-            return created.error();
-        }
-        deformer = std::move(*created);
+        GLINT_TRY(deformer, Deformer::create(state.context, package, scene, state.primitives, uploader,
+                                             state.pool, state.deformed));
     }
-    Result<SceneLayout> laidOut =
-        layOutScene(known, scene, state.primitives, capacity, state.deformed.addresses, decided.splits);
-    if (!laidOut) {
-        return laidOut.error();
-    }
-    layout = std::move(*laidOut);
+    GLINT_TRY(layout, layOutScene(known, scene, state.primitives, capacity, state.deformed.addresses,
+                                  decided.splits));
     if (leafOrder != nullptr) {
         const Clock::time_point begin = Clock::now();
         state.instanceOrder = std::make_unique<InstanceOrder>(scene.primitives, layout.parts, leafOrder);
@@ -199,12 +164,8 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     using Instances = std::span<const gpu::InstanceRecord>;
     using Lights = std::span<const gpu::LightRecord>;
     using Materials = std::span<const std::uint8_t>;
-    if (Status s = uploadRecords(state, uploader, Geometries(layout.geometries), state.geometries); !s) {
-        return s;
-    }
-    if (Status s = uploadRecords(state, uploader, Instances(layout.instances), state.instances); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(uploadRecords(state, uploader, Geometries(layout.geometries), state.geometries));
+    GLINT_TRY_DO(uploadRecords(state, uploader, Instances(layout.instances), state.instances));
     state.package = describePackage(package, scene, layout, *changing);
     for (const auto& [primitive, split] : decided.splits) {
         const std::uint32_t entry = state.package.entryOfUploaded[primitive];
@@ -215,22 +176,14 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
     if (scene.moves) {
         state.changing = std::move(*changing);
     }
-    if (Status s = uploadRecords(state, uploader, Materials(materials), state.materials); !s) {
-        return s;
-    }
-    if (Status s = uploadRecords(state, uploader, Lights(lights), state.lights); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(uploadRecords(state, uploader, Materials(materials), state.materials));
+    GLINT_TRY_DO(uploadRecords(state, uploader, Lights(lights), state.lights));
     if (package.emission() != nullptr) {
         state.emitters =
             emittersOf(package, known, scene, layout, state.deformed.addresses, ordered, materials);
     }
-    if (Status s = uploadLightTree(state, package, scene, uploader, lights, layout.geometries.size()); !s) {
-        return s;
-    }
-    if (Status s = uploadTextures(state, uploader, known.textures, scene.images); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(uploadLightTree(state, package, scene, uploader, lights, layout.geometries.size()));
+    GLINT_TRY_DO(uploadTextures(state, uploader, known.textures, scene.images));
     state.statistics.narrowedTextures = countNarrowed(state.context, known.textures, scene.images);
     return okStatus();
 }
@@ -287,11 +240,7 @@ Status buildBottomLevels(GpuScene::State& state, SceneUpload& upload, const Pack
         }
     }
     BlasStatistics statistics;
-    Result<std::vector<AccelerationStructure>> blases = addBlases(upload, inputs, statistics);
-    if (!blases) {
-        return blases.error();
-    }
-    state.blases = std::move(*blases);
+    GLINT_TRY(state.blases, addBlases(upload, inputs, statistics));
     state.partBlases.resize(layout.parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) {
         state.partBlases[parts[i]] = state.blases[i].address;
@@ -310,11 +259,7 @@ Status buildTopLevel(GpuScene::State& state, SceneUpload& upload, const SceneVie
                                        scene.instances[placed.instance].objectToWorld,
                                        state.partBlases[placed.part]));
     }
-    Result<AccelerationStructure> tlas = addTlas(upload, state.pool, instances);
-    if (!tlas) {
-        return tlas.error();
-    }
-    state.tlas = std::move(*tlas);
+    GLINT_TRY(state.tlas, addTlas(upload, state.pool, instances));
     if (upload.compaction) {
         upload.compaction->placed = std::move(instances);
     }
@@ -331,39 +276,23 @@ Status uploadStill(GpuScene::State& state, const Package& package, const Package
     scene.primitives = primitives;
     SceneLayout layout;
     std::unique_ptr<Deformer> deformer;
-    if (Status s = uploadData(state, package, scene, positions, upload, layout, deformer); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(uploadData(state, package, scene, positions, upload, layout, deformer));
     if (deformer) {
         deformOnce(upload, *deformer, scene.instances.size());
     }
     std::vector<BlasInput> refitted;
-    if (Status s = buildBottomLevels(state, upload, known, scene, layout, package.positionFetch(), refitted);
-        !s) {
-        return s;
-    }
+    GLINT_TRY_DO(buildBottomLevels(state, upload, known, scene, layout, package.positionFetch(), refitted));
     if (scene.moves) {
-        if (Status s = createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader);
-            !s) {
-            return s;
-        }
+        GLINT_TRY_DO(createMotion(state, scene, layout, refitted, std::move(deformer), *upload.uploader));
     } else {
-        if (Status s = buildTopLevel(state, upload, scene, layout); !s) {
-            return s;
-        }
+        GLINT_TRY_DO(buildTopLevel(state, upload, scene, layout));
         upload.deformer = std::move(deformer);
     }
     for (GpuPrimitive& primitive : state.primitives) {
         upload.keep(std::move(primitive.buildInput));
     }
-    Result<std::vector<UniqueSampler>> samplers = createSamplers(state.context, known.samplers);
-    if (!samplers) {
-        return samplers.error();
-    }
-    state.samplers = std::move(*samplers);
-    if (Status s = createSceneSet(state); !s) {
-        return s;
-    }
+    GLINT_TRY(state.samplers, createSamplers(state.context, known.samplers));
+    GLINT_TRY_DO(createSceneSet(state));
     state.statistics.triangles = layout.triangles;
     state.statistics.geometries = static_cast<std::uint32_t>(layout.geometries.size());
     state.statistics.instances = static_cast<std::uint32_t>(layout.instances.size());
@@ -424,9 +353,7 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
                          "DeviceHandles::shaderFloat16, or compile with --precision 32");
     }
     const PackageScene known = hasNothing ? PackageScene{} : package.scene(scene.packageScene);
-    if (Status s = checkScene(package, known, scene, imageLimits(contextState)); !s) {
-        return s.error();
-    }
+    GLINT_TRY_DO(checkScene(package, known, scene, imageLimits(contextState)));
     auto state = std::make_unique<GpuScene::State>(contextState);
     state->origin = scene.origin;
     state->upload = std::make_unique<SceneUpload>(contextState, mostStaged);
@@ -438,13 +365,9 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
         state->stream->state().lastFrame = frame;
     }
     if (scene.editable) {
-        if (Status s = uploadEditable(*state, package, known, scene, upload, commands); !s) {
-            return s.error();
-        }
+        GLINT_TRY_DO(uploadEditable(*state, package, known, scene, upload, commands));
     } else {
-        if (Status s = uploadStill(*state, package, known, scene, upload); !s) {
-            return s.error();
-        }
+        GLINT_TRY_DO(uploadStill(*state, package, known, scene, upload));
         for (Buffer& staging : upload.uploader->record(commands)) {
             upload.keep(std::move(staging));
         }
@@ -476,24 +399,16 @@ constexpr VkDeviceSize kMostStaged = VkDeviceSize{64} << 20;
 Result<std::unique_ptr<GpuScene>> GpuScene::record(Context& context, const Package& package,
                                                    const SceneView& scene, VkCommandBuffer commands,
                                                    std::uint64_t frame) {
-    Result<std::unique_ptr<State>> state =
-        makeScene(context, package, scene, commands, frame, Uploader::kUnlimited);
-    if (!state) {
-        return state.error();
-    }
-    return std::unique_ptr<GpuScene>(new GpuScene(std::move(*state)));
+    GLINT_TRY(auto state, makeScene(context, package, scene, commands, frame, Uploader::kUnlimited));
+    return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
 }
 
 Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
                                                    const SceneView& scene) {
     Result<std::unique_ptr<GpuScene>> uploaded =
         makeOnce(context.state(), [&](VkCommandBuffer commands) -> Result<std::unique_ptr<GpuScene>> {
-            Result<std::unique_ptr<State>> state =
-                makeScene(context, package, scene, commands, 0, kMostStaged);
-            if (!state) {
-                return state.error();
-            }
-            return std::unique_ptr<GpuScene>(new GpuScene(std::move(*state)));
+            GLINT_TRY(auto state, makeScene(context, package, scene, commands, 0, kMostStaged));
+            return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
         });
     if (!uploaded || !(*uploaded)->state_->compaction) {
         return uploaded;

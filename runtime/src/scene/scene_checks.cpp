@@ -127,15 +127,9 @@ Status checkPrimitives(const Package& package, const PackageScene& known,
         if (entry == nullptr) {
             return makeError("scene-package", where, "the package does not know this primitive", kSameScene);
         }
-        if (Status status = checkAttributes(view, *entry, where); !status) {
-            return status;
-        }
-        if (Status status = checkDeclared(package, view, *entry, where); !status) {
-            return status;
-        }
-        if (Status status = checkIndices(view, where); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(checkAttributes(view, *entry, where));
+        GLINT_TRY_DO(checkDeclared(package, view, *entry, where));
+        GLINT_TRY_DO(checkIndices(view, where));
     }
     return okStatus();
 }
@@ -168,9 +162,7 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
                 "the package refers to this image, the scene has " + std::to_string(images.size()),
                 kSameScene);
         }
-        if (Status status = checkImage(images[texture.image], texture.srgb != 0, where, limits); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(checkImage(images[texture.image], texture.srgb != 0, where, limits));
     }
     return okStatus();
 }
@@ -278,24 +270,12 @@ Status checkLights(std::span<const LightView> lights) {
 
 Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
                   const ImageLimits& limits) {
-    if (Status status = checkPrimitives(package, known, scene.primitives); !status) {
-        return status;
-    }
-    if (Status status = checkInstances(known, scene); !status) {
-        return status;
-    }
-    if (Status status = checkImages(known, scene.images, limits); !status) {
-        return status;
-    }
-    if (Status status = checkEmission(package, known, scene.images); !status) {
-        return status;
-    }
-    if (Status status = checkDeformation(scene); !status) {
-        return status;
-    }
-    if (Status status = checkOrigin(scene.origin); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkPrimitives(package, known, scene.primitives));
+    GLINT_TRY_DO(checkInstances(known, scene));
+    GLINT_TRY_DO(checkImages(known, scene.images, limits));
+    GLINT_TRY_DO(checkEmission(package, known, scene.images));
+    GLINT_TRY_DO(checkDeformation(scene));
+    GLINT_TRY_DO(checkOrigin(scene.origin));
     return checkLights(scene.lights);
 }
 

@@ -89,19 +89,13 @@ Diagnostic otherCount(const std::string& where, const std::string& what, std::si
 
 Status checkDeformation(const SceneView& scene) {
     for (const PrimitiveView& view : scene.primitives) {
-        if (Status s = checkTargets(view); !s) {
-            return s;
-        }
-        if (Status s = checkInfluences(view); !s) {
-            return s;
-        }
+        GLINT_TRY_DO(checkTargets(view));
+        GLINT_TRY_DO(checkInfluences(view));
     }
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const InstanceView& instance = scene.instances[i];
         const std::string where = "instance " + std::to_string(i);
-        if (Status s = checkPose(instance, where); !s) {
-            return s;
-        }
+        GLINT_TRY_DO(checkPose(instance, where));
         const PrimitiveRange own = primitivesOf(scene.primitives, instance.mesh);
         const std::span<const PrimitiveView> primitives =
             scene.primitives.subspan(own.first, own.end - own.first);
@@ -145,9 +139,7 @@ Status checkMotion(const MotionView& motion, const MotionShape& shape) {
         if (instance.morphWeights.size() != shape.weightCounts[i]) {
             return otherCount(where, "morph weights", instance.morphWeights.size(), shape.weightCounts[i]);
         }
-        if (Status s = checkPose(instance, where); !s) {
-            return s;
-        }
+        GLINT_TRY_DO(checkPose(instance, where));
     }
     for (std::size_t i = 0; i < motion.lights.size(); ++i) {
         if (static_cast<std::uint32_t>(motion.lights[i].type) != shape.lightTypes[i]) {
@@ -155,9 +147,7 @@ Status checkMotion(const MotionView& motion, const MotionShape& shape) {
                              "the light has another type than at upload", kGiveAll);
         }
     }
-    if (Status s = checkOrigin(motion.origin); !s) {
-        return s;
-    }
+    GLINT_TRY_DO(checkOrigin(motion.origin));
     return checkLights(motion.lights);
 }
 

@@ -43,13 +43,10 @@ struct RunBuffers {
                       {input, std::max<std::size_t>(inputBytes, 1), MemoryUse::Upload},
                       {output, std::max<std::size_t>(outputBytes, 1), MemoryUse::Readback}};
         for (const auto& [buffer, bytes, use] : wanted) {
-            Result<Buffer> made = createBuffer(
-                context, pool, bytes,
-                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT, use);
-            if (!made) {
-                return made.error();
-            }
-            buffer = std::move(*made);
+            GLINT_TRY(buffer, createBuffer(context, pool, bytes,
+                                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                               VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT,
+                                           use));
         }
         return okStatus();
     }
@@ -71,16 +68,10 @@ SceneKernel::State& SceneKernel::state() {
 
 Result<std::unique_ptr<SceneKernel>> SceneKernel::create(GpuScene& scene,
                                                          std::span<const std::uint32_t> words) {
-    Result<UniquePipelineLayout> layout = createKernelLayout(scene.state());
-    if (!layout) {
-        return layout.error();
-    }
-    Result<UniquePipeline> pipeline = createComputePipeline(scene.state().context, words, layout->get());
-    if (!pipeline) {
-        return pipeline.error();
-    }
+    GLINT_TRY(auto layout, createKernelLayout(scene.state()));
+    GLINT_TRY(auto pipeline, createComputePipeline(scene.state().context, words, layout.get()));
     return std::unique_ptr<SceneKernel>(new SceneKernel(
-        std::make_unique<State>(State{scene.state(), std::move(*layout), std::move(*pipeline)})));
+        std::make_unique<State>(State{scene.state(), std::move(layout), std::move(pipeline)})));
 }
 
 Result<std::vector<std::uint32_t>> SceneKernel::run(std::span<const std::uint32_t> input,
@@ -96,13 +87,8 @@ Result<std::vector<std::uint32_t>> runSceneKernel(SceneKernel::State& kernel, gp
     Context::State& context = scene.context;
     const std::size_t outputBytes = outputs * sizeof(std::uint32_t);
     RunBuffers buffers(context);
-    if (Status status = buffers.create(context, input.size_bytes(), outputBytes); !status) {
-        return status.error();
-    }
-    Result<CommandRunner> runner = CommandRunner::create(context);
-    if (!runner) {
-        return runner.error();
-    }
+    GLINT_TRY_DO(buffers.create(context, input.size_bytes(), outputBytes));
+    GLINT_TRY(auto runner, CommandRunner::create(context));
     constants.width = invocations;
     constants.geometries = scene.geometries.address;
     constants.instances = scene.instances.address;
@@ -122,25 +108,20 @@ Result<std::vector<std::uint32_t>> runSceneKernel(SceneKernel::State& kernel, gp
     std::copy(input.begin(), input.end(), buffers.input.mapped);
     std::fill_n(buffers.output.mapped, outputBytes, std::uint8_t{0});
 
-    Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(auto commands, runner.begin());
     gpu::PushConstants pushed{};
     pushed.frame = buffers.frame.address;
     const DeviceTable& vk = context.vk;
-    vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline.get());
-    vk.CmdBindDescriptorSets(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout.get(), gpu::kSetScene,
-                             1, &scene.set, 0, nullptr);
-    vk.CmdPushConstants(*commands, kernel.layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed),
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.pipeline.get());
+    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.layout.get(), gpu::kSetScene, 1,
+                             &scene.set, 0, nullptr);
+    vk.CmdPushConstants(commands, kernel.layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed),
                         &pushed);
-    vk.CmdDispatch(*commands, (invocations + gpu::kRayGroupSize - 1) / gpu::kRayGroupSize, 1, 1);
-    recordDependency(context, *commands,
+    vk.CmdDispatch(commands, (invocations + gpu::kRayGroupSize - 1) / gpu::kRayGroupSize, 1, 1);
+    recordDependency(context, commands,
                      {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-    if (Status status = runner->submitAndWait(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(runner.submitAndWait());
     std::vector<std::uint32_t> words(outputs);
     std::memcpy(words.data(), buffers.output.mapped, outputBytes);
     return words;

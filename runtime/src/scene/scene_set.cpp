@@ -58,11 +58,7 @@ Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const Scen
 }
 
 Status createSetLayout(GpuScene::State& state) {
-    Result<UniqueSetLayout> layout = createSceneSetLayout(state.context, sizeOf(state));
-    if (!layout) {
-        return layout.error();
-    }
-    state.setLayout = std::move(*layout);
+    GLINT_TRY(state.setLayout, createSceneSetLayout(state.context, sizeOf(state)));
     return okStatus();
 }
 
@@ -151,15 +147,10 @@ Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStruct
 }
 
 Status createSceneSet(GpuScene::State& state) {
-    if (Status status = createSetLayout(state); !status) {
-        return status;
-    }
-    Result<SceneSet> set = makeSceneSet(state, state.tlas.handle.get(), VK_NULL_HANDLE);
-    if (!set) {
-        return set.error();
-    }
-    state.descriptorPool = std::move(set->pool);
-    state.set = set->set;
+    GLINT_TRY_DO(createSetLayout(state));
+    GLINT_TRY(auto set, makeSceneSet(state, state.tlas.handle.get(), VK_NULL_HANDLE));
+    state.descriptorPool = std::move(set.pool);
+    state.set = set.set;
     return okStatus();
 }
 

@@ -47,13 +47,11 @@ Status queueCopies(TextureStream::State& state, std::uint64_t mostBytes, Advance
         const TexelBlock block = blockOf(image.format);
         const std::uint64_t rowBytes =
             std::uint64_t{blocksAcross(sizeAtLevel(image.width, level), block.width)} * block.bytes;
-        const Result<std::uint32_t> rows = state.uploader->copyMipRows(
-            {&state.scene.textures[next->first], level, step.row, texelsOfLevel(image, level), block}, room);
-        if (!rows) {
-            return rows.error();
-        }
-        room -= std::min(room, *rows * rowBytes);
-        step.row += *rows;
+        GLINT_TRY(const auto rows, state.uploader->copyMipRows({&state.scene.textures[next->first], level,
+                                                                step.row, texelsOfLevel(image, level), block},
+                                                               room));
+        room -= std::min(room, rows * rowBytes);
+        step.row += rows;
         if (step.row == blocksAcross(sizeAtLevel(image.height, level), block.height)) {
             step.level = level;
             step.row = 0;
@@ -78,12 +76,8 @@ Result<std::map<std::uint32_t, UniqueImageView>> newViews(const TextureStream::S
         ImageInfo info;
         info.format = image.format;
         info.components = image.components;
-        Result<UniqueImageView> view =
-            createImageView(state.scene.context, image.handle.get(), info, step.level);
-        if (!view) {
-            return view.error();
-        }
-        views.emplace(number, std::move(*view));
+        GLINT_TRY(auto view, createImageView(state.scene.context, image.handle.get(), info, step.level));
+        views.emplace(number, std::move(view));
     }
     return views;
 }
@@ -223,17 +217,9 @@ Result<DeviceImage> uploadStreamed(TextureStream::State& stream, Uploader& uploa
     }
     for (std::uint32_t level = streamed.level; level < info.mips; ++level) {
         const std::span<const std::uint8_t> texels = texelsOfLevel(stored, level);
-        const Result<std::uint32_t> rows =
-            uploader.copyMipRows({&*made, level, 0, texels, blockOf(stored.format)}, texels.size());
-        if (!rows) {
-            return rows.error();
-        }
+        GLINT_TRY_DO(uploader.copyMipRows({&*made, level, 0, texels, blockOf(stored.format)}, texels.size()));
     }
-    Result<UniqueImageView> view = createImageView(scene.context, made->handle.get(), info, streamed.level);
-    if (!view) {
-        return view.error();
-    }
-    made->view = std::move(*view);
+    GLINT_TRY(made->view, createImageView(scene.context, made->handle.get(), info, streamed.level));
     stream.textures.insert_or_assign(texture, std::move(streamed));
     return made;
 }

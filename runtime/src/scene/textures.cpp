@@ -61,9 +61,7 @@ Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Upl
     for (std::uint32_t level = 0; level < stored.view.levels; ++level) {
         mips.push_back(texelsOfLevel(stored.view, level));
     }
-    if (Status status = uploader.copyToImage(mips, blockOf(stored.view.format), *texture); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(uploader.copyToImage(mips, blockOf(stored.view.format), *texture));
     return texture;
 }
 
@@ -180,11 +178,8 @@ Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
         samplers.empty() ? std::span(&kDefault, 1) : samplers;
     std::vector<UniqueSampler> created;
     for (const package::SamplerEntry& entry : wanted) {
-        Result<UniqueSampler> sampler = createSampler(context, entry);
-        if (!sampler) {
-            return sampler.error();
-        }
-        created.push_back(std::move(*sampler));
+        GLINT_TRY(auto sampler, createSampler(context, entry));
+        created.push_back(std::move(sampler));
     }
     return created;
 }

@@ -84,11 +84,7 @@ Status uploadLevels(Environment::State& state, Uploader& uploader, const std::ve
     info.extent = {levels.front().width, levels.front().height};
     info.mips = static_cast<std::uint32_t>(levels.size());
     info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    Result<DeviceImage> image = createImage(state.context, state.pool, info);
-    if (!image) {
-        return image.error();
-    }
-    state.map = std::move(*image);
+    GLINT_TRY(state.map, createImage(state.context, state.pool, info));
     std::vector<Texels> mips;
     mips.reserve(levels.size());
     for (const RadianceMap& level : levels) {
@@ -102,27 +98,20 @@ Status uploadCounts(Environment::State& state, Uploader& uploader, const SkyCoun
     state.countColumns = distribution.columns;
     state.countRows = distribution.rows;
     const std::span<const std::uint8_t> bytes = bytesOf(std::span<const std::uint32_t>(distribution.counts));
-    Result<Buffer> buffer =
-        createBuffer(state.context, state.pool, bytes.size(),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
-    if (!buffer) {
-        return buffer.error();
-    }
-    state.counts = std::move(*buffer);
+    GLINT_TRY(state.counts,
+              createBuffer(state.context, state.pool, bytes.size(),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     return uploader.copyToBuffer(bytes, state.counts);
 }
 
 // Makes an environment, and queues its copies.
 Result<std::shared_ptr<Environment::State>> makeState(Context& context, const LinearImage& image,
                                                       const EnvironmentOptions& options, Uploader& uploader) {
-    Result<CheckedMap> checked = checkMap(image);
-    if (!checked) {
-        return checked.error();
-    }
+    GLINT_TRY(auto checked, checkMap(image));
     auto state = std::make_shared<Environment::State>(context.state());
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    RadianceMap map = fitToDevice(std::move(checked->map));
+    RadianceMap map = fitToDevice(std::move(checked.map));
     state->harmonics = skyHarmonics(map);
     const SkyCounts distribution = options.sampled ? skyCounts(map) : SkyCounts{};
     const std::vector<RadianceMap> levels = filterByRoughness(std::move(map));
@@ -131,20 +120,14 @@ Result<std::shared_ptr<Environment::State>> makeState(Context& context, const Li
     statistics.width = levels.front().width;
     statistics.height = levels.front().height;
     statistics.levels = static_cast<std::uint32_t>(levels.size());
-    statistics.negativePixels = checked->negativePixels;
+    statistics.negativePixels = checked.negativePixels;
     statistics.sampled = options.sampled;
     statistics.halfFloat = !context.state().limits.filteredFloats;
-    if (Status status = uploadLevels(*state, uploader, levels); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(uploadLevels(*state, uploader, levels));
     if (options.sampled) {
-        if (Status status = uploadCounts(*state, uploader, distribution); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(uploadCounts(*state, uploader, distribution));
     }
-    if (Status status = createSampler(*state); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(createSampler(*state));
     return state;
 }
 
@@ -158,12 +141,9 @@ Result<std::unique_ptr<Environment>> Environment::record(Context& context, const
                                                          const EnvironmentOptions& options,
                                                          VkCommandBuffer commands, std::uint64_t frame) {
     auto upload = std::make_unique<Upload>(context.state());
-    Result<std::shared_ptr<State>> state = makeState(context, image, options, *upload->uploader);
-    if (!state) {
-        return state.error();
-    }
+    GLINT_TRY(auto state, makeState(context, image, options, *upload->uploader));
     upload->record(commands, frame);
-    std::unique_ptr<Environment> environment(new Environment(std::move(*state)));
+    std::unique_ptr<Environment> environment(new Environment(std::move(state)));
     environment->upload_ = std::move(upload);
     return environment;
 }

@@ -73,9 +73,7 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const PackageScene& know
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
-        if (Status status = checkAddresses(view, *entry, geometryPlace(i)); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(checkAddresses(view, *entry, geometryPlace(i)));
         gpu::GeometryRecord record{};
         record.shaderId = entry->shaderId;
         record.materialIndex = entry->materialIndex;
@@ -119,9 +117,7 @@ std::vector<Rows> movedBack(std::vector<Rows> instances, const std::array<double
 }
 
 Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> lights) {
-    if (Status status = checkLights(lights); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkLights(lights));
     std::vector<gpu::LightRecord> records;
     for (const LightView& light : lights) {
         records.push_back(makeLightRecord(light));
@@ -194,13 +190,9 @@ Status findShaderIds(std::span<const gpu::GeometryRecord> geometries,
 template <typename T>
 Status upload(EngineScene::State& state, Uploader& uploader, const std::vector<T>& records,
               VkBufferUsageFlags usage, Buffer& target) {
-    Result<Buffer> buffer =
-        createBuffer(state.context, state.pool, std::max(records.size(), std::size_t{1}) * sizeof(T),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | usage);
-    if (!buffer) {
-        return buffer.error();
-    }
-    target = std::move(*buffer);
+    GLINT_TRY(target,
+              createBuffer(state.context, state.pool, std::max(records.size(), std::size_t{1}) * sizeof(T),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | usage));
     return uploader.copyToBuffer(bytesOf(std::span<const T>(records)), target);
 }
 
@@ -227,44 +219,30 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
                          "give an index below Package::sceneCount()");
     }
     const PackageScene known = package.scene(scene.packageScene);
-    Result<std::vector<gpu::GeometryRecord>> geometries = makeGeometries(known, scene);
-    if (!geometries) {
-        return geometries.error();
-    }
-    Result<std::vector<gpu::InstanceRecord>> instances = makeInstances(scene.instances);
-    if (!instances) {
-        return instances.error();
-    }
-    Result<std::vector<gpu::LightRecord>> lights = makeLights(scene.lights);
-    if (!lights) {
-        return lights.error();
-    }
-    Result<std::vector<std::uint8_t>> materials = makeMaterials(context.state(), known, scene);
-    if (!materials) {
-        return materials.error();
-    }
+    GLINT_TRY(auto geometries, makeGeometries(known, scene));
+    GLINT_TRY(auto instances, makeInstances(scene.instances));
+    GLINT_TRY(auto lights, makeLights(scene.lights));
+    GLINT_TRY(auto materials, makeMaterials(context.state(), known, scene));
     for (std::size_t i = 0; i < scene.firstRecords.size(); ++i) {
-        if (scene.firstRecords[i] >= std::max<std::size_t>(geometries->size(), 1)) {
+        if (scene.firstRecords[i] >= std::max<std::size_t>(geometries.size(), 1)) {
             return outOfRange("entry " + std::to_string(i) + " of firstRecords", "geometry",
-                              scene.firstRecords[i], geometries->size());
+                              scene.firstRecords[i], geometries.size());
         }
     }
     auto state = std::make_unique<State>(context.state());
-    if (Status status = findShaderIds(*geometries, scene.hitRecords, state->shaderIds); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(findShaderIds(geometries, scene.hitRecords, state->shaderIds));
     state->placed.assign(scene.instances.begin(), scene.instances.end());
-    state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights->size());
+    state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights.size());
     state->recordsBy = scene.recordsBy;
     state->upload = std::make_unique<StagedCopies>(context.state());
     Uploader& uploader = *state->upload->uploader;
     const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
     for (const Status& status :
-         {upload(*state, uploader, *geometries, 0, state->geometries),
-          upload(*state, uploader, *instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
-          upload(*state, uploader, *instances, 0, state->previousInstances),
-          upload(*state, uploader, *lights, 0, state->lights),
-          upload(*state, uploader, *materials, 0, state->materials),
+         {upload(*state, uploader, geometries, 0, state->geometries),
+          upload(*state, uploader, instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
+          upload(*state, uploader, instances, 0, state->previousInstances),
+          upload(*state, uploader, lights, 0, state->lights),
+          upload(*state, uploader, materials, 0, state->materials),
           upload(*state, uploader, firstRecords, 0, state->firstRecords)}) {
         if (!status) {
             return status.error();
@@ -320,20 +298,11 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
                              std::to_string(state_->lightCapacity),
                          "give as many instances, and no more lights");
     }
-    Result<std::vector<gpu::InstanceRecord>> records = makeInstances(instances);
-    if (!records) {
-        return records.error();
-    }
-    Result<std::vector<gpu::LightRecord>> lightRecords = makeLights(lights);
-    if (!lightRecords) {
-        return lightRecords.error();
-    }
+    GLINT_TRY(auto records, makeInstances(instances));
+    GLINT_TRY(auto lightRecords, makeLights(lights));
     const bool staysPut = originMoved == std::array<double, 3>{};
-    Result<std::vector<gpu::InstanceRecord>> previous =
-        staysPut ? std::vector<gpu::InstanceRecord>() : makeInstances(movedBack(state_->placed, originMoved));
-    if (!previous) {
-        return previous.error();
-    }
+    GLINT_TRY(auto previous, staysPut ? std::vector<gpu::InstanceRecord>()
+                                      : makeInstances(movedBack(state_->placed, originMoved)));
     state_->placed.assign(instances.begin(), instances.end());
     const Context::State& context = state_->context;
     recordDependency(context, commands, kAllToAll);
@@ -343,11 +312,11 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
                                  state_->previousInstances.handle.get(), 1, &whole);
         recordDependency(context, commands, kAllToAll);
     }
-    recordContents(*state_, commands, *previous, state_->previousInstances);
-    recordContents(*state_, commands, *records, state_->instances);
-    recordContents(*state_, commands, *lightRecords, state_->lights);
+    recordContents(*state_, commands, previous, state_->previousInstances);
+    recordContents(*state_, commands, records, state_->instances);
+    recordContents(*state_, commands, lightRecords, state_->lights);
     recordDependency(context, commands, kAllToAll);
-    state_->lightCount = static_cast<std::uint32_t>(lightRecords->size());
+    state_->lightCount = static_cast<std::uint32_t>(lightRecords.size());
     return okStatus();
 }
 

@@ -83,11 +83,8 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     wanted.backgroundPipelines = options.backgroundPipelines;
     wanted.width = options.maxRays;
     wanted.height = 1;
-    Result<PipelineChoice> choice = choosePipelines(contextState, package, wanted);
-    if (!choice) {
-        return choice.error();
-    }
-    const FrameSize size = frameSize(package, *choice, wanted, 0);
+    GLINT_TRY(auto choice, choosePipelines(contextState, package, wanted));
+    const FrameSize size = frameSize(package, choice, wanted, 0);
     const std::uint64_t most = std::min<std::uint64_t>(
         size.rayPipeline ? maxRayDispatch(contextState.limits) : std::numeric_limits<std::uint32_t>::max(),
         contextState.limits.maxBufferBytes / sizeof(gpu::ShadowRecord));
@@ -95,12 +92,9 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
         return wrongBatch("maxRays is " + std::to_string(options.maxRays),
                           "use 1 to " + std::to_string(most - (listSlots(size) - listRays(size))));
     }
-    Result<Timer> timer = Timer::create(contextState, kMaxFixedPasses + package.caseCount());
-    if (!timer) {
-        return timer.error();
-    }
-    auto state = std::make_unique<State>(contextState, scene.state(), std::move(*timer));
-    state->choice = *choice;
+    GLINT_TRY(auto timer, Timer::create(contextState, kMaxFixedPasses + package.caseCount()));
+    auto state = std::make_unique<State>(contextState, scene.state(), std::move(timer));
+    state->choice = choice;
     state->size = size;
     state->maxRays = options.maxRays;
     state->pushOffset = package.bindings().pushOffset;
@@ -108,11 +102,9 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     for (const package::CaseEntry& entry : package.cases()) {
         state->caseNames.emplace_back(package.string(entry.name));
     }
-    if (Status status = createFrameResources(contextState, size, state->frame); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(createFrameResources(contextState, size, state->frame));
     Result<Pipelines> pipelines =
-        createPipelines(contextState, package, *choice, {options.pipelineThreads, false},
+        createPipelines(contextState, package, choice, {options.pipelineThreads, false},
                         scene.state().shaderIds, {{}, options.layout, options.pushStages});
     if (!pipelines) {
         return pipelines.error();
@@ -183,12 +175,8 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
 }  // namespace
 
 Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
-    if (Status status = checkBatch(*state_, batch); !status) {
-        return status;
-    }
-    if (Status status = adoptPipelines(state_->context, state_->pipelines); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkBatch(*state_, batch));
+    GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
     state_->timed.clear();
     state_->timing = batch.timing;
     if (batch.environment != nullptr) {
@@ -249,9 +237,7 @@ void RaySteps::shade(VkCommandBuffer commands) {
 }
 
 Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) {
-    if (Status status = begin(commands, batch); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(begin(commands, batch));
     trace(commands);
     order(commands);
     shade(commands);

@@ -53,19 +53,12 @@ Status makePictureFolder(const std::string& folder) {
 
 Status measureAll(const Console& console, const BenchArguments& arguments,
                   measure::CalibrationReport& report) {
-    if (Status writable = measure::checkBenchFolder(arguments.output, measure::kCalibrationFile); !writable) {
-        return writable;
-    }
-    if (Status made = makePictureFolder(arguments.calibrate.pictures); !made) {
-        return made;
-    }
-    const Result<std::unique_ptr<Context>> context = measure::openCalibrationDevice(arguments.render);
-    if (!context) {
-        return context.error();
-    }
-    report.machine = measure::machineOf(**context);
+    GLINT_TRY_DO(measure::checkBenchFolder(arguments.output, measure::kCalibrationFile));
+    GLINT_TRY_DO(makePictureFolder(arguments.calibrate.pictures));
+    GLINT_TRY(const auto context, measure::openCalibrationDevice(arguments.render));
+    report.machine = measure::machineOf(*context);
     CompileCache cache(arguments.render.cache, "");
-    Status done = measure::runCalibration(console, settingsOf(arguments), **context, cache.modules(), report);
+    Status done = measure::runCalibration(console, settingsOf(arguments), *context, cache.modules(), report);
     cache.close(console);
     return done;
 }

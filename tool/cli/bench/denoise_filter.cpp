@@ -35,12 +35,8 @@ Result<std::unique_ptr<measure::PictureFilter>> makeExampleFilter(const Context&
                                                                   std::uint32_t samples) {
     denoise::FilterSettings settings;
     settings.samples = samples;
-    Result<std::unique_ptr<denoise::Denoiser>> made =
-        denoise::Denoiser::create(context, renderer, width, height, settings);
-    if (!made) {
-        return made.error();
-    }
-    return std::unique_ptr<measure::PictureFilter>(std::make_unique<ExampleFilter>(std::move(*made)));
+    GLINT_TRY(auto made, denoise::Denoiser::create(context, renderer, width, height, settings));
+    return std::unique_ptr<measure::PictureFilter>(std::make_unique<ExampleFilter>(std::move(made)));
 }
 
 }  // namespace

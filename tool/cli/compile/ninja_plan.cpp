@@ -102,11 +102,8 @@ Status checkFolder(const CompileArguments& arguments) {
     if (!fs::exists(file, error)) {
         return okStatus();
     }
-    const Result<base::Bytes> bytes = base::readFile(file);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    GLINT_TRY(const auto bytes, base::readFile(file));
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     return text.starts_with(kNinjaFirstWords)
                ? okStatus()
                : makeError("output-not-a-plan", file.string(), "was not made by glint and stays as it is",
@@ -260,18 +257,10 @@ namespace fs = std::filesystem;
 Status writePlan(const CompileArguments& arguments, const compiler::PackagePlan& plan,
                  std::span<const std::string> dependencies) {
     const NinjaPlan ninja = describe(arguments, plan);
-    const Result<std::string> text = makeNinjaFile(ninja);
-    if (!text) {
-        return text.error();
-    }
+    GLINT_TRY(const auto text, makeNinjaFile(ninja));
     const std::string target[] = {ninja.file};
-    const Result<std::string> depfile = makeDepfile(target, dependencies);
-    if (!depfile) {
-        return depfile.error();
-    }
-    if (Status free = checkFolder(arguments); !free) {
-        return free;
-    }
+    GLINT_TRY(const auto depfile, makeDepfile(target, dependencies));
+    GLINT_TRY_DO(checkFolder(arguments));
     std::error_code error;
     fs::create_directories(moduleFolder(arguments), error);
     if (error) {
@@ -283,16 +272,10 @@ Status writePlan(const CompileArguments& arguments, const compiler::PackagePlan&
         kept.insert(module.file);
         const fs::path file =
             moduleFolder(arguments) / (module.file + std::string(compiler::kModuleTextSuffix));
-        if (Status written = base::writeFile(file, module.text); !written) {
-            return written;
-        }
+        GLINT_TRY_DO(base::writeFile(file, module.text));
     }
-    if (Status listed = base::writeFile(ninja.planDepfile, *depfile); !listed) {
-        return listed;
-    }
-    if (Status written = base::writeFile(ninja.file, *text); !written) {
-        return written;
-    }
+    GLINT_TRY_DO(base::writeFile(ninja.planDepfile, depfile));
+    GLINT_TRY_DO(base::writeFile(ninja.file, text));
     removeOthers(moduleFolder(arguments), kept);
     return okStatus();
 }

@@ -17,11 +17,8 @@ class Staging {
 public:
     Status addEmbedded(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
                        const std::filesystem::path& source) {
-        Result<std::vector<base::StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
-        if (!staged) {
-            return staged.error();
-        }
-        for (base::StagedFile& file : *staged) {
+        GLINT_TRY(auto staged, stageEmbeddedSource(scenes, package, source));
+        for (base::StagedFile& file : staged) {
             files_.push_back(std::move(file));
         }
         return okStatus();
@@ -29,19 +26,14 @@ public:
 
     Status add(const std::filesystem::path& path, std::string_view text) {
         base::removeAbandoned(path);
-        Result<base::StagedFile> staged = base::StagedFile::create(path, base::asBytes(text));
-        if (!staged) {
-            return staged.error();
-        }
-        files_.push_back(std::move(*staged));
+        GLINT_TRY(auto staged, base::StagedFile::create(path, base::asBytes(text)));
+        files_.push_back(std::move(staged));
         return okStatus();
     }
 
     Status commit() {
         for (base::StagedFile& file : files_) {
-            if (Status written = file.commit(); !written) {
-                return written;
-            }
+            GLINT_TRY_DO(file.commit());
         }
         return okStatus();
     }
@@ -57,29 +49,18 @@ Status writeOutputs(const gltf::SceneList& scenes, const compiler::CompiledPacka
     const HeldSignals held;
     Staging staging;
     if (outputs.lockChoice.text) {
-        if (Status staged = staging.add(outputs.lock.file, *outputs.lockChoice.text); !staged) {
-            return staged;
-        }
+        GLINT_TRY_DO(staging.add(outputs.lock.file, *outputs.lockChoice.text));
     }
     if (!outputs.embed.empty()) {
-        if (Status staged = staging.addEmbedded(scenes, package, outputs.embed); !staged) {
-            return staged;
-        }
+        GLINT_TRY_DO(staging.addEmbedded(scenes, package, outputs.embed));
     }
     // The dependency file comes last, because it tells Make and Ninja that the others exist.
     if (!outputs.depfile.file.empty()) {
-        const Result<std::string> text = makeDepfile(outputs.depfile.targets, outputs.dependencies);
-        if (!text) {
-            return text.error();
-        }
-        if (Status staged = staging.add(outputs.depfile.file, *text); !staged) {
-            return staged;
-        }
+        GLINT_TRY(const auto text, makeDepfile(outputs.depfile.targets, outputs.dependencies));
+        GLINT_TRY_DO(staging.add(outputs.depfile.file, text));
     }
     if (!outputs.folder.empty()) {
-        if (Status written = writePackage(package, outputs.folder); !written) {
-            return written;
-        }
+        GLINT_TRY_DO(writePackage(package, outputs.folder));
     }
     return staging.commit();
 }

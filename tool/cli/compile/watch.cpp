@@ -81,17 +81,14 @@ Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
     for (const std::string& word : line) {
         pointers.push_back(word.c_str());
     }
-    const Result<CompletedLine> completed = completeLine(app, pointers);
-    if (!completed) {
-        return completed.error();
-    }
+    GLINT_TRY(const auto completed, completeLine(app, pointers));
     try {
-        std::vector<std::string> words(completed->words.rbegin(), completed->words.rend());
+        std::vector<std::string> words(completed.words.rbegin(), completed.words.rend());
         app.parse(words);
         settleCompile(command, arguments);
     } catch (const CLI::ParseError& error) {
         const std::string message = explain(error, command);
-        const std::optional<Diagnostic> ofFile = blameFile(*completed, message);
+        const std::optional<Diagnostic> ofFile = blameFile(completed, message);
         return ofFile ? *ofFile : makeError("settings-file", "", message);
     }
     arguments.line = line;
@@ -330,9 +327,7 @@ private:
             return false;
         }
         const std::uint64_t counter = package::readStamp(file).value_or(0) + 1;
-        if (Status written = base::writeFile(file, fmt::format("{} {}\n", counter, hash)); !written) {
-            return written.error();
-        }
+        GLINT_TRY_DO(base::writeFile(file, fmt::format("{} {}\n", counter, hash)));
         return true;
     }
 

@@ -107,22 +107,16 @@ std::string toText(const inspect::PipelineReport& report, const inspect::Pipelin
 Result<inspect::PipelineReport> make(const Console& console, const Package& package,
                                      const std::string& folder, const PackagePipelineArguments& arguments) {
     console.progress("making the pipelines of " + folder);
-    const Result<inspect::Manifest> manifest = inspect::readManifest(folder);
-    if (!manifest) {
-        return manifest.error();
-    }
+    GLINT_TRY(const auto manifest, inspect::readManifest(folder));
     HeadlessOptions options;
     options.deviceName = arguments.device;
     options.validation = arguments.validate ? Validation::On : Validation::Off;
     options.pipelineStatistics = true;
     inspect::requirePackage(package, options);
-    Result<std::unique_ptr<Context>> context = Context::createHeadless(options);
-    if (!context) {
-        return context.error();
-    }
+    GLINT_TRY(auto context, Context::createHeadless(options));
     Result<inspect::PipelineReport> report = inspect::reportPipelines(
-        **context, package, *manifest, folder, static_cast<std::uint32_t>(arguments.threads));
-    if (Status valid = measure::checkValidation(console, **context); report && !valid) {
+        *context, package, manifest, folder, static_cast<std::uint32_t>(arguments.threads));
+    if (Status valid = measure::checkValidation(console, *context); report && !valid) {
         return valid.error();
     }
     return report;

@@ -48,17 +48,12 @@ bool isToBeMade(const LockArguments& arguments) {
 // The result is empty if there is no file yet.
 Result<compiler::LockText> readLock(const LockArguments& arguments, const materials::MaterialModel& model) {
     if (isToBeMade(arguments)) {
-        if (Status possible = base::checkOutputFile(arguments.file); !possible) {
-            return possible.error();
-        }
+        GLINT_TRY_DO(base::checkOutputFile(arguments.file));
         return compiler::LockText{};
     }
-    const Result<base::Bytes> bytes = base::readFile(arguments.file, kMaxLockBytes);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, base::readFile(arguments.file, kMaxLockBytes));
     std::variant<compiler::LockText, compiler::LockTextError> parsed =
-        compiler::parseLock({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, model);
+        compiler::parseLock({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, model);
     if (const auto* error = std::get_if<compiler::LockTextError>(&parsed)) {
         return formatError(arguments.file, *error, model);
     }
@@ -219,14 +214,11 @@ Result<LockChoice> applyLock(const LockArguments& arguments, const gltf::SceneLi
     if (arguments.file.empty()) {
         return choice;
     }
-    const Result<compiler::LockText> before = readLock(arguments, modelOf(scenes));
-    if (!before) {
-        return before.error();
-    }
-    options.lockedIds = before->ids;
+    GLINT_TRY(const auto before, readLock(arguments, modelOf(scenes)));
+    options.lockedIds = before.ids;
     compiler::Plan plan = makePlan(scenes.materials(), scenes.primitives(), options);
-    const compiler::LockUpdate update = updateLock(before->ids, plan, arguments.prune);
-    const Teller teller(arguments, scenes, plan, *before, update);
+    const compiler::LockUpdate update = updateLock(before.ids, plan, arguments.prune);
+    const Teller teller(arguments, scenes, plan, before, update);
     if (arguments.frozen && teller.changes()) {
         return teller.outdated();
     }

@@ -126,12 +126,9 @@ Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments,
     if (arguments.frames.empty() && arguments.time.empty()) {
         return std::optional<Movement>();
     }
-    Result<std::vector<std::size_t>> animations = chooseAnimations(scene, arguments.animation, followsTime);
-    if (!animations) {
-        return animations.error();
-    }
+    GLINT_TRY(auto animations, chooseAnimations(scene, arguments.animation, followsTime));
     Movement movement;
-    movement.animations = std::move(*animations);
+    movement.animations = std::move(animations);
     if (const std::optional<FrameRange> range = parseFrames(arguments.frames)) {
         movement.isSequence = true;
         for (std::int64_t frame = range->first; frame <= range->last; ++frame) {

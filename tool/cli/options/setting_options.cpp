@@ -293,14 +293,11 @@ std::vector<Diagnostic> idleSettings(std::span<const gltf::Scene> scenes, compil
 
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
                                           base::Memo* texels) {
-    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(settings.materials);
-    if (!model) {
-        return model.error();
-    }
+    GLINT_TRY(const auto model, materials::loadMaterialModel(settings.materials));
     for (const std::string& name : settings.compile.effects.ofPacks) {
-        if (findEffect((*model)->effects, name) == 0) {
+        if (findEffect(model->effects, name) == 0) {
             std::vector<std::string> names;
-            for (const materials::EffectDeclaration& effect : (*model)->effects) {
+            for (const materials::EffectDeclaration& effect : model->effects) {
                 names.push_back(effect.name);
             }
             return makeError("effect-unknown", "",
@@ -318,7 +315,7 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, Im
     options.variant = settings.variant;
     options.strictPaths = settings.strictPaths;
     options.jobs = settings.compile.jobs;
-    options.materialModel = *model;
+    options.materialModel = model;
     return options;
 }
 

@@ -78,14 +78,11 @@ Result<CompletedLine> completeLine(const CLI::App& app, std::span<const char* co
     if (!file || file->empty()) {
         return line;
     }
-    const Result<compiler::Configuration> settings = measure::readSettings(*file);
-    if (!settings) {
-        return settings.error();
-    }
+    GLINT_TRY(const auto settings, measure::readSettings(*file));
     line.file = *file;
     const bool isPackaged = given(arguments, "--package").has_value();
     compiler::Configuration taken;
-    for (const auto& [name, value] : *settings) {
+    for (const auto& [name, value] : settings) {
         const std::string option = "--" + name;
         const bool isDecided =
             isPackaged && compiler::sweptSetting(name)->stage == compiler::SettingStage::Package;

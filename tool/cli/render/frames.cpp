@@ -30,9 +30,7 @@ public:
     // The scene is uploaded in the pose of the first moment.
     Status start(Context& context, const Package& package) {
         if (setup_.movement) {
-            if (Status posed = pose(setup_.movement->moments.front()); !posed) {
-                return posed;
-            }
+            GLINT_TRY_DO(pose(setup_.movement->moments.front()));
             data_.moves = setup_.movement->moments.size() > 1;
         }
         // Once for all pictures: a sequence would flicker otherwise.
@@ -41,21 +39,14 @@ public:
             report_.sky = sky_;
         }
         const base::Clock::time_point begin = base::Clock::now();
-        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context, package, data_.view());
-        if (!uploaded) {
-            return uploaded.error();
-        }
+        GLINT_TRY(auto uploaded, GpuScene::upload(context, package, data_.view()));
         const base::Clock::time_point onDevice = base::Clock::now();
         report_.start.uploadMs = base::millisecondsBetween(begin, onDevice);
-        gpuScene_ = std::move(*uploaded);
+        gpuScene_ = std::move(uploaded);
         report_.sceneStatistics = gpuScene_->statistics();
-        Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(context, package, *gpuScene_, setup_.renderer);
-        if (!renderer) {
-            return renderer.error();
-        }
+        GLINT_TRY(auto renderer, Renderer::create(context, package, *gpuScene_, setup_.renderer));
         report_.start.rendererMs = base::millisecondsSince(onDevice);
-        renderer_ = std::move(*renderer);
+        renderer_ = std::move(renderer);
         // The effect whose rays may end on the screen; there is one of Glint's own.
         const std::uint32_t onScreen = package.shape().effects.screenStarts;
         onScreen_ = onScreen & (0U - onScreen);
@@ -67,11 +58,7 @@ public:
         report_.footprint = renderer_->footprint();
         report_.pipelines.count = report_.footprint.pipelines;
         if (setup_.renderer.pipelineStatistics) {
-            Result<std::vector<PipelineStatistics>> statistics = renderer_->pipelineStatistics();
-            if (!statistics) {
-                return statistics.error();
-            }
-            report_.pipelines.statistics = std::move(*statistics);
+            GLINT_TRY(report_.pipelines.statistics, renderer_->pipelineStatistics());
         }
         report_.memory = {renderer_->memory(), gpuScene_->memory(), report_.footprint.allocatedBytes,
                           gpuScene_->allocatedBytes()};
@@ -85,22 +72,14 @@ public:
     // Moves the uploaded scene to a later moment.
     Status advance(const Moment& moment, FrameReport& frame) {
         const base::Clock::time_point begin = base::Clock::now();
-        if (Status posed = pose(moment); !posed) {
-            return posed;
-        }
+        GLINT_TRY_DO(pose(moment));
         frame.poseMs = base::millisecondsSince(begin);
         MotionView motion = data_.motion();
         motion.builds = setup_.movement->builds;
         const base::Clock::time_point updated = base::Clock::now();
-        if (Status status = gpuScene_->updateAndWait(motion); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(gpuScene_->updateAndWait(motion));
         frame.updateMs = base::millisecondsSince(updated);
-        const Result<MotionStatistics> statistics = gpuScene_->motion();
-        if (!statistics) {
-            return statistics.error();
-        }
-        frame.motion = *statistics;
+        GLINT_TRY(frame.motion, gpuScene_->motion());
         return okStatus();
     }
 
@@ -136,15 +115,10 @@ public:
         if (!image) {
             return image;
         }
-        if (Status measured = measure(frame); !measured) {
-            return measured.error();
-        }
+        GLINT_TRY_DO(measure(frame));
         if (!warned_) {
-            const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
-            if (!surfaces) {
-                return surfaces.error();
-            }
-            if (std::ranges::all_of(*surfaces, [](std::uint8_t isSurface) { return isSurface == 0; })) {
+            GLINT_TRY(const auto surfaces, renderer_->readSurfaces());
+            if (std::ranges::all_of(surfaces, [](std::uint8_t isSurface) { return isSurface == 0; })) {
                 warn(scene_view::nothingSeen(scene_, data_, camera_, true));
             }
         }
@@ -159,12 +133,9 @@ public:
             return layers;
         }
         for (const LayerImage& layer : renderer_->layers()) {
-            Result<LayerValues> values = renderer_->readLayer(layer.name);
-            if (!values) {
-                return values.error();
-            }
+            GLINT_TRY(auto values, renderer_->readLayer(layer.name));
             layers.push_back({std::string(layer.name), std::string(layer.info->channels),
-                              layer.info->format == package::LayerFormat::Half4, std::move(*values)});
+                              layer.info->format == package::LayerFormat::Half4, std::move(values)});
         }
         return layers;
     }
@@ -200,12 +171,8 @@ private:
         if (scene_view::framesEverything(scene_, setup_.arguments.camera)) {
             return okStatus();  // that one stands still
         }
-        const Result<scene_view::CameraChoice> moved = scene_view::chooseCameraAround(
-            scene_, scene_view::Bounds{}, setup_.arguments.camera, setup_.aspect);
-        if (!moved) {
-            return moved.error();
-        }
-        camera_ = *moved;
+        GLINT_TRY(camera_, scene_view::chooseCameraAround(scene_, scene_view::Bounds{},
+                                                          setup_.arguments.camera, setup_.aspect));
         return okStatus();
     }
 
@@ -218,29 +185,20 @@ private:
     }
 
     Status addHits() {
-        const Result<FrameCounters> counters = renderer_->counters();
-        if (!counters) {
-            return counters.error();
-        }
-        report_.addHits(*counters);
+        GLINT_TRY(const auto counters, renderer_->counters());
+        report_.addHits(counters);
         return okStatus();
     }
 
     // Collects the times and counts of the last sample.
     Status measure(FrameReport& frame) {
-        Result<std::vector<PassTiming>> passes = renderer_->timings();
-        if (!passes) {
-            return passes.error();
-        }
-        Result<FrameCounters> counters = renderer_->counters();
-        if (!counters) {
-            return counters.error();
-        }
-        for (const PassTiming& pass : *passes) {
+        GLINT_TRY(auto passes, renderer_->timings());
+        GLINT_TRY(auto counters, renderer_->counters());
+        for (const PassTiming& pass : passes) {
             frame.deviceMs += pass.milliseconds;
         }
-        report_.passes = std::move(*passes);
-        report_.counters = std::move(*counters);
+        report_.passes = std::move(passes);
+        report_.counters = std::move(counters);
         report_.traffic.counts = trafficCounts(report_.counters, report_.traffic.shape,
                                                static_cast<double>(report_.width) * report_.height);
         report_.textures.levels.clear();
@@ -249,11 +207,7 @@ private:
             report_.textures.levels.push_back(isRead ? std::optional(level) : std::nullopt);
         }
         if (!setup_.arguments.coverage.empty()) {
-            Result<std::vector<PixelPath>> paths = renderer_->readCoverage(onScreen_);
-            if (!paths) {
-                return paths.error();
-            }
-            report_.paths = std::move(*paths);
+            GLINT_TRY(report_.paths, renderer_->readCoverage(onScreen_));
         }
         return okStatus();
     }
@@ -276,11 +230,7 @@ private:
 Status write(FrameLoop& loop, const Package& package, const FrameSetup& setup, const FrameReport& frame,
              const LinearImage& picture, RenderReport& report) {
     if (!setup.arguments.view.empty()) {
-        Result<measure::View> view = loop.drawView(package, picture);
-        if (!view) {
-            return view.error();
-        }
-        report.view = std::move(*view);
+        GLINT_TRY(report.view, loop.drawView(package, picture));
         return image::writeImage(frame.image, measure::withLegend(*report.view));
     }
     const Result<std::vector<image::ExrLayer>> layers = loop.layersFor(frame.image);
@@ -294,9 +244,7 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
                     scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
                     RenderReport& report) {
     FrameLoop loop(setup, scene, data, report);
-    if (Status started = loop.start(context, package); !started) {
-        return started;
-    }
+    GLINT_TRY_DO(loop.start(context, package));
     const bool isSequence = setup.movement && setup.movement->isSequence;
     const std::vector<Moment> moments = setup.movement ? setup.movement->moments : std::vector<Moment>(1);
     for (std::size_t i = 0; i < moments.size(); ++i) {
@@ -306,33 +254,22 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
         const std::string& output = setup.arguments.output;
         frame.image = isSequence ? numberedFile(output, frame.frame).string() : output;
         if (i > 0) {
-            if (Status advanced = loop.advance(moments[i], frame); !advanced) {
-                return advanced;
-            }
+            GLINT_TRY_DO(loop.advance(moments[i], frame));
         }
-        const Result<LinearImage> image = loop.render(frame);
-        if (!image) {
-            return image.error();
-        }
+        GLINT_TRY(const auto image, loop.render(frame));
         const Result<bool> accepted = accept();
         if (!accepted || !*accepted) {
             return accepted ? okStatus() : Status(accepted.error());
         }
         // A sequence keeps the exposure of its first picture, because it would flicker otherwise.
         if (i == 0) {
-            const Result<double> exposure = loop.exposureOf(*image);
-            if (!exposure) {
-                return exposure.error();
-            }
-            report.exposure = *exposure;
+            GLINT_TRY(report.exposure, loop.exposureOf(image));
             report.exposureAutomatic = setup.arguments.exposure == "auto";
             if (!report.exposureAutomatic) {
                 compiler::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
-        if (Status written = write(loop, package, setup, frame, *image, report); !written) {
-            return written;
-        }
+        GLINT_TRY_DO(write(loop, package, setup, frame, image, report));
         if (isSequence) {
             report.frames.push_back(std::move(frame));
         }

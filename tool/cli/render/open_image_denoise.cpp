@@ -86,11 +86,7 @@ Status checkDenoiser() {
 Result<LinearImage> denoised(const LinearImage& picture, Renderer& renderer) {
     std::array<LayerValues, 3> layers;  // in the order of denoiserLayers()
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        Result<LayerValues> values = renderer.readLayer(denoiserLayers()[i]);
-        if (!values) {
-            return values.error();
-        }
-        layers[i] = std::move(*values);
+        GLINT_TRY(layers[i], renderer.readLayer(denoiserLayers()[i]));
     }
     const auto& [albedo, emission, normal] = layers;
     const auto layerAt = [](const LayerValues& layer, std::size_t pixel, std::size_t channel) {

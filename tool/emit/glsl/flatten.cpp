@@ -73,11 +73,8 @@ Status Flattener::addFile(std::string_view name, std::string_view text) {
     added_.insert(file.name);
     open_.push_back(file.name);
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
-        Result<bool> handled = addDirective(file, i);
-        if (!handled) {
-            return handled.error();
-        }
-        if (!*handled && isActive(file.frames)) {
+        GLINT_TRY(auto handled, addDirective(file, i));
+        if (!handled && isActive(file.frames)) {
             unit_.add(file.lines[i], file.name, static_cast<int>(i) + file.offset);
         }
     }
@@ -199,9 +196,7 @@ Status Flattener::addInclude(const File& file, int line, std::string_view argume
 Result<GlslUnit> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
                          FlattenSide side) {
     Flattener flattener(lookup, side);
-    if (Status status = flattener.addFile(name, text); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(flattener.addFile(name, text));
     if (side == FlattenSide::Glsl && !flattener.sawVersion()) {
         return errorAt("source-version", name, 1, "has no #version", "begin the file with #version 460");
     }

@@ -108,18 +108,11 @@ Result<std::optional<CompiledPackage>> makeEarlyPackage(const gltf::SceneList& s
         makeTables(scenes, plan, before.modules, settings) != tables->bytes) {
         return Early();
     }
-    Result<ModuleSource> source = makeEditSource(scenes, plan, sources, settings, edited, warm);
-    if (!source) {
-        return source.error();
-    }
+    GLINT_TRY(auto source, makeEditSource(scenes, plan, sources, settings, edited, warm));
     const base::Clock::time_point planned = base::Clock::now();
     std::vector<ModuleSource> only;
-    only.push_back(std::move(*source));
-    Result<std::vector<CompiledModule>> compiled =
-        compileModules(std::move(only), 1, settings.debugInfo, nullptr, warm);
-    if (!compiled) {
-        return compiled.error();
-    }
+    only.push_back(std::move(source));
+    GLINT_TRY(auto compiled, compileModules(std::move(only), 1, settings.debugInfo, nullptr, warm));
     const base::Clock::time_point haveSpirv = base::Clock::now();
     CompiledPackage early;
     early.plan = plan;
@@ -131,7 +124,7 @@ Result<std::optional<CompiledPackage>> makeEarlyPackage(const gltf::SceneList& s
         copy.statistics = module.statistics;
         copy.hash = module.hash;
     }
-    CompiledModule& edit = compiled->front();
+    CompiledModule& edit = compiled.front();
     const auto place = std::ranges::lower_bound(early.modules, edit.key, {}, &CompiledModule::key);
     early.modules.insert(place, edit);
     for (const PackageFile& file : before.files) {

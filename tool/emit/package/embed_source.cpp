@@ -132,11 +132,8 @@ Result<std::vector<base::StagedFile>> stageEmbeddedSource(const gltf::SceneList&
 
 Status writeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
                            const fs::path& source) {
-    Result<std::vector<base::StagedFile>> staged = stageEmbeddedSource(scenes, package, source);
-    if (!staged) {
-        return staged.error();
-    }
-    for (base::StagedFile& file : *staged) {
+    GLINT_TRY(auto staged, stageEmbeddedSource(scenes, package, source));
+    for (base::StagedFile& file : staged) {
         if (Status written = file.commit(); !written) {
             return writeError(source, written.error());
         }

@@ -140,18 +140,12 @@ std::string headerNamespace(const std::string& scenePath) {
 
 Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                const PlanOptions& options) {
-    Result<std::string> interop = interopDeclarations();
-    if (!interop) {
-        return interop.error();
-    }
-    const Result<std::vector<StructLayout>> layouts = interopLayouts(*interop);
-    if (!layouts) {
-        return layouts.error();
-    }
+    GLINT_TRY(auto interop, interopDeclarations());
+    GLINT_TRY(const auto layouts, interopLayouts(interop));
     mustache::data context = makeContext(scenes, plan, options);
     context.set("namespace", headerNamespace(scenes.scenes().front().path));
     const MaterialLayout layout = materialLayoutOf(plan);
-    context.set("interop", *interop);
+    context.set("interop", interop);
     context.set("materialRecord", recordStruct(layout, "gpu::"));
     context.set("features", featureList(*plan.model));
     context.set("hasCases", !plan.cases.empty());
@@ -159,7 +153,7 @@ Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, 
     context.set("caseMasks", caseMasks(plan));
     context.set("sceneCount", fmt::format("{}", scenes.scenes().size()));
     context.set("scenes", sceneTables(scenes));
-    context.set("layouts", layoutList(*layouts));
+    context.set("layouts", layoutList(layouts));
     context.set("materialBytes", fmt::format("{}", layout.bytes));
     context.set("materialMembers", materialMembers(layout));
     return renderTemplate(sources, "glint_tables.h.mustache", context);

@@ -88,9 +88,7 @@ Result<std::vector<StructLayout>> interopLayouts(std::string_view declarations) 
             if (line.empty() || line.starts_with('#')) {
                 continue;
             }
-            if (Status added = addMember(line, layout, alignment); !added) {
-                return added.error();
-            }
+            GLINT_TRY_DO(addMember(line, layout, alignment));
         }
         layout.bytes = alignedTo(layout.bytes, alignment);
         layouts.push_back(std::move(layout));

@@ -201,10 +201,7 @@ Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs:
 }  // namespace
 
 Status checkPackageFolder(const fs::path& folder) {
-    const Result<Names> earlier = inspectFolder(folder);
-    if (!earlier) {
-        return earlier.error();
-    }
+    GLINT_TRY_DO(inspectFolder(folder));
     const Status possible = base::checkOutputFolder(folder);
     return possible ? possible
                     : Status(makeError("output-write", folder.string(), possible.error().message,
@@ -212,40 +209,27 @@ Status checkPackageFolder(const fs::path& folder) {
 }
 
 Status writePackage(const CompiledPackage& package, const fs::path& folder) {
-    const Result<fs::path> resolved = resolveOutput(folder);
-    if (!resolved) {
-        return resolved.error();
-    }
-    const Result<OutputLock> lock = OutputLock::acquire(*resolved);
-    if (!lock) {
-        return lock.error();
-    }
-    recoverInterrupted(*resolved);
-    const Result<Names> earlier = inspectFolder(*resolved);
-    if (!earlier) {
-        return earlier.error();
-    }
-    if (isCurrent(package, *earlier, *resolved)) {
+    GLINT_TRY(const auto resolved, resolveOutput(folder));
+    GLINT_TRY_DO(OutputLock::acquire(resolved));
+    recoverInterrupted(resolved);
+    GLINT_TRY(const auto earlier, inspectFolder(resolved));
+    if (isCurrent(package, earlier, resolved)) {
         return okStatus();
     }
-    if (isWorkingFolder(*resolved)) {
-        return updateFolder(package, *earlier, *resolved);
+    if (isWorkingFolder(resolved)) {
+        return updateFolder(package, earlier, resolved);
     }
-    Result<StagingFolder> staging = StagingFolder::create(*resolved);
+    Result<StagingFolder> staging = StagingFolder::create(resolved);
     if (!staging) {
-        return orInPlace(package, *earlier, *resolved, staging.error());
+        return orInPlace(package, earlier, resolved, staging.error());
     }
-    if (Status status = stagePackage(package, *resolved, staging->path()); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(stagePackage(package, resolved, staging->path()));
     std::error_code error;
-    if (fs::exists(*resolved, error)) {
-        if (Status status = stageForeign(*earlier, *resolved, staging->path()); !status) {
-            return status;
-        }
+    if (fs::exists(resolved, error)) {
+        GLINT_TRY_DO(stageForeign(earlier, resolved, staging->path()));
     }
-    Status swapped = staging->swapInto(*resolved);
-    return swapped ? swapped : orInPlace(package, *earlier, *resolved, swapped.error());
+    Status swapped = staging->swapInto(resolved);
+    return swapped ? swapped : orInPlace(package, earlier, resolved, swapped.error());
 }
 
 }  // namespace glint::compiler

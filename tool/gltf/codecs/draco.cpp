@@ -97,9 +97,7 @@ Status checkClaim(Document& document, const HeaderClaim& claim, std::size_t pack
     }
     // A table has a number for each corner.
     const std::uint64_t tables = claim.seamTables * claim.faces * 3 * sizeof(std::uint32_t);
-    if (Status status = chargeAttributes(document, tables, packed, pointer); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(chargeAttributes(document, tables, packed, pointer));
     return document.chargeVertices(3 * claim.faces, pointer);
 }
 
@@ -200,27 +198,20 @@ DracoMesh::~DracoMesh() = default;
 
 Result<DracoMesh> DracoMesh::decode(Document& document, const Json& extension, const std::string& pointer) {
     const int view = extension["bufferView"].get<int>();
-    const Result<ByteView> bytes = document.bufferView(view);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const std::optional<HeaderClaim> claim = readClaim(*bytes);
+    GLINT_TRY(const auto bytes, document.bufferView(view));
+    const std::optional<HeaderClaim> claim = readClaim(bytes);
     if (!claim) {
         return document.error(
             "draco-decode", pointer,
             "its buffer view holds no Draco mesh of bitstream version 2.2, which glTF asks for",
             kExportWithoutDraco);
     }
-    if (Status status = checkClaim(document, *claim, bytes->size(), pointer); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(checkClaim(document, *claim, bytes.size(), pointer));
     DracoMesh mesh(std::make_unique<draco::Mesh>());
     std::string problem;
     const auto decodeFrom = claim->isSequential ? decodeMesh<draco::MeshSequentialDecoder>
                                                 : decodeMesh<draco::MeshEdgebreakerDecoder>;
-    if (Status status = decodeFrom(document, *bytes, pointer, *mesh.mesh_, problem); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(decodeFrom(document, bytes, pointer, *mesh.mesh_, problem));
     if (!problem.empty()) {
         return document.error(
             "draco-decode", pointer,

@@ -73,11 +73,7 @@ Result<ByteView> encodedBytes(Document& document, int image, base::Bytes& storag
         }
         storage = std::move(data->bytes);
     } else {
-        Result<base::Bytes> bytes = document.readFile(uri, imagePointer(image));
-        if (!bytes) {
-            return bytes.error();
-        }
-        storage = std::move(*bytes);
+        GLINT_TRY(storage, document.readFile(uri, imagePointer(image)));
     }
     return ByteView(storage);
 }
@@ -159,9 +155,7 @@ Status read(Document& document, int index, ByteView bytes, Image& image) {
     if (std::optional<Failure> failure = readHeader(bytes, image, codec)) {
         return fail(std::move(*failure));
     }
-    if (Status status = checkSize(document, image); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(checkSize(document, image));
     const ImportOptions& options = document.options();
     std::string problem;
     if (options.decodeImages && !codec->decode(bytes, image, problem)) {

@@ -378,15 +378,12 @@ std::string explain(int code) {
 
 Result<base::Bytes> unpackMeshopt(Document& document, const Json& extension, const std::string& pointer,
                                   ByteView packed, std::uint64_t byteLength) {
-    const Result<Layout> layout = readLayout(document, extension, pointer);
-    if (!layout) {
-        return layout.error();
-    }
+    GLINT_TRY(const auto layout, readLayout(document, extension, pointer));
     // This can't overflow, because the factors are within the limits of the table, 2^53 and 2^8.
-    if (std::uint64_t{layout->count} * layout->stride != byteLength) {
+    if (std::uint64_t{layout.count} * layout.stride != byteLength) {
         return document.error("meshopt-layout", pointer,
-                              fmt::format("{} elements of {} bytes are not its {} bytes", layout->count,
-                                          layout->stride, byteLength),
+                              fmt::format("{} elements of {} bytes are not its {} bytes", layout.count,
+                                          layout.stride, byteLength),
                               kExportWithoutMeshopt);
     }
     if (byteLength / kMaxRatio > packed.size()) {
@@ -404,12 +401,12 @@ Result<base::Bytes> unpackMeshopt(Document& document, const Json& extension, con
     if (bytes.empty()) {
         return bytes;
     }
-    if (const int code = decode(*layout, packed, bytes); code != kDecoded) {
+    if (const int code = decode(layout, packed, bytes); code != kDecoded) {
         return document.error("meshopt-decode", pointer,
                               fmt::format("can't be unpacked: {} (code {})", explain(code), code),
                               kExportWithoutMeshopt);
     }
-    applyFilter(*layout, bytes);
+    applyFilter(layout, bytes);
     return bytes;
 }
 

@@ -92,10 +92,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, base::
         elements.assign(accessor.count * elementSize, 0);
         return okStatus();
     }
-    const Result<ByteView> bytes = document.bufferView(accessor.bufferView);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, document.bufferView(accessor.bufferView));
     const std::size_t viewStride = document.stride(accessor.bufferView);
     const std::size_t stride = viewStride == 0 ? elementSize : viewStride;
     if (stride < elementSize) {
@@ -105,7 +102,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, base::
                                           accessorPointer(index), elementSize),
                               kDamaged);
     }
-    const ElementLayout layout{*bytes, accessor.offset, stride, elementSize};
+    const ElementLayout layout{bytes, accessor.offset, stride, elementSize};
     if (!fits(layout, accessor.count)) {
         return rangeError(document, accessorPointer(index), accessor.count, layout);
     }
@@ -119,11 +116,8 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, base::
 // Reads a part of a sparse accessor. The part is empty if `count` is 0.
 Result<ElementLayout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
                                    std::size_t offset, std::size_t elementSize, std::size_t count) {
-    const Result<ByteView> bytes = document.bufferView(bufferView);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const ElementLayout layout{*bytes, offset, elementSize, elementSize};
+    GLINT_TRY(const auto bytes, document.bufferView(bufferView));
+    const ElementLayout layout{bytes, offset, elementSize, elementSize};
     if (!fits(layout, count)) {
         return rangeError(document, pointer, count, layout);
     }
@@ -147,21 +141,15 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
                               kDamaged);
     }
     const std::size_t indexSize = sizeOf(sparse.indicesType);
-    const Result<ElementLayout> indices = sparseLayout(document, pointer + "/indices", sparse.indicesView,
-                                                       sparse.indicesOffset, indexSize, count);
-    if (!indices) {
-        return indices.error();
-    }
-    const Result<ElementLayout> values = sparseLayout(document, pointer + "/values", sparse.valuesView,
-                                                      sparse.valuesOffset, elementSize, count);
-    if (!values) {
-        return values.error();
-    }
+    GLINT_TRY(const auto indices, sparseLayout(document, pointer + "/indices", sparse.indicesView,
+                                               sparse.indicesOffset, indexSize, count));
+    GLINT_TRY(const auto values, sparseLayout(document, pointer + "/values", sparse.valuesView,
+                                              sparse.valuesOffset, elementSize, count));
     std::int64_t before = -1;
     bool increases = true;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t target =
-            loadUnsigned(&indices->bytes[indices->offset + i * indexSize], sparse.indicesType);
+            loadUnsigned(&indices.bytes[indices.offset + i * indexSize], sparse.indicesType);
         if (target >= accessor.count) {
             return document.error(
                 "sparse-index", pointer + "/indices",
@@ -169,7 +157,7 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
         }
         increases = increases && target > before;
         before = target;
-        std::memcpy(&elements[target * elementSize], &values->bytes[values->offset + i * elementSize],
+        std::memcpy(&elements[target * elementSize], &values.bytes[values.offset + i * elementSize],
                     elementSize);
     }
     if (!increases) {
@@ -183,17 +171,11 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
 // Returns all elements, tightly packed.
 Result<base::Bytes> gather(Document& document, int index, std::size_t elementSize) {
     const Accessor& accessor = document.accessor(index);
-    if (Status status = document.chargeVertices(accessor.count, accessorPointer(index)); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(document.chargeVertices(accessor.count, accessorPointer(index)));
     base::Bytes elements;
-    if (Status status = gatherBase(document, index, elementSize, elements); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(gatherBase(document, index, elementSize, elements));
     if (accessor.sparse) {
-        if (Status status = substituteSparse(document, index, elementSize, elements); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(substituteSparse(document, index, elementSize, elements));
     }
     return elements;
 }
@@ -255,15 +237,9 @@ FloatElements toFloats(const Document& document, int index, Integers integers, c
 }
 
 Result<FloatElements> readFloats(Document& document, int index, Integers integers) {
-    const Result<ElementFormat> format = floatFormat(document, index);
-    if (!format) {
-        return format.error();
-    }
-    const Result<base::Bytes> bytes = gather(document, index, format->components * format->componentSize);
-    if (!bytes) {
-        return bytes.error();
-    }
-    return toFloats(document, index, integers, *bytes);
+    GLINT_TRY(const auto format, floatFormat(document, index));
+    GLINT_TRY(const auto bytes, gather(document, index, format.components * format.componentSize));
+    return toFloats(document, index, integers, bytes);
 }
 
 Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
@@ -273,13 +249,10 @@ Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
                               "export the scene again");
     }
     constexpr std::size_t kElements = std::tuple_size_v<Matrix4>;
-    const Result<base::Bytes> bytes = gather(document, index, kElements * sizeof(float));
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, gather(document, index, kElements * sizeof(float)));
     std::vector<Matrix4> matrices(accessor.count);
     for (std::size_t i = 0; i < kElements * accessor.count; ++i) {
-        matrices[i / kElements][i % kElements] = load<float>(&(*bytes)[i * sizeof(float)]);
+        matrices[i / kElements][i % kElements] = load<float>(&bytes[i * sizeof(float)]);
     }
     return matrices;
 }
@@ -292,15 +265,12 @@ Result<IndexElements> readIndices(Document& document, int index) {
                               "indices must be scalars of unsigned integers", "export the scene again");
     }
     const std::size_t size = sizeOf(accessor.componentType);
-    const Result<base::Bytes> bytes = gather(document, index, size);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, gather(document, index, size));
     IndexElements result;
     result.restart = restart;
     result.values.reserve(accessor.count);
     for (std::size_t i = 0; i < accessor.count; ++i) {
-        result.values.push_back(loadUnsigned(&(*bytes)[i * size], accessor.componentType));
+        result.values.push_back(loadUnsigned(&bytes[i * size], accessor.componentType));
     }
     return result;
 }

@@ -158,13 +158,10 @@ Result<Container> splitContainer(std::span<const std::uint8_t> bytes, const std:
     if (bytes.size() < sizeof kGlbMagic || readWord(bytes, 0) != kGlbMagic) {
         return Container{bytes, std::nullopt};
     }
-    const auto body = glbBody(bytes, file, warnings);
-    if (!body) {
-        return body.error();
-    }
+    GLINT_TRY(const auto body, glbBody(bytes, file, warnings));
     Container container;
     bool hasJson = false;
-    for (auto rest = *body; !rest.empty();) {
+    for (auto rest = body; !rest.empty();) {
         if (rest.size() < kChunkHeaderSize) {
             return makeError("glb-chunk", file, "ends within the header of a GLB chunk", kExportHint);
         }

@@ -45,34 +45,17 @@ Document::Document(const std::filesystem::path& path, const ImportOptions& optio
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
                                                  const ImportOptions& options) {
     std::unique_ptr<Document> document(new Document(path, options));
-    if (const Status status = document->parse(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(document->parse());
     return document;
 }
 
 Status Document::parse() {
-    Result<base::Bytes> bytes = source_.readScene();
-    if (!bytes) {
-        return bytes.error();
-    }
-    file_ = std::move(*bytes);
-    const Result<Container> container = splitContainer(file_, name_, warnings_);
-    if (!container) {
-        return container.error();
-    }
-    binary_ = container->binary;
-    Result<Json> root = parseJson(container->json, name_, warnings_);
-    if (!root) {
-        return root.error();
-    }
-    json_ = std::move(*root);
-    if (Status status = checkVersion(); !status) {
-        return status;
-    }
-    if (Status status = checkExtensions(*this); !status) {
-        return status;
-    }
+    GLINT_TRY(file_, source_.readScene());
+    GLINT_TRY(const auto container, splitContainer(file_, name_, warnings_));
+    binary_ = container.binary;
+    GLINT_TRY(json_, parseJson(container.json, name_, warnings_));
+    GLINT_TRY_DO(checkVersion());
+    GLINT_TRY_DO(checkExtensions(*this));
     auto failure = checkDocument(json_, *options_.materialModel);
     if (!failure) {
         failure = checkCompression(json_);
@@ -141,35 +124,25 @@ Result<ByteView> Document::unpackedView(int index, const Json& extension, const 
     std::optional<base::Bytes>& unpacked = unpackedViews_[static_cast<std::size_t>(index)];
     if (!unpacked) {
         const Json* offset = find(extension, "byteOffset");
-        const Result<ByteView> packed =
-            bufferRange(extension["buffer"].get<int>(), offset == nullptr ? 0 : offset->get<std::uint64_t>(),
-                        extension["byteLength"].get<std::uint64_t>(), pointer);
-        if (!packed) {
-            return packed.error();
-        }
-        Result<base::Bytes> bytes =
-            unpackMeshopt(*this, extension, pointer, *packed, views_[static_cast<std::size_t>(index)].length);
-        if (!bytes) {
-            return bytes.error();
-        }
-        unpacked = std::move(*bytes);
+        GLINT_TRY(const auto packed, bufferRange(extension["buffer"].get<int>(),
+                                                 offset == nullptr ? 0 : offset->get<std::uint64_t>(),
+                                                 extension["byteLength"].get<std::uint64_t>(), pointer));
+        GLINT_TRY(unpacked, unpackMeshopt(*this, extension, pointer, packed,
+                                          views_[static_cast<std::size_t>(index)].length));
     }
     return ByteView(*unpacked);
 }
 
 Result<ByteView> Document::bufferRange(int index, std::uint64_t offset, std::uint64_t length,
                                        const std::string& pointer) {
-    const Result<ByteView> bytes = buffer(index);
-    if (!bytes) {
-        return bytes.error();
-    }
-    if (offset > bytes->size() || length > bytes->size() - offset) {
+    GLINT_TRY(const auto bytes, buffer(index));
+    if (offset > bytes.size() || length > bytes.size() - offset) {
         return error("buffer-view-range", pointer,
                      fmt::format("bytes {} to {} go beyond the {} bytes of /buffers/{}", offset,
-                                 offset + length, bytes->size(), index),
+                                 offset + length, bytes.size(), index),
                      "the file is damaged: export it again");
     }
-    return bytes->subspan(offset, length);
+    return bytes.subspan(offset, length);
 }
 
 Result<ByteView> Document::buffer(int index) {
@@ -182,11 +155,7 @@ Result<ByteView> Document::buffer(int index) {
         bytes = *binary_;
     } else {
         if (!buffers_[slot]) {
-            Result<base::Bytes> loaded = loadBuffer(json, pointer);
-            if (!loaded) {
-                return loaded.error();
-            }
-            buffers_[slot] = std::move(*loaded);
+            GLINT_TRY(buffers_[slot], loadBuffer(json, pointer));
         }
         bytes = *buffers_[slot];
     }

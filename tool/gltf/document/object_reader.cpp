@@ -54,12 +54,9 @@ Status ObjectReader::texture(std::string_view member, TextureTable& textures,
         info.texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
-    const Result<int> texture = textures.use((*json)["index"].get<int>());
-    if (!texture) {
-        return texture.error();
-    }
-    if (*texture >= 0) {
-        read.texture = *texture;
+    GLINT_TRY(const auto texture, textures.use((*json)["index"].get<int>()));
+    if (texture >= 0) {
+        read.texture = texture;
         info = read;
     }
     return okStatus();

@@ -30,15 +30,9 @@ public:
     // Without any of the three attributes there is one placement, because all of them would coincide.
     Result<Instancing> read() {
         Instancing instancing;
-        if (Status status = readArray("TRANSLATION", instancing.translations); !status) {
-            return status.error();
-        }
-        if (Status status = readArray("ROTATION", instancing.rotations); !status) {
-            return status.error();
-        }
-        if (Status status = readArray("SCALE", instancing.scales); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(readArray("TRANSLATION", instancing.translations));
+        GLINT_TRY_DO(readArray("ROTATION", instancing.rotations));
+        GLINT_TRY_DO(readArray("SCALE", instancing.scales));
         instancing.count = count_.value_or(1);
         normalize(instancing.rotations);
         return instancing;
@@ -53,27 +47,24 @@ private:
         }
         const std::string where = fmt::format("{}/{}", pointer_, name);
         // Only rotations may be integers, which then are fractions.
-        Result<FloatElements> elements =
-            readFloats(document_, accessor->get<int>(), N == 4 ? Integers::Normalized : Integers::AsValues);
-        if (!elements) {
-            return elements.error();
-        }
-        if (elements->components != N) {
+        GLINT_TRY(auto elements, readFloats(document_, accessor->get<int>(),
+                                            N == 4 ? Integers::Normalized : Integers::AsValues));
+        if (elements.components != N) {
             return document_.error("attribute-type", where,
-                                   fmt::format("has {} components, not {}", elements->components, N),
+                                   fmt::format("has {} components, not {}", elements.components, N),
                                    kExportInstances);
         }
-        if (count_ && *count_ != elements->count) {
-            return document_.error("attribute-count", where,
-                                   fmt::format("has {} elements, another attribute of the node has {}",
-                                               elements->count, *count_),
-                                   kExportInstances);
+        if (count_ && *count_ != elements.count) {
+            return document_.error(
+                "attribute-count", where,
+                fmt::format("has {} elements, another attribute of the node has {}", elements.count, *count_),
+                kExportInstances);
         }
-        count_ = elements->count;
-        values.resize(elements->count);
+        count_ = elements.count;
+        values.resize(elements.count);
         std::size_t damaged = 0;
         for (std::size_t i = 0; i < values.size(); ++i) {
-            std::copy_n(&elements->values[i * N], N, values[i].begin());
+            std::copy_n(&elements.values[i * N], N, values[i].begin());
             if (!base::isFinite(values[i])) {
                 values[i].fill(0.0F);
                 ++damaged;
@@ -164,15 +155,10 @@ Status importInstances(Document& document, Scene& scene) {
                 "give each instance a node and a skin of its own");
             continue;
         }
-        Result<Instancing> read = InstanceReader(document, attributes, pointer).read();
-        if (!read) {
-            return read.error();
-        }
-        if (Status status = checkPlaces(document, node.world, *read, pointer); !status) {
-            return status;
-        }
+        GLINT_TRY(auto read, InstanceReader(document, attributes, pointer).read());
+        GLINT_TRY_DO(checkPlaces(document, node.world, read, pointer));
         node.instancing = static_cast<int>(scene.instancings.size());
-        scene.instancings.push_back(std::move(*read));
+        scene.instancings.push_back(std::move(read));
     }
     if (!custom.empty()) {
         document.note("node-instances", "/nodes",

@@ -29,25 +29,21 @@ Status readDifferences(const PrimitiveSource& source, const Json& target, const 
     }
     Document& document = source.document;
     const std::string place = pointer + "/" + attribute;
-    const Result<FloatElements> elements =
-        readFloats(document, accessor->get<int>(), N == 4 ? Integers::Normalized : Integers::AsValues);
-    if (!elements) {
-        return elements.error();
-    }
-    if (elements->components < 3 || elements->components > N) {
+    GLINT_TRY(const auto elements,
+              readFloats(document, accessor->get<int>(), N == 4 ? Integers::Normalized : Integers::AsValues));
+    if (elements.components < 3 || elements.components > N) {
         return document.error("attribute-type", place,
-                              fmt::format("has {} components, not {}", elements->components, N),
+                              fmt::format("has {} components, not {}", elements.components, N),
                               kExportMorphs);
     }
-    if (elements->count != vertices) {
+    if (elements.count != vertices) {
         return document.error("attribute-count", place,
-                              fmt::format("has {} elements, POSITION has {}", elements->count, vertices),
+                              fmt::format("has {} elements, POSITION has {}", elements.count, vertices),
                               kExportMorphs);
     }
     differences.resize(vertices);
     for (std::size_t i = 0; i < vertices; ++i) {
-        std::copy_n(&elements->values[elements->components * i], elements->components,
-                    differences[i].begin());
+        std::copy_n(&elements.values[elements.components * i], elements.components, differences[i].begin());
     }
     return okStatus();
 }
@@ -123,18 +119,10 @@ Status readTargets(const PrimitiveSource& source, Primitive& primitive) {
             }
             return readDifferences(source, targets[i], pointer, attribute, vertices, differences);
         };
-        if (Status status = read("POSITION", true, target.positions); !status) {
-            return status;
-        }
-        if (Status status = read("NORMAL", !primitive.normals.empty(), target.normals); !status) {
-            return status;
-        }
-        if (Status status = read("TANGENT", !primitive.tangents.empty(), target.tangents); !status) {
-            return status;
-        }
-        if (Status status = read("COLOR_0", !primitive.colors.empty(), target.colors); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(read("POSITION", true, target.positions));
+        GLINT_TRY_DO(read("NORMAL", !primitive.normals.empty(), target.normals));
+        GLINT_TRY_DO(read("TANGENT", !primitive.tangents.empty(), target.tangents));
+        GLINT_TRY_DO(read("COLOR_0", !primitive.colors.empty(), target.colors));
     }
     return okStatus();
 }

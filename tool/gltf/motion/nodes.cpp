@@ -290,24 +290,18 @@ Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
 }
 
 Status placeCamera(Document& document, int camera, Node& node, Scene& scene) {
-    Result<Camera> placed = importCamera(document, camera, node.world);
-    if (!placed) {
-        return placed.error();
-    }
+    GLINT_TRY(auto placed, importCamera(document, camera, node.world));
     node.camera = static_cast<int>(scene.cameras.size());
-    placed->source = camera;
-    scene.cameras.push_back(std::move(*placed));
+    placed.source = camera;
+    scene.cameras.push_back(std::move(placed));
     return okStatus();
 }
 
 Status placeLight(Document& document, int light, Node& node, Scene& scene) {
-    Result<Light> placed = importLight(document, light, node.world);
-    if (!placed) {
-        return placed.error();
-    }
+    GLINT_TRY(auto placed, importLight(document, light, node.world));
     node.light = static_cast<int>(scene.lights.size());
-    placed->source = light;
-    scene.lights.push_back(std::move(*placed));
+    placed.source = light;
+    scene.lights.push_back(std::move(placed));
     return okStatus();
 }
 
@@ -332,14 +326,10 @@ Status appendNode(Document& document, std::size_t index, Part part, int parent, 
     }
     node.mesh = indexMember(json, "mesh");
     if (const int camera = indexMember(json, "camera"); camera >= 0) {
-        if (Status status = placeCamera(document, camera, node, scene); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(placeCamera(document, camera, node, scene));
     }
     if (const Json* light = findExtension(json, "KHR_lights_punctual")) {
-        if (Status status = placeLight(document, (*light)["light"].get<int>(), node, scene); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(placeLight(document, (*light)["light"].get<int>(), node, scene));
     }
     scene.nodes.push_back(std::move(node));
     return okStatus();
@@ -348,17 +338,10 @@ Status appendNode(Document& document, std::size_t index, Part part, int parent, 
 }  // namespace
 
 Status importNodes(Document& document, Scene& scene) {
-    const Result<std::vector<int>> parents = findParents(document);
-    if (!parents) {
-        return parents.error();
-    }
-    if (Status status = checkCycles(document, *parents); !status) {
-        return status;
-    }
-    if (Status status = chooseScene(document, scene); !status) {
-        return status;
-    }
-    const Extent extent = extentOf(document, scene.sceneInFile, *parents);
+    GLINT_TRY(const auto parents, findParents(document));
+    GLINT_TRY_DO(checkCycles(document, parents));
+    GLINT_TRY_DO(chooseScene(document, scene));
+    const Extent extent = extentOf(document, scene.sceneInFile, parents);
     // Nodes are visited depth first, and children in the file's order. The last one on the stack is next.
     struct Pending {
         std::size_t node;
@@ -372,10 +355,7 @@ Status importNodes(Document& document, Scene& scene) {
         const Pending next = pending.back();
         pending.pop_back();
         const int parent = static_cast<int>(scene.nodes.size());
-        if (Status status = appendNode(document, next.node, extent.parts[next.node], next.parent, scene);
-            !status) {
-            return status;
-        }
+        GLINT_TRY_DO(appendNode(document, next.node, extent.parts[next.node], next.parent, scene));
         const Json& children = arrayMember(document.json()["nodes"][next.node], "children");
         for (std::size_t i = children.size(); i-- > 0;) {
             const auto child = children[i].get<std::size_t>();

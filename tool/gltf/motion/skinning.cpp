@@ -117,11 +117,7 @@ Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, cons
         }
         skin.joints.push_back(node);
     }
-    Result<std::vector<Matrix4>> matrices = readInverseBinds(document, json, pointer, joints.size());
-    if (!matrices) {
-        return matrices.error();
-    }
-    skin.inverseBinds = std::move(*matrices);
+    GLINT_TRY(skin.inverseBinds, readInverseBinds(document, json, pointer, joints.size()));
     return std::optional(std::move(skin));
 }
 
@@ -204,13 +200,10 @@ Status importSkins(Document& document, Scene& scene) {
         }
         const auto index = skin->get<std::size_t>();
         if (!known.contains(index)) {
-            Result<std::optional<Skin>> read = readSkin(document, index, numbers);
-            if (!read) {
-                return read.error();
-            }
-            known[index] = *read ? static_cast<int>(scene.skins.size()) : -1;
-            if (*read) {
-                scene.skins.push_back(std::move(**read));
+            GLINT_TRY(auto read, readSkin(document, index, numbers));
+            known[index] = read ? static_cast<int>(scene.skins.size()) : -1;
+            if read {
+                scene.skins.push_back(std::move(*read));
             }
         }
         node.skin = known[index];
@@ -224,9 +217,7 @@ Status importSkins(Document& document, Scene& scene) {
                               kExportSkin);
             }
             const Skin& followed = scene.skins[static_cast<std::size_t>(node.skin)];
-            if (Status status = checkJoints(document, mesh, followed); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(checkJoints(document, mesh, followed));
         }
     }
     return okStatus();

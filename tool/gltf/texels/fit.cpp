@@ -118,13 +118,9 @@ public:
     Result<FittedImage> fit() {
         const Codec* const codec = image_.file.empty() ? nullptr : findCodec(image_.file);
         const bool hasBlocks = codec == &kBasisu || codec == &kDds;
-        if (Status status = hasBlocks ? fitBlocks() : fitTexels(); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(hasBlocks ? fitBlocks() : fitTexels());
         if (options_.decodeEmission && use_.isEmission && isBlockFormat(fitted_.format)) {
-            if (Status status = decode(); !status) {
-                return status.error();
-            }
+            GLINT_TRY_DO(decode());
             const auto bytes = static_cast<std::ptrdiff_t>(4 * pixelCount(image_, 0));
             fitted_.decoded.assign(texels_->bytes.begin(), texels_->bytes.begin() + bytes);
         }
@@ -152,9 +148,7 @@ private:
         decoded.pixels = image_.pixels;
         if (decoded.pixels.empty()) {
             decoded.file = image_.file;
-            if (Status status = decodeFile(scene_, decoded); !status) {
-                return status;
-            }
+            GLINT_TRY_DO(decodeFile(scene_, decoded));
         }
         texels_ =
             Texels{decoded.width, decoded.height, decoded.format, decoded.levels, std::move(decoded.pixels)};
@@ -200,18 +194,14 @@ private:
         if (image_.levels == most || !canPack(fitted_.format) || !hasBasisu()) {
             return okStatus();
         }
-        if (Status status = decode(); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(decode());
         completeLevels(*texels_, levelFiltersOf(use_));
         packLevels(*texels_, image_.levels, {0, 1}, fitted_);
         return okStatus();
     }
 
     Status fitTexels() {
-        if (Status status = decode(); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(decode());
         if (options_.compress && hasBasisu()) {
             const bool hasAlpha = (use_.channels & kAlpha) != 0;
             const TexelFormat format = targetFormat(use_, hasAlpha, true, options_.formats);

@@ -54,20 +54,11 @@ Result<FeatureChecks> checkFeature(const FeatureOnDevice& on) {
     checks.declaration = code.declaration;
     checks.isLayer = on.lobe != 0;
     checks.combinations = static_cast<std::uint32_t>(on.feature.materials.size());
-    Result<CheckOutcome> ranges = checkRanges(on);
-    if (!ranges) {
-        return ranges.error();
-    }
-    Result<IntegralOutcomes> integrals = checkIntegrals(on);
-    if (!integrals) {
-        return integrals.error();
-    }
-    Result<CheckOutcome> reciprocity = checkReciprocity(on);
-    if (!reciprocity) {
-        return reciprocity.error();
-    }
-    checks.outcomes = {std::move(*ranges),      std::move(integrals->density), std::move(integrals->samples),
-                       std::move(*reciprocity), std::move(integrals->energy),  std::move(integrals->albedo)};
+    GLINT_TRY(auto ranges, checkRanges(on));
+    GLINT_TRY(auto integrals, checkIntegrals(on));
+    GLINT_TRY(auto reciprocity, checkReciprocity(on));
+    checks.outcomes = {std::move(ranges),      std::move(integrals.density), std::move(integrals.samples),
+                       std::move(reciprocity), std::move(integrals.energy),  std::move(integrals.albedo)};
     return checks;
 }
 
@@ -110,44 +101,26 @@ bool FeatureChecks::failed() const {
 }
 
 Result<MaterialChecksReport> checkMaterials(const CheckMaterialsOptions& options, const Observer& observer) {
-    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(options.packs);
-    if (!model) {
-        return model.error();
-    }
-    const Result<CheckedScene> scene = makeCheckedScene(**model, options.combinations);
-    if (!scene) {
-        return scene.error();
-    }
-    Result<std::unique_ptr<FeatureEvaluator>> evaluator =
-        FeatureEvaluator::create(scene->scene, options, observer);
-    if (!evaluator) {
-        return evaluator.error();
-    }
+    GLINT_TRY(const auto model, materials::loadMaterialModel(options.packs));
+    GLINT_TRY(const auto scene, makeCheckedScene(*model, options.combinations));
+    GLINT_TRY(auto evaluator, FeatureEvaluator::create(scene.scene, options, observer));
     MaterialChecksReport report;
-    report.device = (*evaluator)->deviceName();
+    report.device = evaluator->deviceName();
     report.samples = options.samples;
-    for (const CheckedFeature& feature : scene->features) {
+    for (const CheckedFeature& feature : scene.features) {
         observer.progress(fmt::format("checking {} of {}: {}", report.features.size() + 1,
-                                      scene->features.size(), feature.code->name));
+                                      scene.features.size(), feature.code->name));
         const std::string layer = feature.code->layer.empty() ? std::string() : feature.code->name;
-        const FeatureOnDevice on{**evaluator, *scene, feature, (*evaluator)->lobeOf(layer), options.samples};
-        Result<FeatureChecks> checks = checkFeature(on);
-        if (!checks) {
-            return checks.error();
-        }
-        report.features.push_back(std::move(*checks));
+        const FeatureOnDevice on{*evaluator, scene, feature, evaluator->lobeOf(layer), options.samples};
+        GLINT_TRY(auto checks, checkFeature(on));
+        report.features.push_back(std::move(checks));
         if (options.pictures) {
-            Result<std::vector<FeaturePicture>> pictures = paintFeature(on);
-            if (!pictures) {
-                return pictures.error();
-            }
-            std::ranges::move(*pictures, std::back_inserter(report.pictures));
+            GLINT_TRY(auto pictures, paintFeature(on));
+            std::ranges::move(pictures, std::back_inserter(report.pictures));
         }
     }
     observer.progress("");
-    if (Status status = (*evaluator)->validate(observer); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(evaluator->validate(observer));
     return report;
 }
 

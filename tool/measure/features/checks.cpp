@@ -170,12 +170,9 @@ Result<std::vector<Direction>> surfaceViews(const FeatureOnDevice& on, const std
             inputs.push_back(inputOf(on, material, view, {0, 0, 1}));
         }
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-    if (!outputs) {
-        return outputs.error();
-    }
+    GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
     std::vector<Direction> found;
-    for (const compiler::FeatureKernelOutput& output : *outputs) {
+    for (const compiler::FeatureKernelOutput& output : outputs) {
         found.push_back(toDirection(output.view));
     }
     return found;
@@ -192,14 +189,11 @@ struct SeenMaterial {
 Result<std::vector<SeenMaterial>> seenMaterials(const FeatureOnDevice& on) {
     const std::vector<Direction> views{tiltedDirection(0.6, 0.4), tiltedDirection(0.0, 0.0),
                                        tiltedDirection(1.2, 2.0), tiltedDirection(1.52, 4.0)};
-    const Result<std::vector<Direction>> found = surfaceViews(on, views);
-    if (!found) {
-        return found.error();
-    }
+    GLINT_TRY(const auto found, surfaceViews(on, views));
     std::vector<SeenMaterial> seen;
     for (std::size_t i = 0; i < on.feature.materials.size(); ++i) {
         for (const std::size_t view : {std::size_t{0}, 1 + i % (views.size() - 1)}) {
-            seen.push_back({&on.feature.materials[i], views[view], (*found)[i * views.size() + view]});
+            seen.push_back({&on.feature.materials[i], views[view], found[i * views.size() + view]});
         }
     }
     return seen;
@@ -218,13 +212,10 @@ Result<std::vector<std::vector<Direction>>> sampleAll(const FeatureOnDevice& on,
             inputs.push_back(input);
         }
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-    if (!outputs) {
-        return outputs.error();
-    }
+    GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
     std::vector<std::vector<Direction>> samples(seen.size());
-    for (std::size_t i = 0; i < outputs->size(); ++i) {
-        const Direction direction = toDirection((*outputs)[i].sampled);
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const Direction direction = toDirection(outputs[i].sampled);
         const double length = std::hypot(direction[0], direction[1], direction[2]);
         // What is no direction fails the check of ranges.
         samples[i / on.samples].push_back(length > 0.5 && length < 2.0 ? direction : Direction{});
@@ -262,13 +253,10 @@ Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::v
             for (const LobeQuery& query : queries) {
                 inputs.push_back(inputOf(whole, bases[query.lobe], seen[query.lobe].view, query.direction));
             }
-            const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-            if (!outputs) {
-                return outputs.error();
-            }
-            std::vector<LobeValues> values(outputs->size());
+            GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
+            std::vector<LobeValues> values(outputs.size());
             for (std::size_t i = 0; i < values.size(); ++i) {
-                values[i].whole = valuesOf((*outputs)[i]).whole;
+                values[i].whole = valuesOf(outputs[i]).whole;
             }
             return values;
         });
@@ -375,16 +363,13 @@ compiler::FeatureKernelInput inputOf(const FeatureOnDevice& on, const CheckedMat
 Result<CheckOutcome> checkRanges(const FeatureOnDevice& on) {
     CheckOutcome outcome = outcomeOf(MaterialCheck::Range, 0.0);
     const std::vector<Direction> views = adverseViews();
-    const Result<std::vector<Direction>> surfaceView = surfaceViews(on, views);
-    if (!surfaceView) {
-        return surfaceView.error();
-    }
+    GLINT_TRY(const auto surfaceView, surfaceViews(on, views));
     std::vector<compiler::FeatureKernelInput> inputs;
     std::vector<CheckPlace> places;
     for (std::size_t i = 0; i < on.feature.materials.size(); ++i) {
         const CheckedMaterial& material = on.feature.materials[i];
         for (std::size_t k = 0; k < views.size(); ++k) {
-            const Direction& seen = (*surfaceView)[i * views.size() + k];
+            const Direction& seen = surfaceView[i * views.size() + k];
             for (const Direction& light : adverseLights(seen)) {
                 compiler::FeatureKernelInput input = inputOf(on, material, views[k], light);
                 input.mode = compiler::kKernelSamples;
@@ -394,14 +379,11 @@ Result<CheckOutcome> checkRanges(const FeatureOnDevice& on) {
             }
         }
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-    if (!outputs) {
-        return outputs.error();
-    }
+    GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
     outcome.evaluations = inputs.size();
     outcome.state = CheckState::Passed;
-    for (std::size_t i = 0; i < outputs->size(); ++i) {
-        const Fault fault = faultOf((*outputs)[i], on.lobe != 0);
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+        const Fault fault = faultOf(outputs[i], on.lobe != 0);
         if (fault.distance > outcome.worst) {
             outcome.worst = fault.distance;
             outcome.state = CheckState::Failed;
@@ -418,42 +400,32 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
         outcome.state = on.lobe == 0 ? CheckState::Absent : CheckState::Unasked;
         return outcome;
     }
-    const Result<std::vector<SeenMaterial>> seen = seenMaterials(on);
-    if (!seen) {
-        return seen.error();
-    }
+    GLINT_TRY(const auto seen, seenMaterials(on));
     constexpr std::size_t kPairs = 64;
     FeatureOnDevice few = on;
     few.samples = kPairs / 2;
-    const Result<std::vector<std::vector<Direction>>> samples = sampleAll(few, *seen);
-    if (!samples) {
-        return samples.error();
-    }
+    GLINT_TRY(const auto samples, sampleAll(few, seen));
     // Half of the lights are where the lobe is, the others anywhere above the surface.
     std::vector<compiler::FeatureKernelInput> inputs;
-    for (std::size_t i = 0; i < seen->size(); ++i) {
+    for (std::size_t i = 0; i < seen.size(); ++i) {
         for (std::size_t k = 0; k < kPairs; ++k) {
             const std::array<double, 3> u = randomNumbers(k, 6);
             Direction light = tiltedDirection(std::acos(std::max(u[0], 1e-3)), 2.0 * std::numbers::pi * u[1]);
-            if (k < kPairs / 2 && (*samples)[i][k][2] > 1e-3) {
-                light = (*samples)[i][k];
+            if (k < kPairs / 2 && samples[i][k][2] > 1e-3) {
+                light = samples[i][k];
             }
             for (const std::uint32_t mode : {0U, compiler::kKernelSwaps}) {
-                compiler::FeatureKernelInput input =
-                    inputOf(on, *(*seen)[i].material, (*seen)[i].view, light);
+                compiler::FeatureKernelInput input = inputOf(on, *seen[i].material, seen[i].view, light);
                 input.mode = mode;
                 inputs.push_back(input);
             }
         }
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-    if (!outputs) {
-        return outputs.error();
-    }
+    GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
     outcome.evaluations = inputs.size();
-    for (std::size_t i = 0; i + 1 < outputs->size(); i += 2) {
-        const compiler::FeatureKernelOutput& there = (*outputs)[i];
-        const compiler::FeatureKernelOutput& back = (*outputs)[i + 1];
+    for (std::size_t i = 0; i + 1 < outputs.size(); i += 2) {
+        const compiler::FeatureKernelOutput& there = outputs[i];
+        const compiler::FeatureKernelOutput& back = outputs[i + 1];
         if (!isFinite(there) || !isFinite(back)) {
             continue;  // The check of ranges fails.
         }
@@ -479,7 +451,7 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
         keepWorst(outcome, difference, difference > outcome.worst, difference > kReciprocityLimit,
                   fmt::format("the lobe is {:.5g}, and {:.5g} with view and light in each other's place",
                               forth, other),
-                  placeOf(*(*seen)[i / (2 * kPairs)].material, toDirection(there.view), &light));
+                  placeOf(*seen[i / (2 * kPairs)].material, toDirection(there.view), &light));
     }
     return outcome;
 }
@@ -490,30 +462,21 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
                               outcomeOf(MaterialCheck::Energy, kEnergyLimit),
                               outcomeOf(MaterialCheck::Albedo, kAlbedoLimit)};
     outcomes.samples.worst = 1.0;
-    const Result<std::vector<SeenMaterial>> seen = seenMaterials(on);
-    if (!seen) {
-        return seen.error();
-    }
-    const Result<std::vector<std::vector<Direction>>> samples = sampleAll(on, *seen);
-    if (!samples) {
-        return samples.error();
-    }
+    GLINT_TRY(const auto seen, seenMaterials(on));
+    GLINT_TRY(const auto samples, sampleAll(on, seen));
     const bool isLayer = on.lobe != 0;
     const Result<std::vector<LobeIntegrals>> integrals =
-        integrateLobes(*samples, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
+        integrateLobes(samples, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
             std::vector<compiler::FeatureKernelInput> inputs;
             inputs.reserve(queries.size());
             for (const LobeQuery& query : queries) {
-                const SeenMaterial& one = (*seen)[query.lobe];
+                const SeenMaterial& one = seen[query.lobe];
                 inputs.push_back(inputOf(on, *one.material, one.view, query.direction));
             }
-            const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-            if (!outputs) {
-                return outputs.error();
-            }
+            GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
             std::vector<LobeValues> values;
-            values.reserve(outputs->size());
-            for (const compiler::FeatureKernelOutput& output : *outputs) {
+            values.reserve(outputs.size());
+            for (const compiler::FeatureKernelOutput& output : outputs) {
                 values.push_back(valuesOf(output));
             }
             return values;
@@ -522,28 +485,22 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
         return integrals.error();
     }
     std::vector<compiler::FeatureKernelInput> straight;
-    for (const SeenMaterial& one : *seen) {
+    for (const SeenMaterial& one : seen) {
         straight.push_back(inputOf(on, *one.material, one.view, {0, 0, 1}));
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> shares = on.evaluator.run(straight);
-    if (!shares) {
-        return shares.error();
-    }
-    const Result<std::vector<double>> bases = baseEnergies(on, *seen);
-    if (!bases) {
-        return bases.error();
-    }
+    GLINT_TRY(const auto shares, on.evaluator.run(straight));
+    GLINT_TRY(const auto bases, baseEnergies(on, seen));
     std::uint64_t evaluations = 0;
-    for (std::size_t i = 0; i < seen->size(); ++i) {
-        judgeIntegrals((*integrals)[i], (*shares)[i], (*bases)[i], on.samples,
-                       placeOf(*(*seen)[i].material, (*seen)[i].surfaceView, nullptr), isLayer, outcomes);
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        judgeIntegrals((*integrals)[i], shares[i], bases[i], on.samples,
+                       placeOf(*seen[i].material, seen[i].surfaceView, nullptr), isLayer, outcomes);
         evaluations += (*integrals)[i].evaluations;
     }
     outcomes.energy.evaluations = evaluations;
     if (isLayer) {
         outcomes.density.evaluations = evaluations;
         outcomes.albedo.evaluations = evaluations;
-        outcomes.samples.evaluations = seen->size() * on.samples;
+        outcomes.samples.evaluations = seen.size() * on.samples;
     }
     return outcomes;
 }

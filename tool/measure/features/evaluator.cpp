@@ -33,11 +33,7 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
     HeadlessOptions device;
     device.validation = options.validate ? Validation::Synchronization : Validation::Off;
     device.deviceName = options.device;
-    Result<std::unique_ptr<Context>> context = Context::createHeadless(device);
-    if (!context) {
-        return context.error();
-    }
-    evaluator->context_ = std::move(*context);
+    GLINT_TRY(evaluator->context_, Context::createHeadless(device));
 
     observer.progress("compiling");
     compiler::CompileSettings settings = checkedSettings();
@@ -45,35 +41,17 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
     if ((evaluator->context_->handles().tracers & package::kTracerRayQuery) == 0) {
         settings.tracers = package::kTracerRayPipeline;
     }
-    const Result<compiler::CompiledPackage> compiled = compilePackage(scene, settings);
-    if (!compiled) {
-        return compiled.error();
-    }
-    Result<compiler::FeatureKernel> kernel = compileFeatureKernel(scene, compiled->plan, settings);
-    if (!kernel) {
-        return kernel.error();
-    }
-    evaluator->layers_ = std::move(kernel->layers);
-    Result<Package> package = scene_view::loadPackage(*compiled);
-    if (!package) {
-        return package.error();
-    }
-    evaluator->package_ = std::make_unique<Package>(std::move(*package));
+    GLINT_TRY(const auto compiled, compilePackage(scene, settings));
+    GLINT_TRY(auto kernel, compileFeatureKernel(scene, compiled.plan, settings));
+    evaluator->layers_ = std::move(kernel.layers);
+    GLINT_TRY(auto package, scene_view::loadPackage(compiled));
+    evaluator->package_ = std::make_unique<Package>(std::move(package));
 
     observer.progress("making the pipeline");
     scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     data.vertices = VertexForm::Full;  // frames of surfaces are compared exactly
-    Result<std::unique_ptr<GpuScene>> uploaded =
-        GpuScene::upload(*evaluator->context_, *evaluator->package_, data.view());
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    evaluator->scene_ = std::move(*uploaded);
-    Result<std::unique_ptr<SceneKernel>> made = SceneKernel::create(*evaluator->scene_, kernel->spirv);
-    if (!made) {
-        return made.error();
-    }
-    evaluator->kernel_ = std::move(*made);
+    GLINT_TRY(evaluator->scene_, GpuScene::upload(*evaluator->context_, *evaluator->package_, data.view()));
+    GLINT_TRY(evaluator->kernel_, SceneKernel::create(*evaluator->scene_, kernel.spirv));
     return evaluator;
 }
 
@@ -91,12 +69,9 @@ Result<std::vector<compiler::FeatureKernelOutput>> FeatureEvaluator::run(
         const std::size_t count = std::min(kMostOfRun, inputs.size() - first);
         std::vector<std::uint32_t> words(count * kWordsIn);
         std::memcpy(words.data(), inputs.data() + first, count * sizeof(compiler::FeatureKernelInput));
-        const Result<std::vector<std::uint32_t>> found =
-            kernel_->run(words, static_cast<std::uint32_t>(count), count * kWordsOut);
-        if (!found) {
-            return found.error();
-        }
-        std::memcpy(static_cast<void*>(outputs.data() + first), found->data(),
+        GLINT_TRY(const auto found,
+                  kernel_->run(words, static_cast<std::uint32_t>(count), count * kWordsOut));
+        std::memcpy(static_cast<void*>(outputs.data() + first), found.data(),
                     count * sizeof(compiler::FeatureKernelOutput));
     }
     return outputs;

@@ -55,13 +55,9 @@ public:
         : samples_(samples), function_(function), results_(samples.size()), bins_(samples.size()) {}
 
     Result<std::vector<LobeIntegrals>> run() {
-        if (Status status = start(); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(start());
         while (!waiting_.empty()) {
-            if (Status status = split(); !status) {
-                return status.error();
-            }
+            GLINT_TRY_DO(split());
         }
         for (std::size_t lobe = 0; lobe < samples_.size(); ++lobe) {
             compareSamples(lobe);
@@ -83,14 +79,11 @@ private:
             }
             results_[lobe].evaluations += kNodesOfCell;
         }
-        const Result<std::vector<LobeValues>> values = function_(queries);
-        if (!values) {
-            return values.error();
-        }
+        GLINT_TRY(const auto values, function_(queries));
         std::vector<LobeValues> integrals(cells.size());
         for (std::size_t i = 0; i < cells.size(); ++i) {
             for (std::size_t node = 0; node < kNodesOfCell; ++node) {
-                addTo(integrals[i], (*values)[i * kNodesOfCell + node],
+                addTo(integrals[i], values[i * kNodesOfCell + node],
                       kWeights[node / 3] * kWeights[node % 3] * cells[i].second.solidAngle());
             }
         }
@@ -115,12 +108,9 @@ private:
                 waiting_.push_back({lobe, cell, {}, within(places, cell)});
             }
         }
-        const Result<std::vector<LobeValues>> integrals = integrate(cells);
-        if (!integrals) {
-            return integrals.error();
-        }
+        GLINT_TRY(const auto integrals, integrate(cells));
         for (std::size_t i = 0; i < waiting_.size(); ++i) {
-            waiting_[i].integral = (*integrals)[i];
+            waiting_[i].integral = integrals[i];
         }
         return okStatus();
     }
@@ -141,15 +131,12 @@ private:
                 cells.emplace_back(square.lobe, square.cell.child(number));
             }
         }
-        const Result<std::vector<LobeValues>> integrals = integrate(cells);
-        if (!integrals) {
-            return integrals.error();
-        }
+        GLINT_TRY(const auto integrals, integrate(cells));
         std::vector<std::size_t> kept(samples_.size());
         std::vector<Waiting> next;
         for (std::size_t i = 0; i < waiting_.size(); ++i) {
             Waiting& square = waiting_[i];
-            const std::span<const LobeValues> quarters(integrals->data() + 4 * i, 4);
+            const std::span<const LobeValues> quarters(integrals.data() + 4 * i, 4);
             if (!refines(square, quarters, kept[square.lobe])) {
                 continue;
             }

@@ -68,12 +68,9 @@ Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
             pixels.push_back(place.pixel);
         }
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-    if (!outputs) {
-        return outputs.error();
-    }
+    GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
     std::vector<float> brightness;
-    for (const compiler::FeatureKernelOutput& output : *outputs) {
+    for (const compiler::FeatureKernelOutput& output : outputs) {
         brightness.push_back(*std::ranges::max_element(output.reflected));
     }
     std::ranges::sort(brightness);
@@ -81,7 +78,7 @@ Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             // Zero stays apart from the background.
-            image.pixels[pixels[i]][channel] = 0.03F + 0.75F * (*outputs)[i].reflected[channel] / white;
+            image.pixels[pixels[i]][channel] = 0.03F + 0.75F * outputs[i].reflected[channel] / white;
         }
     }
     return FeaturePicture{on.feature.code->name + "_lobe", std::move(image)};
@@ -105,10 +102,7 @@ Result<FeaturePicture> paintFurnace(const FeatureOnDevice& on) {
             inputs.push_back(input);
         }
     }
-    const Result<std::vector<compiler::FeatureKernelOutput>> outputs = on.evaluator.run(inputs);
-    if (!outputs) {
-        return outputs.error();
-    }
+    GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
     for (std::size_t i = 0; i < places.size(); ++i) {
         std::array<float, 4>& pixel = image.pixels[places[i].pixel];
         double made = 0.0;
@@ -116,7 +110,7 @@ Result<FeaturePicture> paintFurnace(const FeatureOnDevice& on) {
             double sum = 0.0;
             double squares = 0.0;
             for (std::uint32_t k = 0; k < kSphereSamples; ++k) {
-                const double weight = static_cast<double>((*outputs)[i * kSphereSamples + k].weight[channel]);
+                const double weight = static_cast<double>(outputs[i * kSphereSamples + k].weight[channel]);
                 sum += weight / kSphereSamples;
                 squares += weight * weight / kSphereSamples;
             }
@@ -136,11 +130,8 @@ Result<FeaturePicture> paintFurnace(const FeatureOnDevice& on) {
 Result<std::vector<FeaturePicture>> paintFeature(const FeatureOnDevice& on) {
     std::vector<FeaturePicture> pictures;
     for (Result<FeaturePicture> (*const paint)(const FeatureOnDevice&) : {paintLobe, paintFurnace}) {
-        Result<FeaturePicture> picture = paint(on);
-        if (!picture) {
-            return picture.error();
-        }
-        pictures.push_back(std::move(*picture));
+        GLINT_TRY(auto picture, paint(on));
+        pictures.push_back(std::move(picture));
     }
     return pictures;
 }

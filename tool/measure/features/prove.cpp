@@ -65,23 +65,17 @@ std::string_view nameOf(FeatureProofState state) {
 
 Result<std::vector<FeatureProofOutcome>> proveMaterials(const ProveMaterialsOptions& options,
                                                         const Observer& observer) {
-    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel(options.packs);
-    if (!model) {
-        return model.error();
-    }
-    const Result<CheckedScene> checked = makeCheckedScene(**model, 2);
-    if (!checked) {
-        return checked.error();
-    }
+    GLINT_TRY(const auto model, materials::loadMaterialModel(options.packs));
+    GLINT_TRY(const auto checked, makeCheckedScene(*model, 2));
     const compiler::CompileSettings settings;
-    const gltf::SceneList scenes({&checked->scene, 1});
+    const gltf::SceneList scenes({&checked.scene, 1});
     const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(), settings.plan);
     std::vector<FeatureProofOutcome> outcomes;
-    for (const CheckedFeature& feature : checked->features) {
-        observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked->features.size(),
+    for (const CheckedFeature& feature : checked.features) {
+        observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked.features.size(),
                                       feature.code->name));
         const Result<compiler::FeatureProof> proof =
-            compiler::compileFeatureProof(checked->scene, plan, settings, *feature.code);
+            compiler::compileFeatureProof(checked.scene, plan, settings, *feature.code);
         FeatureProofOutcome outcome;
         if (proof) {
             prove::ProofOptions limits;

@@ -80,10 +80,7 @@ image::Color8 colorOfPixel(const package::LayerInfo& info, const float* value, s
 }  // namespace
 
 Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exposure) {
-    Result<LayerValues> values = renderer.readLayer(name);
-    if (!values) {
-        return values.error();
-    }
+    GLINT_TRY(auto values, renderer.readLayer(name));
     const std::vector<LayerImage> images = renderer.layers();
     const package::LayerInfo& info = *std::ranges::find(images, name, &LayerImage::name)->info;
     ViewChoice choice{&infoOfLayer(info), ""};
@@ -91,11 +88,11 @@ Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exp
         choice.source = name.substr(0, name.find('.'));
     }
     const std::size_t channels = info.channels.size();
-    const std::uint32_t width = values->width;
-    const std::uint32_t height = values->height;
-    const std::uint32_t components = values->components;
-    const std::vector<float> pixels = values->reals;
-    if (values->integers.empty()) {
+    const std::uint32_t width = values.width;
+    const std::uint32_t height = values.height;
+    const std::uint32_t components = values.components;
+    const std::vector<float> pixels = values.reals;
+    if (values.integers.empty()) {
         // Components beyond the channels are 0 and would count.
         std::vector<float> packed;
         packed.reserve(std::size_t{width} * height * channels);
@@ -103,12 +100,12 @@ Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exp
             packed.insert(packed.end(), pixels.begin() + static_cast<std::ptrdiff_t>(i),
                           pixels.begin() + static_cast<std::ptrdiff_t>(i + channels));
         }
-        values->reals = std::move(packed);
+        values.reals = std::move(packed);
     }
     ViewInput input;
     input.width = width;
     input.height = height;
-    input.layers.emplace(std::string(info.name), std::move(*values));
+    input.layers.emplace(std::string(info.name), std::move(values));
     View view = colorView(choice, input);
     if (channels == 1) {
         return view;

@@ -134,11 +134,8 @@ Status readEverySource(const ViewChoice& choice, Renderer& renderer, ViewInput& 
             input.package->layers().end()) {
             return missingLayer(choice, name);
         }
-        Result<LayerValues> values = renderer.readLayer(name);
-        if (!values) {
-            return values.error();
-        }
-        input.layers.insert_or_assign(name, std::move(*values));
+        GLINT_TRY(auto values, renderer.readLayer(name));
+        input.layers.insert_or_assign(name, std::move(values));
     }
     return okStatus();
 }
@@ -207,11 +204,7 @@ Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput in
     });
     package::Effect effect = 0;
     if (ofRaysAlone) {
-        const Result<package::Effect> found = effectOf(choice, package);
-        if (!found) {
-            return found.error();
-        }
-        effect = *found;
+        GLINT_TRY(effect, effectOf(choice, package));
     }
     for (const std::string_view wanted : choice.info->layers) {
         const package::LayerInfo& info = *package::findLayer(wanted);
@@ -221,17 +214,12 @@ Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput in
         if (layer == package.layers().end()) {
             return missingLayer(choice, wanted);
         }
-        Result<LayerValues> values = renderer.readLayer(layer->name);
-        if (!values) {
-            return values.error();
-        }
-        input.width = values->width;
-        input.height = values->height;
-        input.layers.insert_or_assign(std::string(wanted), std::move(*values));
+        GLINT_TRY(auto values, renderer.readLayer(layer->name));
+        input.width = values.width;
+        input.height = values.height;
+        input.layers.insert_or_assign(std::string(wanted), std::move(values));
     }
-    if (Status read = readEverySource(choice, renderer, input); !read) {
-        return read.error();
-    }
+    GLINT_TRY_DO(readEverySource(choice, renderer, input));
     if (choice.info->readsReference) {
         if (input.picture == nullptr || input.reference == nullptr) {
             return makeError(

@@ -226,9 +226,7 @@ Result<std::vector<std::uint32_t>> GlobalTable::add(const ParsedModule& module, 
         id = known->second;
         if (isNew) {
             ++bound_;
-            if (Status same = checkResource(module, global, shader); !same) {
-                return same.error();
-            }
+            GLINT_TRY_DO(checkResource(module, global, shader));
             write(module, added, global);
         }
     }

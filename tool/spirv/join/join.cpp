@@ -205,9 +205,7 @@ Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::
             if (called == member.module.functions.end()) {
                 return refuse("a part calls a function that it does not have");
             }
-            if (Status added = addFunction(member, *called, open, functions); !added) {
-                return added;
-            }
+            GLINT_TRY_DO(addFunction(member, *called, open, functions));
         }
     }
     const NumberedFunction numbered = number(member, function);
@@ -237,9 +235,7 @@ Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::
 Status Joiner::addFunctions(Member& member, JoinedWords& functions) {
     for (const ParsedFunction& function : member.module.functions) {
         std::set<std::uint32_t> open;
-        if (Status added = addFunction(member, function, open, functions); !added) {
-            return added;
-        }
+        GLINT_TRY_DO(addFunction(member, function, open, functions));
     }
     return okStatus();
 }
@@ -290,33 +286,21 @@ JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const 
 Result<JoinedWords> Joiner::join(std::span<const std::span<const std::uint32_t>> modules) {
     std::vector<Member> members;
     for (const std::span<const std::uint32_t> words : modules) {
-        Result<ParsedModule> parsed = parseModule(words, shader_);
-        if (!parsed) {
-            return parsed.error();
-        }
+        GLINT_TRY(auto parsed, parseModule(words, shader_));
         if (!members.empty() && words[kVersionWord] != modules.front()[kVersionWord]) {
             return refuse("two parts have different versions of SPIR-V");
         }
-        if (Status added = addSettings(*parsed, members.empty()); !added) {
-            return added.error();
-        }
-        Result<std::vector<std::uint32_t>> ids = table_.add(*parsed, shader_);
-        if (!ids) {
-            return ids.error();
-        }
-        const std::uint32_t bound = parsed->bound();
-        members.push_back({std::move(*parsed), std::move(*ids), std::vector<std::uint32_t>(bound)});
+        GLINT_TRY_DO(addSettings(parsed, members.empty()));
+        GLINT_TRY(auto ids, table_.add(parsed, shader_));
+        const std::uint32_t bound = parsed.bound();
+        members.push_back({std::move(parsed), std::move(ids), std::vector<std::uint32_t>(bound)});
     }
     JoinedWords own;
     JoinedWords imported;
     for (std::size_t i = 1; i < members.size(); ++i) {
-        if (Status added = addFunctions(members[i], imported); !added) {
-            return added.error();
-        }
+        GLINT_TRY_DO(addFunctions(members[i], imported));
     }
-    if (Status added = addFunctions(members.front(), own); !added) {
-        return added.error();
-    }
+    GLINT_TRY_DO(addFunctions(members.front(), own));
     return assemble(members.front(), own, imported);
 }
 

@@ -95,9 +95,7 @@ Status Window::takeBuilds() {
 Status Window::install(std::size_t index, Build build) {
     Side& one = *sides_[index];
     if (!one.picture.hasLoaded()) {
-        if (Status waited = presenter_->waitForFrames(); !waited) {
-            return waited;
-        }
+        GLINT_TRY_DO(presenter_->waitForFrames());
     }
     finishSamples();
     const bool isOtherScene =
@@ -146,9 +144,7 @@ Status Window::install(std::size_t index, Build build) {
         }
     }
     say(fmt::format("{} modules compiled, {:.0f} ms; {}", compiled, buildMs, one.picture.lastChange()));
-    if (Status followed = followSettings(index); !followed) {
-        return followed;
-    }
+    GLINT_TRY_DO(followSettings(index));
     return applyPose();
 }
 
@@ -190,9 +186,7 @@ Status Window::followSettings(std::size_t index) {
         error_.reset();
     }
     if (change != Change::Frame) {
-        if (Status waited = presenter_->waitForFrames(); !waited) {
-            return waited;
-        }
+        GLINT_TRY_DO(presenter_->waitForFrames());
         finishSamples();
         one.history.clear();
     }

@@ -59,20 +59,14 @@ Status Window::fitSize() {
     if (base::millisecondsSince(resized_) < kRestMs && display_->image().width > 0) {
         return okStatus();
     }
-    if (Status waited = presenter_->waitForFrames(); !waited) {
-        return waited;
-    }
-    if (Result<bool> resized = display_->resize(width, height); !resized) {
-        return resized.error();
-    }
+    GLINT_TRY_DO(presenter_->waitForFrames());
+    GLINT_TRY_DO(display_->resize(width, height));
     pick_.reset();
     for (std::size_t i = 0; i < kPictures; ++i) {
         if (sides_[i]) {
             sides_[i]->wanted.renderer.width = width;
             sides_[i]->wanted.renderer.height = height;
-            if (Status followed = followSettings(i); !followed) {
-                return followed;
-            }
+            GLINT_TRY_DO(followSettings(i));
         }
     }
     cameraIsNew_ = cameraIsNew_ || !camera_.moved();
@@ -109,14 +103,10 @@ Status Window::frame() {
 }
 
 Status Window::drawFrame(const Presenter::Frame& frame) {
-    if (Status followed = followLook(); !followed) {
-        return followed;
-    }
+    GLINT_TRY_DO(followLook());
     bool sampled = false;
     if (measuresPasses_ && !isComplete()) {
-        if (Status waited = presenter_->waitForFrames(); !waited) {
-            return waited;
-        }
+        GLINT_TRY_DO(presenter_->waitForFrames());
         finishSamples();
     }
     for (std::unique_ptr<Side>& one : sides_) {
@@ -152,9 +142,7 @@ Status Window::drawFrame(const Presenter::Frame& frame) {
     }
     presenter_->beginDrawing(frame, area.width > 0 ? &display_->image() : nullptr, area);
     interface_->record(frame.commands);
-    if (Status ended = presenter_->end(frame); !ended) {
-        return ended;
-    }
+    GLINT_TRY_DO(presenter_->end(frame));
     if (sampled) {
         sampleTimes_.push_back(base::millisecondsSince(lastSample_) / 1000.0);
         lastSample_ = base::Clock::now();
@@ -192,9 +180,7 @@ Status Window::followLook() {
     if (!isFirst && !picture.isComplete() && base::millisecondsSince(viewed_) < kLookMs) {
         return okStatus();
     }
-    if (Status waited = presenter_->waitForFrames(); !waited) {
-        return waited;
-    }
+    GLINT_TRY_DO(presenter_->waitForFrames());
     finishSamples();
     Result<measure::View> made = makeLook(look_, picture, static_cast<double>(exposure_));
     viewedLook_ = look_;

@@ -101,9 +101,7 @@ Status Window::applyPose() {
             continue;
         }
         // Poses are written to memory that frames in flight read.
-        if (Status waited = presenter_->waitForFrames(); !waited) {
-            return waited;
-        }
+        GLINT_TRY_DO(presenter_->waitForFrames());
         finishSamples();
         if (Status posed = one->picture.pose(moment, presenter_->submitted() + 1); !posed) {
             report(posed.error());

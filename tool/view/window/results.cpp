@@ -57,11 +57,8 @@ Status Window::writeShot(const std::string& file, const Look& shown, const Linea
     }
     std::vector<image::ExrLayer> layers;
     if (!shown.layer.empty()) {
-        Result<image::ExrLayer> layer = layerForFile(shown, side().picture);
-        if (!layer) {
-            return layer.error();
-        }
-        layers.push_back(std::move(*layer));
+        GLINT_TRY(auto layer, layerForFile(shown, side().picture));
+        layers.push_back(std::move(layer));
     }
     return image::writeImage(file, image, exposure, layers);
 }

@@ -102,9 +102,7 @@ Status Window::open() {
         return windowError(text != nullptr ? fmt::format("no window can be opened ({})", text)
                                            : std::string("no window can be opened"));
     }
-    if (Status opened = openDevice(); !opened) {
-        return opened;
-    }
+    GLINT_TRY_DO(openDevice());
     showsPanel_ = request_.showsPanel;
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     const int panel = showsPanel_ ? static_cast<int>(kPanelWidth) : 0;
@@ -135,21 +133,9 @@ Status Window::open() {
             windowOf(window).onDrop(files[i]);
         }
     });
-    Result<std::unique_ptr<Presenter>> presenter = Presenter::create(*context_, window_);
-    if (!presenter) {
-        return presenter.error();
-    }
-    presenter_ = std::move(*presenter);
-    Result<std::unique_ptr<Interface>> interface = Interface::create(*context_, window_, *presenter_);
-    if (!interface) {
-        return interface.error();
-    }
-    interface_ = std::move(*interface);
-    Result<std::unique_ptr<Display>> display = Display::create(*context_);
-    if (!display) {
-        return display.error();
-    }
-    display_ = std::move(*display);
+    GLINT_TRY(presenter_, Presenter::create(*context_, window_));
+    GLINT_TRY(interface_, Interface::create(*context_, window_, *presenter_));
+    GLINT_TRY(display_, Display::create(*context_));
     builder_ = std::make_unique<Builder>(request_, *context_);
     sides_[0] = std::make_unique<Side>(*context_);
     side().wanted = request_.settings;
@@ -175,11 +161,7 @@ Status Window::open() {
                               [this](const std::string& file) { return writeReport(file); },
                               [this] { return frames_; },
                               [this](const std::string& text) { request_.observer->detail(text); }};
-        Result<std::unique_ptr<Script>> script = Script::read(request_.script, host);
-        if (!script) {
-            return script.error();
-        }
-        script_ = std::move(*script);
+        GLINT_TRY(script_, Script::read(request_.script, host));
         glfwFocusWindow(window_);
     }
     return okStatus();
@@ -226,18 +208,12 @@ Status Window::run() {
             glfwWaitEventsTimeout(kPollMs / 1000.0);
             ++frames_;
         } else if (!isIdle() || script_) {
-            if (Status drawn = frame(); !drawn) {
-                return drawn;
-            }
+            GLINT_TRY_DO(frame());
         }
         pollFiles();
-        if (Status taken = takeBuilds(); !taken) {
-            return taken;
-        }
+        GLINT_TRY_DO(takeBuilds());
         if (script_) {
-            if (Status stepped = script_->step(); !stepped) {
-                return stepped;
-            }
+            GLINT_TRY_DO(script_->step());
             if (script_->isDone()) {
                 script_.reset();
             }
@@ -248,17 +224,13 @@ Status Window::run() {
             ++unread_;
         }
     }
-    if (Status waited = presenter_->waitForFrames(); !waited) {
-        return waited;
-    }
+    GLINT_TRY_DO(presenter_->waitForFrames());
     return measure::checkValidation(*request_.observer, *context_);
 }
 
 Status showWindow(const Request& request) {
     Window window(request);
-    if (Status opened = window.open(); !opened) {
-        return opened;
-    }
+    GLINT_TRY_DO(window.open());
     return window.run();
 }
 
