@@ -94,6 +94,15 @@ def vertices(path, count):
     path.write_text(json.dumps(scene))
 
 
+def materials(path, count):
+    """Squares of so many materials, each with its own set of features."""
+    make = pathlib.Path(__file__).resolve().parent.parent / "make_synthetic_scene.py"
+    folder = path.with_suffix(".parts")
+    run(sys.executable, make, folder, "--materials", count, "--keys", count)
+    for file in folder.iterdir():
+        file.rename(path if file.suffix == ".gltf" else path.with_name(file.name))
+
+
 def plain(path, _):
     measure_lights.write_scene(path, 4)
 
@@ -101,9 +110,9 @@ def plain(path, _):
 class Threshold:
     """A default, and the scene and settings of a number. `below` and `above` are the numbers on both sides."""
 
-    def __init__(self, default, write, below, above, settings=lambda number: [], size=None):
+    def __init__(self, default, write, below, above, settings=lambda number: [], size=None, strategy="uber"):
         self.default, self.write, self.sides = default, write, (below, above)
-        self.settings, self.size = settings, size
+        self.settings, self.size, self.strategy = settings, size, strategy
 
 
 # By the name for --only. The numbers of lights are searched.
@@ -122,6 +131,12 @@ THRESHOLDS = {
     "bounces": Threshold("bounces that are always recorded", plain, 8, 9,
                          lambda number: ["--effects", "auto,indirect-diffuse", "--bounces", number]),
     "indices": Threshold("indices of 16 or 32 bits (vertices)", vertices, 65536, 65538),
+    "strategy": Threshold("`--strategy auto` (cases)", materials, None, None,
+                          lambda number: ["--effects", "reflection", "--max-roughness", 1, "--merge", "none"],
+                          strategy="auto"),
+    "merge": Threshold("`--merge auto`: the budget (keys)", materials, 32, 33,
+                       lambda number: ["--effects", "reflection", "--max-roughness", 1, "--merge", "auto"],
+                       strategy="auto"),
     "bands": Threshold("bands: one, or two, where the GPU is not discrete (rows of 1,024 pixels)", plain, 512, 513,
                        size=lambda number: f"1024x{number}"),
 }
