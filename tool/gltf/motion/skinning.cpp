@@ -202,7 +202,7 @@ Status importSkins(Document& document, Scene& scene) {
         if (!known.contains(index)) {
             GLINT_TRY(auto read, readSkin(document, index, numbers));
             known[index] = read ? static_cast<int>(scene.skins.size()) : -1;
-            if read {
+            if (read) {
                 scene.skins.push_back(std::move(*read));
             }
         }
