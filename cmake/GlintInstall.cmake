@@ -12,9 +12,11 @@ install(TARGETS ${glint_targets} EXPORT GlintTargets
         RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-if(TARGET glint-view)
-  install(TARGETS glint-view RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-endif()
+foreach(companion glint-view glint-verify)
+  if(TARGET ${companion})
+    install(TARGETS ${companion} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  endif()
+endforeach()
 install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)

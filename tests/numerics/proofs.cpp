@@ -2,8 +2,8 @@
 
 #include "evaluate.h"
 #include "proof_inputs.h"
-#include "prove/symbolic.h"
 #include "spirv/compiler.h"
+#include "verify/symbolic.h"
 
 #include <fmt/format.h>
 
@@ -79,17 +79,17 @@ const std::vector<Unclaimed>& unclaimedFunctions() {
     return kUnclaimed;
 }
 
-Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proofs) {
+Result<std::vector<verify::Program>> compileProofs(const std::vector<Proof>& proofs) {
     compiler::ShaderCompileOptions options;
     options.debugInfo = true;  // names, by which functions are found
     const Result<std::vector<std::uint32_t>> words = compiler::compileShader(sourceOf(proofs), options);
     if (!words) {
         return words.error();
     }
-    std::vector<prove::Program> programs;
+    std::vector<verify::Program> programs;
     for (const Proof& proof : proofs) {
-        Result<prove::Program> program =
-            prove::executeSymbolically(*words, fmt::format("prove{}", proof.name));
+        Result<verify::Program> program =
+            verify::executeSymbolically(*words, fmt::format("prove{}", proof.name));
         if (!program) {
             Diagnostic error = program.error();
             error.where = std::string(proof.function);
@@ -100,7 +100,7 @@ Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proo
     return programs;
 }
 
-Result<prove::Program> compileClaim(std::string_view statements) {
+Result<verify::Program> compileClaim(std::string_view statements) {
     compiler::ShaderSource source;
     source.name = "claim";
     source.glsl = fmt::format(
@@ -118,7 +118,7 @@ Result<prove::Program> compileClaim(std::string_view statements) {
     if (!words) {
         return words.error();
     }
-    return prove::executeSymbolically(*words, "claim");
+    return verify::executeSymbolically(*words, "claim");
 }
 
 bool isProvedQuickly(const Proof& proof) {

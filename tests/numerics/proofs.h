@@ -2,7 +2,7 @@
 // in which its results must lie.
 #pragma once
 
-#include "prove/prover.h"
+#include "verify/prover.h"
 
 #include <glint/result.h>
 
@@ -17,7 +17,7 @@ struct Proof {
     std::string_view name;      // in proofs_*.glsl
     std::string_view function;  // for people
     std::string_view bound;     // what is claimed, for people
-    prove::Claim claim;
+    verify::Claim claim;
     std::uint64_t boxes = 2'000;  // at least; the nightly run takes more
 };
 
@@ -32,14 +32,14 @@ const std::vector<Unclaimed>& unclaimedFunctions();
 
 // The programs of claims, in the order of `proofs`: what the compiler makes of their functions. Errors are
 // those of compileShader() and executeSymbolically().
-Result<std::vector<prove::Program>> compileProofs(const std::vector<Proof>& proofs);
+Result<std::vector<verify::Program>> compileProofs(const std::vector<Proof>& proofs);
 
 // A claim about code of its own: statements that read i and write o. Errors as above.
-Result<prove::Program> compileClaim(std::string_view statements);
+Result<verify::Program> compileClaim(std::string_view statements);
 
 // Whether a second on one core proves it: what continuous integration proves.
 bool isProvedQuickly(const Proof& proof);
 
-inline constexpr double kLargest = prove::kLargestSingle;
+inline constexpr double kLargest = verify::kLargestSingle;
 
 }  // namespace glint::numerics

@@ -6,7 +6,7 @@
 namespace glint::numerics {
 namespace {
 
-using prove::OutputRange;
+using verify::OutputRange;
 
 std::vector<OutputRange> components(const std::string& name, double size) {
     return {{name + ".x", -size, size}, {name + ".y", -size, size}, {name + ".z", -size, size}};
@@ -17,8 +17,8 @@ std::vector<OutputRange> sharesOfOne(double least = 0.0) {
     return {{"reflected", least, kAny}, {"passed", least, kAny}, {"sum", 1.0 - 1e-5, 1.0 + 1e-5}};
 }
 
-prove::InputRange etaInput() {
-    return {"eta", 0.25, 4.0, prove::Scale::Logarithmic};
+verify::InputRange etaInput() {
+    return {"eta", 0.25, 4.0, verify::Scale::Logarithmic};
 }
 
 std::vector<Proof> exactProofs() {
@@ -64,7 +64,7 @@ std::vector<Proof> fresnelProofs() {
         {"DielectricF0",
          "dielectricF0",
          "in [0, 1]",
-         {{{"ior", 0.0, 1e6, prove::Scale::Logarithmic}}, {{"f0", 0.0, kOne}}},
+         {{{"ior", 0.0, 1e6, verify::Scale::Logarithmic}}, {{"f0", 0.0, kOne}}},
          kManyBoxes},
         {"SchlickWeight",
          "schlickWeight",
@@ -240,7 +240,7 @@ std::vector<Proof> layerProofs() {
         {"FilmSensitivity",
          "filmSensitivity",
          "finite",
-         {{{"path difference", 0.0, 1e9, prove::Scale::Logarithmic}, rangeInput("turns", 0.0, 2.0)},
+         {{{"path difference", 0.0, 1e9, verify::Scale::Logarithmic}, rangeInput("turns", 0.0, 2.0)},
           components("sensitivity", 8.0)}},
         {"IridescentFresnel",
          "iridescentFresnel",
@@ -248,7 +248,7 @@ std::vector<Proof> layerProofs() {
          {{rangeInput("cosine", 0.0, 1.0),
            shareInput("base F0"),
            rangeInput("film's index", 1.0, 3.0),
-           {"thickness", 0.0, 10000.0, prove::Scale::Logarithmic}},
+           {"thickness", 0.0, 10000.0, verify::Scale::Logarithmic}},
           {{"reflectance", 0.0, 1.0}}}},
         {"DispersedIor",
          "dispersedIor",
@@ -257,8 +257,8 @@ std::vector<Proof> layerProofs() {
         {"VolumeTransmittance",
          "volumeTransmittance",
          "a share",
-         {{{"absorption", 0.0, 1e30, prove::Scale::Logarithmic},
-           {"distance", 0.0, 1e8, prove::Scale::Logarithmic}},
+         {{{"absorption", 0.0, 1e30, verify::Scale::Logarithmic},
+           {"distance", 0.0, 1e8, verify::Scale::Logarithmic}},
           {{"share", 0.0, 1.0 + 1e-6}}}},
         {"RefractDirection",
          "refractDirection",
@@ -276,8 +276,8 @@ std::vector<Proof> layerProofs() {
 }
 
 // A view that prepareBsdf() takes as it is: no rounding makes its cosine less than kMinViewCosine.
-std::vector<prove::InputRange> viewInput() {
-    std::vector<prove::InputRange> view = unitInput("view", Hemisphere::Upper);
+std::vector<verify::InputRange> viewInput() {
+    std::vector<verify::InputRange> view = unitInput("view", Hemisphere::Upper);
     view[0].low = 1.00001e-7F;
     return view;
 }
@@ -287,17 +287,17 @@ struct ClaimedSurface {
     std::string name;
     std::string lobes;   // for people
     bool samplesFacets;  // in a way that other surfaces don't
-    std::vector<prove::InputRange> own;
+    std::vector<verify::InputRange> own;
 };
 
 std::vector<Proof> surfaceProofs(const ClaimedSurface& of) {
-    const std::vector<prove::InputRange> surface =
+    const std::vector<verify::InputRange> surface =
         inputs({{shareInput("f0"), alphaInput("alpha"), shareInput("color")}, viewInput()});
-    const std::vector<prove::InputRange> lit = inputs({surface, unitInput("l", Hemisphere::Upper), of.own});
-    const std::vector<prove::InputRange> drawn =
+    const std::vector<verify::InputRange> lit = inputs({surface, unitInput("l", Hemisphere::Upper), of.own});
+    const std::vector<verify::InputRange> drawn =
         inputs({surface, {randomInput("u.x"), randomInput("u.y"), randomInput("u.z")}, of.own});
     // Claims that read no direction leave its place out.
-    const std::vector<prove::InputRange> alone =
+    const std::vector<verify::InputRange> alone =
         of.own.empty()
             ? surface
             : inputs({surface,
@@ -342,8 +342,8 @@ std::vector<Proof> surfaceProofs(const ClaimedSurface& of) {
 }
 
 std::vector<Proof> energyProofs() {
-    const std::vector<prove::InputRange> reflectances{shareInput("f0"), shareInput("f90 between f0 and 1")};
-    const prove::InputRange meanLoss = rangeInput("mean loss", 0.0, 0.75);
+    const std::vector<verify::InputRange> reflectances{shareInput("f0"), shareInput("f90 between f0 and 1")};
+    const verify::InputRange meanLoss = rangeInput("mean loss", 0.0, 0.75);
     std::vector<Proof> all{
         {"RefractedTransmission",
          "refractedTransmission",

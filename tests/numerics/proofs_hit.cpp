@@ -4,23 +4,23 @@
 namespace glint::numerics {
 namespace {
 
-prove::InputRange counterInput(std::string name) {
-    return {std::move(name), 0.0, 4294967040.0, prove::Scale::Linear};
+verify::InputRange counterInput(std::string name) {
+    return {std::move(name), 0.0, 4294967040.0, verify::Scale::Linear};
 }
 
-std::vector<prove::OutputRange> unitVector(const std::string& name) {
+std::vector<verify::OutputRange> unitVector(const std::string& name) {
     return {{name + ".x", -kOne, kOne},
             {name + ".y", -kOne, kOne},
             {name + ".z", -kOne, kOne},
             {"squared length", 1.0 - 1e-5, kOne}};
 }
 
-std::vector<prove::OutputRange> vectorOf(const std::string& name, double size) {
+std::vector<verify::OutputRange> vectorOf(const std::string& name, double size) {
     return {{name + ".x", -size, size}, {name + ".y", -size, size}, {name + ".z", -size, size}};
 }
 
-std::vector<prove::OutputRange> both(std::vector<prove::OutputRange> a,
-                                     const std::vector<prove::OutputRange>& b) {
+std::vector<verify::OutputRange> both(std::vector<verify::OutputRange> a,
+                                      const std::vector<verify::OutputRange>& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
 }
@@ -29,8 +29,8 @@ std::vector<prove::OutputRange> both(std::vector<prove::OutputRange> a,
 
 std::vector<Proof> hitProofs() {
     constexpr auto kWhole = Hemisphere::Whole;
-    const prove::InputRange entry = rangeInput("row", -1000.0, 1000.0);
-    const prove::InputRange place = rangeInput("position", -1e6, 1e6);
+    const verify::InputRange entry = rangeInput("row", -1000.0, 1000.0);
+    const verify::InputRange place = rangeInput("position", -1e6, 1e6);
     return {
         {"OctahedralEncode",
          "octahedralEncode",
@@ -51,7 +51,7 @@ std::vector<Proof> hitProofs() {
         {"DirectionOr",
          "directionOr",
          "a unit vector, for lengths from 1e-37 to 1e37",
-         {inputs({unitInput("v", kWhole), {{"length", 1e-37F, 1e37F, prove::Scale::Logarithmic}}}),
+         {inputs({unitInput("v", kWhole), {{"length", 1e-37F, 1e37F, verify::Scale::Logarithmic}}}),
           unitVector("v")},
          kManyBoxes},
         {"OnSide",
@@ -70,12 +70,12 @@ std::vector<Proof> hitProofs() {
          "sampleLight (spot)",
          "finite, not negative",
          {inputs({unitInput("axis", kWhole),
-                  {{"range", 1e-18F, 1e6, prove::Scale::Logarithmic},
-                   {"intensity", 0.0, 1e9, prove::Scale::Logarithmic},
+                  {{"range", 1e-18F, 1e6, verify::Scale::Logarithmic},
+                   {"intensity", 0.0, 1e9, verify::Scale::Logarithmic},
                    rangeInput("spotScale", 0.0, 1000.0),
                    rangeInput("spotOffset", -1000.0, 1000.0)},
                   unitInput("direction", kWhole),
-                  {{"distance", 0.0, 1e6, prove::Scale::Logarithmic}}}),
+                  {{"distance", 0.0, 1e6, verify::Scale::Logarithmic}}}),
           both({{"distance", 0.0, 1.8e6}, {"irradiance", 0.0, kAny}}, vectorOf("direction", 1.8))}},
         {"SampleLightArea",
          "sampleLightArea",
@@ -97,7 +97,7 @@ std::vector<Proof> hitProofs() {
          {{rangeInput("mean", 0.0, 1e6),
            rangeInput("residual", -1.0, 1.0),
            rangeInput("value", 0.0, 1e6),
-           {"count", 0.0, 1e6, prove::Scale::Logarithmic}},
+           {"count", 0.0, 1e6, verify::Scale::Logarithmic}},
           {{"mean", -4e6, 4e6}, {"residual", -4e6, 4e6}}}},
         {"DirectionBin",
          "directionBin",

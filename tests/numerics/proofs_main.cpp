@@ -26,27 +26,27 @@ struct Settings {
 
 struct Row {
     const numerics::Proof* proof = nullptr;
-    prove::ProofResult result;
+    verify::ProofResult result;
     double seconds = 0.0;  // of processor time
 };
 
-std::string resultOf(const prove::ProofResult& result) {
+std::string resultOf(const verify::ProofResult& result) {
     switch (result.state) {
-        case prove::ProofState::Proved:
+        case verify::ProofState::Proved:
             return "proved";
-        case prove::ProofState::Undecided:
+        case verify::ProofState::Undecided:
             return fmt::format("{:.1e} undecided", result.undecidedShare);
-        case prove::ProofState::Refuted:
+        case verify::ProofState::Refuted:
             break;
     }
     return "refuted";
 }
 
 // The domain without the errors of vectors' lengths, which all vectors have.
-std::string domainOf(const prove::Claim& claim) {
+std::string domainOf(const verify::Claim& claim) {
     std::string text;
-    for (const prove::InputRange& input : claim.inputs) {
-        if (input.scale != prove::Scale::Whole && !input.name.starts_with("azimuth")) {
+    for (const verify::InputRange& input : claim.inputs) {
+        if (input.scale != verify::Scale::Whole && !input.name.starts_with("azimuth")) {
             text += fmt::format("{}{}: {:.4g} to {:.4g}", text.empty() ? "" : "; ", input.name, input.low,
                                 input.high);
         }
@@ -65,7 +65,7 @@ void printRow(const Row& row) {
         fmt::print("    {}, for{}\n", row.result.counterexample->what, inputs);
     } else if (!row.result.undecidedWhy.empty()) {
         std::string box;
-        for (const prove::Interval& side : row.result.undecidedBox) {
+        for (const verify::Interval& side : row.result.undecidedBox) {
             box += fmt::format(" [{:.7g}, {:.7g}]", side.low, side.high);
         }
         fmt::print("    {}, for{}\n", row.result.undecidedWhy, box);
@@ -108,7 +108,7 @@ int run(const Settings& settings) {
             proofs.push_back(proof);
         }
     }
-    const glint::Result<std::vector<prove::Program>> programs = numerics::compileProofs(proofs);
+    const glint::Result<std::vector<verify::Program>> programs = numerics::compileProofs(proofs);
     if (!programs) {
         fmt::print(stderr, "{}\n", toString(programs.error()));
         return 1;
@@ -118,17 +118,17 @@ int run(const Settings& settings) {
     for (std::size_t k = 0; k < proofs.size(); ++k) {
         for (std::size_t output = 0; settings.describe > 0 && output < proofs[k].claim.outputs.size();
              ++output) {
-            const prove::Program& program = (*programs)[k];
+            const verify::Program& program = (*programs)[k];
             fmt::print("{} = {}\n", proofs[k].claim.outputs[output].name,
-                       prove::describe(program, program.outputs[output], settings.describe));
+                       verify::describe(program, program.outputs[output], settings.describe));
         }
-        prove::ProofOptions options;
+        verify::ProofOptions options;
         options.mostBoxes = std::max(settings.boxes, proofs[k].boxes);
         const std::clock_t start = std::clock();
-        Row row{&proofs[k], prove::prove((*programs)[k], proofs[k].claim, options), 0.0};
+        Row row{&proofs[k], verify::prove((*programs)[k], proofs[k].claim, options), 0.0};
         row.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         printRow(row);
-        refuted = refuted || row.result.state == prove::ProofState::Refuted;
+        refuted = refuted || row.result.state == verify::ProofState::Refuted;
         rows.push_back(std::move(row));
     }
     if (!settings.report.empty()) {

@@ -3,11 +3,11 @@
 #include "proofs.h"
 
 #include "proof_functions.h"
-#include "prove/concrete.h"
-#include "prove/evaluate.h"
-#include "prove/interval.h"
-#include "prove/prover.h"
-#include "prove/specialise.h"
+#include "verify/concrete.h"
+#include "verify/evaluate.h"
+#include "verify/interval.h"
+#include "verify/prover.h"
+#include "verify/specialise.h"
 
 #include <gtest/gtest.h>
 
@@ -20,13 +20,13 @@
 namespace glint::numerics {
 namespace {
 
-using prove::Interval;
+using verify::Interval;
 
-const std::vector<prove::Program>& programs() {
-    static const std::vector<prove::Program> kPrograms = [] {
-        Result<std::vector<prove::Program>> made = compileProofs(allProofs());
+const std::vector<verify::Program>& programs() {
+    static const std::vector<verify::Program> kPrograms = [] {
+        Result<std::vector<verify::Program>> made = compileProofs(allProofs());
         EXPECT_TRUE(made) << (made ? "" : toString(made.error()));
-        return made ? std::move(*made) : std::vector<prove::Program>{};
+        return made ? std::move(*made) : std::vector<verify::Program>{};
     }();
     return kPrograms;
 }
@@ -51,11 +51,11 @@ TEST(Proofs, SucceedForTheQuickSet) {
         if (!isProvedQuickly(proof)) {
             continue;
         }
-        prove::ProofOptions options;
+        verify::ProofOptions options;
         options.mostBoxes = proof.boxes;
         options.samples = 100;
-        const prove::ProofResult result = prove::prove(programs()[k], proof.claim, options);
-        EXPECT_EQ(result.state, prove::ProofState::Proved)
+        const verify::ProofResult result = verify::prove(programs()[k], proof.claim, options);
+        EXPECT_EQ(result.state, verify::ProofState::Proved)
             << proof.name << ": " << result.undecidedWhy
             << (result.counterexample ? result.counterexample->what : std::string());
         ++proved;
@@ -66,12 +66,12 @@ TEST(Proofs, SucceedForTheQuickSet) {
 TEST(Proofs, NoClaimIsRefutedBySamples) {
     ASSERT_EQ(programs().size(), allProofs().size());
     for (std::size_t k = 0; k < programs().size(); ++k) {
-        prove::ProofOptions options;
+        verify::ProofOptions options;
         options.mostBoxes = 1;
         options.samples = 3000;
         options.seed = 7;
-        const prove::ProofResult result = prove::prove(programs()[k], allProofs()[k].claim, options);
-        ASSERT_TRUE(result.state != prove::ProofState::Refuted)
+        const verify::ProofResult result = verify::prove(programs()[k], allProofs()[k].claim, options);
+        ASSERT_TRUE(result.state != verify::ProofState::Refuted)
             << allProofs()[k].name << ": " << result.counterexample->what;
     }
 }
@@ -99,7 +99,7 @@ TEST(Proofs, HoldForEarlierCounterexamples) {
                                         [&](const Proof& proof) { return proof.name == known.claim; });
         ASSERT_NE(found, allProofs().end());
         const auto place = static_cast<std::size_t>(found - allProofs().begin());
-        const auto wrong = prove::refute(programs()[place], found->claim, known.inputs);
+        const auto wrong = verify::refute(programs()[place], found->claim, known.inputs);
         EXPECT_FALSE(wrong.has_value()) << known.claim << ": " << *wrong;
     }
 }
@@ -107,26 +107,27 @@ TEST(Proofs, HoldForEarlierCounterexamples) {
 // The condition of a branch that the box does not take has no value. It does not decide about that of another
 // branch.
 TEST(Intervals, ConditionsOfBranchesThatAreNotTakenDecideNothing) {
-    using prove::Format;
-    using prove::Op;
-    prove::Program program;
+    using verify::Format;
+    using verify::Op;
+    verify::Program program;
     program.inputCount = 1;
-    const auto add = [&](prove::Node node) {
+    const auto add = [&](verify::Node node) {
         program.nodes.push_back(node);
-        return static_cast<prove::NodeId>(program.nodes.size() - 1);
+        return static_cast<verify::NodeId>(program.nodes.size() - 1);
     };
     const auto truth = [&](double value) {
         return add({.op = Op::Constant, .format = Format::Integer, .value = value});
     };
-    const prove::NodeId x = add({.op = Op::Input});
-    const prove::NodeId zero = add({.op = Op::Constant});
-    const prove::NodeId below = add({.op = Op::Refine, .relation = prove::Relation::Less, .a = x, .b = zero});
-    const prove::NodeId isBelow = add({.op = Op::Less, .format = Format::Integer, .a = below, .b = zero});
-    const prove::NodeId no = truth(0.0);
-    const prove::NodeId yes = truth(1.0);
-    const prove::NodeId either = add({.op = Op::Or, .format = Format::Integer, .a = isBelow, .b = no});
-    const prove::NodeId both = add({.op = Op::And, .format = Format::Integer, .a = isBelow, .b = yes});
-    prove::BoxEvaluator boxes(program);
+    const verify::NodeId x = add({.op = Op::Input});
+    const verify::NodeId zero = add({.op = Op::Constant});
+    const verify::NodeId below =
+        add({.op = Op::Refine, .relation = verify::Relation::Less, .a = x, .b = zero});
+    const verify::NodeId isBelow = add({.op = Op::Less, .format = Format::Integer, .a = below, .b = zero});
+    const verify::NodeId no = truth(0.0);
+    const verify::NodeId yes = truth(1.0);
+    const verify::NodeId either = add({.op = Op::Or, .format = Format::Integer, .a = isBelow, .b = no});
+    const verify::NodeId both = add({.op = Op::And, .format = Format::Integer, .a = isBelow, .b = yes});
+    verify::BoxEvaluator boxes(program);
     const std::vector<Interval> box = {{0.5, 1.0}};
     boxes.run(box, false);
     ASSERT_TRUE(boxes.value(isBelow).isEmpty());
@@ -140,18 +141,19 @@ TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {
     std::mt19937_64 random(3);
     std::uint64_t compared = 0;
     for (std::size_t k = 0; k < programs().size(); ++k) {
-        const prove::Claim& claim = allProofs()[k].claim;
+        const verify::Claim& claim = allProofs()[k].claim;
         std::vector<Interval> domain;
-        for (const prove::InputRange& input : claim.inputs) {
+        for (const verify::InputRange& input : claim.inputs) {
             domain.push_back({input.low, input.high});
         }
         // What proofs evaluate has more patterns than what it was made from.
-        const prove::Program program = k % 4 == 0 ? programs()[k] : prove::specialise(programs()[k], domain);
-        prove::BoxEvaluator boxes(program);
-        prove::PointEvaluator points(program);
+        const verify::Program program =
+            k % 4 == 0 ? programs()[k] : verify::specialise(programs()[k], domain);
+        verify::BoxEvaluator boxes(program);
+        verify::PointEvaluator points(program);
         for (int turn = 0; turn < 12; ++turn) {
             std::vector<Interval> box;
-            for (const prove::InputRange& input : claim.inputs) {
+            for (const verify::InputRange& input : claim.inputs) {
                 const double a = between(random, {input.low, input.high});
                 const double size = std::exp2(-static_cast<double>(turn) * 2.0) * (input.high - input.low);
                 const auto b = static_cast<double>(static_cast<float>(a + size * randomShare(random)));
@@ -164,14 +166,14 @@ TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {
                     inputs.push_back(between(random, side));
                 }
                 points.run(inputs);
-                for (prove::NodeId id = 0; id < program.nodes.size(); ++id) {
+                for (verify::NodeId id = 0; id < program.nodes.size(); ++id) {
                     const double value = points.value(id);
                     if (!std::isfinite(value)) {
                         continue;
                     }
                     ++compared;
                     ASSERT_TRUE(boxes.value(id).contains(value))
-                        << allProofs()[k].name << ": " << prove::describe(program, id) << " is " << value
+                        << allProofs()[k].name << ": " << verify::describe(program, id) << " is " << value
                         << ", not in [" << boxes.value(id).low << ", " << boxes.value(id).high << "]";
                 }
             }
@@ -192,14 +194,14 @@ TEST(Intervals, EncloseTheFloatAndTheDoubleBuild) {
             continue;
         }
         ++functions;
-        const prove::Program& program = programs()[static_cast<std::size_t>(proof - allProofs().begin())];
-        prove::BoxEvaluator boxes(program);
+        const verify::Program& program = programs()[static_cast<std::size_t>(proof - allProofs().begin())];
+        verify::BoxEvaluator boxes(program);
         for (int turn = 0; turn < 40; ++turn) {
             float given[kMaxInputs] = {};
             double exact[kMaxInputs] = {};
             std::vector<Interval> box;
             for (std::size_t input = 0; input < proof->claim.inputs.size(); ++input) {
-                const prove::InputRange& range = proof->claim.inputs[input];
+                const verify::InputRange& range = proof->claim.inputs[input];
                 exact[input] = between(random, {range.low, range.high});
                 given[input] = static_cast<float>(exact[input]);
                 box.push_back(Interval::of(exact[input]));
@@ -232,24 +234,24 @@ TEST(Intervals, EncloseTheFloatAndTheDoubleBuild) {
 // one unit in the last place lose it.
 TEST(Intervals, ABoundThatIsOneUnitTooNarrowIsNoticed) {
     std::mt19937_64 random(11);
-    const prove::Arithmetic single(prove::Format::Single);
+    const verify::Arithmetic single(verify::Format::Single);
     int lostBelow = 0;
     int lostAbove = 0;
     for (int turn = 0; turn < 10'000; ++turn) {
         const auto a = static_cast<double>(static_cast<float>(std::exp2(randomShare(random) * 40.0 - 20.0)));
         const auto b = static_cast<double>(static_cast<float>(std::exp2(randomShare(random) * 40.0 - 20.0)));
-        prove::Hazard hazard = prove::Hazard::None;
+        verify::Hazard hazard = verify::Hazard::None;
         const double exact[] = {a + b, a * b, a / b, std::sqrt(a)};
         const Interval bounds[] = {single.add(Interval::of(a), Interval::of(b), hazard),
                                    single.multiply(Interval::of(a), Interval::of(b), hazard),
                                    single.divide(Interval::of(a), Interval::of(b), hazard),
-                                   single.apply(prove::Function::Sqrt, Interval::of(a), hazard)};
-        ASSERT_EQ(hazard, prove::Hazard::None);
+                                   single.apply(verify::Function::Sqrt, Interval::of(a), hazard)};
+        ASSERT_EQ(hazard, verify::Hazard::None);
         for (std::size_t k = 0; k < 4; ++k) {
             ASSERT_TRUE(bounds[k].contains(exact[k]));
             ASSERT_LE(bounds[k].width(), std::abs(exact[k]) * 0x1p-22);
-            const double narrowLow = -prove::nextFloatBelow(static_cast<float>(-bounds[k].low));
-            const double narrowHigh = prove::nextFloatBelow(static_cast<float>(bounds[k].high));
+            const double narrowLow = -verify::nextFloatBelow(static_cast<float>(-bounds[k].low));
+            const double narrowHigh = verify::nextFloatBelow(static_cast<float>(bounds[k].high));
             lostBelow += exact[k] < narrowLow ? 1 : 0;
             lostAbove += exact[k] > narrowHigh ? 1 : 0;
         }
@@ -262,13 +264,13 @@ TEST(Intervals, ABoundThatIsOneUnitTooNarrowIsNoticed) {
 TEST(Proofs, AClaimThatIsOneUnitTooNarrowIsRefuted) {
     const auto proof = std::find_if(allProofs().begin(), allProofs().end(),
                                     [](const Proof& candidate) { return candidate.name == "SchlickWeight"; });
-    const prove::Program& program = programs()[static_cast<std::size_t>(proof - allProofs().begin())];
-    prove::Claim claim = proof->claim;
-    EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Proved);
-    claim.outputs[0].high = prove::nextFloatBelow(1.0F);
-    EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Refuted);
+    const verify::Program& program = programs()[static_cast<std::size_t>(proof - allProofs().begin())];
+    verify::Claim claim = proof->claim;
+    EXPECT_EQ(verify::prove(program, claim, {}).state, verify::ProofState::Proved);
+    claim.outputs[0].high = verify::nextFloatBelow(1.0F);
+    EXPECT_EQ(verify::prove(program, claim, {}).state, verify::ProofState::Refuted);
     claim.outputs[0] = {"weight", std::numeric_limits<float>::denorm_min(), 1.0};
-    EXPECT_EQ(prove::prove(program, claim, {}).state, prove::ProofState::Refuted);
+    EXPECT_EQ(verify::prove(program, claim, {}).state, verify::ProofState::Refuted);
 }
 
 // Whatever intervals, forms and derivatives say together: a range that some point of the domain leaves is not
@@ -277,32 +279,32 @@ TEST(Proofs, NeverSucceedForAClaimThatAPointRefutes) {
     std::mt19937_64 random(17);
     std::size_t claims = 0;
     for (std::size_t k = 0; k < programs().size(); ++k) {
-        prove::Claim claim = allProofs()[k].claim;
-        prove::PointEvaluator points(programs()[k]);
-        std::vector<double> least(claim.outputs.size(), prove::kInfinity);
-        std::vector<double> greatest(claim.outputs.size(), -prove::kInfinity);
+        verify::Claim claim = allProofs()[k].claim;
+        verify::PointEvaluator points(programs()[k]);
+        std::vector<double> least(claim.outputs.size(), verify::kInfinity);
+        std::vector<double> greatest(claim.outputs.size(), -verify::kInfinity);
         for (int point = 0; point < 300; ++point) {
             std::vector<double> inputs;
-            for (const prove::InputRange& input : claim.inputs) {
+            for (const verify::InputRange& input : claim.inputs) {
                 inputs.push_back(between(random, {input.low, input.high}));
             }
-            const prove::PointResult result = points.run(inputs);
+            const verify::PointResult result = points.run(inputs);
             for (std::size_t output = 0; output < claim.outputs.size(); ++output) {
                 least[output] = std::min(least[output], result.outputs[output]);
                 greatest[output] = std::max(greatest[output], result.outputs[output]);
             }
         }
-        prove::ProofOptions options;
+        verify::ProofOptions options;
         options.samples = 0;
         options.mostBoxes = 40;
         for (const bool upper : {false, true}) {
             const std::size_t output = random() % claim.outputs.size();
-            prove::OutputRange& range = claim.outputs[output];
-            const prove::OutputRange whole = range;
+            verify::OutputRange& range = claim.outputs[output];
+            const verify::OutputRange whole = range;
             const auto bound = static_cast<float>(upper ? greatest[output] : -least[output]);
             (upper ? range.high : range.low) =
-                upper ? prove::nextFloatBelow(bound) : -static_cast<double>(prove::nextFloatBelow(bound));
-            EXPECT_NE(prove::prove(programs()[k], claim, options).state, prove::ProofState::Proved)
+                upper ? verify::nextFloatBelow(bound) : -static_cast<double>(verify::nextFloatBelow(bound));
+            EXPECT_NE(verify::prove(programs()[k], claim, options).state, verify::ProofState::Proved)
                 << allProofs()[k].name << " " << range.name << " in [" << range.low << ", " << range.high
                 << "]";
             range = whole;
@@ -314,14 +316,14 @@ TEST(Proofs, NeverSucceedForAClaimThatAPointRefutes) {
 
 struct Planted {
     const char* code;
-    prove::InputRange input;
-    prove::ProofState state;
+    verify::InputRange input;
+    verify::ProofState state;
     const char* words;  // of what was found
 };
 
 // Each operation's domain is checked; a branch that keeps out of the way is understood.
 TEST(Proofs, AMissingCheckOfADomainIsFound) {
-    using prove::ProofState;
+    using verify::ProofState;
     const Planted cases[] = {
         {"o[0] = sqrt(i[0]);", {"x", -1.0, 1.0}, ProofState::Refuted, "sqrt"},
         {"o[0] = i[0] > 0.0 ? sqrt(i[0]) : 0.0;", {"x", -1.0, 1.0}, ProofState::Proved, ""},
@@ -340,10 +342,10 @@ TEST(Proofs, AMissingCheckOfADomainIsFound) {
         {"for (int k = 0; k < 4; ++k) { o[0] += i[0]; }", {"x", 0.0, 1.0}, ProofState::Proved, ""},
     };
     for (const Planted& planted : cases) {
-        const Result<prove::Program> program = compileClaim(planted.code);
+        const Result<verify::Program> program = compileClaim(planted.code);
         ASSERT_TRUE(program) << toString(program.error());
-        const prove::Claim claim{{planted.input}, {{"result", -kLargest, kLargest}}};
-        const prove::ProofResult result = prove::prove(*program, claim, {});
+        const verify::Claim claim{{planted.input}, {{"result", -kLargest, kLargest}}};
+        const verify::ProofResult result = verify::prove(*program, claim, {});
         EXPECT_EQ(result.state, planted.state)
             << planted.code << ": " << result.undecidedWhy
             << (result.counterexample ? result.counterexample->what : std::string());
@@ -356,7 +358,7 @@ TEST(Proofs, AMissingCheckOfADomainIsFound) {
 
 // What depends on a resource is no proof.
 TEST(Proofs, WhatCannotBeFollowedIsSaid) {
-    const Result<prove::Program> program = compileClaim("while (o[0] < i[0]) { o[0] = o[0] * 1.5 + 1.0; }");
+    const Result<verify::Program> program = compileClaim("while (o[0] < i[0]) { o[0] = o[0] * 1.5 + 1.0; }");
     ASSERT_FALSE(program);
     EXPECT_EQ(program.error().id, "prove-unsupported");
 }

@@ -1,6 +1,7 @@
 // The checks of material features: packs with one planted fault each, and the example packs, which have none.
 #include "base/files.h"
 #include "support/temporary_folder.h"
+#include "verify/prove_materials.h"
 
 #include <glint/measure/check_materials.h>
 
@@ -190,11 +191,11 @@ TEST(CheckMaterials, ProofsHoldForWaxAndFindAMissingCheck) {
     unchecked.density = "cosineDensity(l) * sqrt(0.999 - layer.factor)";
     writeWax(folder.path(), sound);
     writeWax(folder.path(), unchecked);
-    const Result<std::vector<measure::FeatureProofOutcome>> outcomes =
-        measure::proveMaterials({{folder.path().string()}, 500}, Silent());
+    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
+        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
     ASSERT_TRUE(outcomes) << toString(outcomes.error());
     ASSERT_EQ(outcomes->size(), 2U);
-    for (const measure::FeatureProofOutcome& outcome : *outcomes) {
+    for (const verify::FeatureProofOutcome& outcome : *outcomes) {
         const bool isSound = outcome.feature == sound.name;
         EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted") << outcome.message << outcome.place;
         EXPECT_EQ(measure::failureOf(outcome).has_value(), !isSound);
@@ -229,11 +230,11 @@ TEST(CheckMaterials, ProofsCoverOpacityAndCoordinates) {
               "point.texCoords[0] += GLINT_MATERIAL_SWAY_AMOUNT(point) * sin(frameTime());\n}\n");
     write("pinch", "coordinates",
           include + "pinch" + coordinates + "point.texCoords[0] /= max(point.texCoords[0].x, 0.0);\n}\n");
-    const Result<std::vector<measure::FeatureProofOutcome>> outcomes =
-        measure::proveMaterials({{folder.path().string()}, 500}, Silent());
+    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
+        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
     ASSERT_TRUE(outcomes) << toString(outcomes.error());
     ASSERT_EQ(outcomes->size(), 4U);
-    for (const measure::FeatureProofOutcome& outcome : *outcomes) {
+    for (const verify::FeatureProofOutcome& outcome : *outcomes) {
         const bool isSound = outcome.feature == "holes" || outcome.feature == "sway";
         EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted")
             << outcome.feature << ": " << outcome.message << outcome.place;

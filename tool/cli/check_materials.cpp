@@ -175,58 +175,10 @@ int checkMaterialFeatures(const Console& console, const CheckArguments& argument
     return failed ? kExitFailed : kExitDone;
 }
 
-std::string toText(const std::vector<measure::FeatureProofOutcome>& outcomes, Detail detail) {
-    std::vector<std::vector<std::string>> rows{
-        {"feature", "proof", "undecided", "boxes", "what the bounds can't exclude"}};
-    for (const measure::FeatureProofOutcome& outcome : outcomes) {
-        const bool isOpen = outcome.state == measure::FeatureProofState::Undecided;
-        rows.push_back({outcome.feature, std::string(nameOf(outcome.state)),
-                        isOpen ? fmt::format("{:.2g}", outcome.undecidedShare) : "-",
-                        fmt::format("{}", outcome.boxes),
-                        isOpen ? fmt::format("{}, {}", outcome.message, outcome.place) : outcome.message});
-    }
-    return formatTable(rows, detail);
-}
-
-base::Json toJson(const measure::FeatureProofOutcome& outcome) {
-    return {{"feature", outcome.feature},
-            {"declaration", outcome.declaration},
-            {"state", nameOf(outcome.state)},
-            {"undecidedShare", outcome.undecidedShare},
-            {"boxes", outcome.boxes},
-            {"message", base::textOrNull(outcome.message)},
-            {"place", base::textOrNull(outcome.place)}};
-}
-
-// Proofs instead of samples.
-int proveMaterialFeatures(const Console& console, const CheckArguments& arguments) {
-    const Result<std::vector<measure::FeatureProofOutcome>> outcomes = measure::proveMaterials(
-        {arguments.options.packs, static_cast<std::uint64_t>(arguments.boxes)}, console);
-    if (!outcomes) {
-        return fail(console, outcomes.error());
-    }
-    if (console.isJson()) {
-        base::Json proofs = base::Json::array();
-        for (const measure::FeatureProofOutcome& outcome : *outcomes) {
-            proofs.push_back(toJson(outcome));
-        }
-        console.result(base::Json{{"proofs", proofs}});
-    } else {
-        console.print(toText(*outcomes, console.isVerbose() ? Detail::Whole : Detail::Short));
-    }
-    bool failed = false;
-    for (const measure::FeatureProofOutcome& outcome : *outcomes) {
-        if (const std::optional<Diagnostic> failure = measure::failureOf(outcome)) {
-            console.report(*failure);
-            failed = true;
-        }
-    }
-    return failed ? kExitFailed : kExitDone;
-}
-
 }  // namespace
 
-void addCheckMaterials(CLI::App& app, Action& chosen) {
+void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* const> line,
+                       const Companion& companion) {
     auto arguments = std::make_shared<CheckArguments>();
     CLI::App& command = addCommand(
         app,
@@ -256,7 +208,7 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
                "decide a larger share");
     addDeviceChoice(command, arguments->options.device, arguments->options.validate);
     addJobs(command, arguments->options.jobs);
-    command.callback([arguments, &command, &chosen] {
+    command.callback([arguments, line, companion, &command, &chosen] {
         // What the proofs do not read, and what they alone read.
         const std::vector<const char*> ofDevice{"--pictures", "--samples", "--combinations", "--device",
                                                 "--validate"};
@@ -268,9 +220,18 @@ void addCheckMaterials(CLI::App& app, Action& chosen) {
                                                      : "is for --prove; give both, or neither");
             }
         }
-        chosen = [arguments](const Console& console) {
-            return arguments->prove ? proveMaterialFeatures(console, *arguments)
-                                    : checkMaterialFeatures(console, *arguments);
+        chosen = [arguments, line, companion](const Console& console) {
+            if (!arguments->prove) {
+                return checkMaterialFeatures(console, *arguments);
+            }
+            if (companion.proveMaterials == nullptr) {
+                return startCompanion(
+                    console, "glint-verify", line,
+                    makeError("verify-missing", "", "this glint was built without its proofs",
+                              "build the target glint-verify, which GLINT_VERIFY=ON has"));
+            }
+            return companion.proveMaterials(console, arguments->options.packs,
+                                            static_cast<std::uint64_t>(arguments->boxes));
         };
     });
 }

@@ -18,12 +18,18 @@ void addInspect(CLI::App& app, Action& chosen);
 void addDiff(CLI::App& app, Action& chosen);
 void addLint(CLI::App& app, Action& chosen);
 void addRender(CLI::App& app, Action& chosen);
-// `line` and `showWindow` are as in runCommandLine().
-void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, ShowWindow showWindow);
+// `line` and `companion` are as in addCompile() and runCommandLine().
+void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, const Companion& companion);
 void addBench(CLI::App& app, Action& chosen);
 void addCompare(CLI::App& app, Action& chosen);
-void addCheckMaterials(CLI::App& app, Action& chosen);
+void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* const> line,
+                       const Companion& companion);
 // Call this after all other commands are added, because the script is made from their options.
 void addCompletion(CLI::App& app, Action& chosen);
+
+// Becomes the program of that name beside this one, with the same command line. Returns only if that fails: a
+// failed command's exit code, after `missing` is reported.
+int startCompanion(const Console& console, const char* program, std::span<const char* const> line,
+                   const Diagnostic& missing);
 
 }  // namespace glint::cli

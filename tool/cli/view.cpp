@@ -13,8 +13,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
-#include <unistd.h>
 
 namespace glint::cli {
 
@@ -66,7 +64,7 @@ view::Request requestOf(const Console& console, const ViewArguments& arguments, 
     return request;
 }
 
-int show(const Console& console, const ViewArguments& arguments, ShowWindow showWindow) {
+int show(const Console& console, const ViewArguments& arguments, const Companion& companion) {
     CompileCache cache(arguments.cache, "");
     view::Request request = requestOf(console, arguments, cache);
     std::unique_ptr<PipelineCacheFile> pipelines;
@@ -78,7 +76,7 @@ int show(const Console& console, const ViewArguments& arguments, ShowWindow show
         pipelines->save();
         pipelines.reset();
     };
-    const Status shown = showWindow(request);
+    const Status shown = companion.showWindow(request);
     cache.close(console);
     if (!shown) {
         console.report(shown.error());
@@ -87,25 +85,9 @@ int show(const Console& console, const ViewArguments& arguments, ShowWindow show
     return kExitDone;
 }
 
-// Becomes the program glint-view beside this one, with the same command line. Returns only if that fails.
-int startProgram(const Console& console, std::span<const char* const> line) {
-    std::error_code error;
-    const std::string program =
-        (fs::read_symlink("/proc/self/exe", error).parent_path() / "glint-view").string();
-    std::vector<char*> words{const_cast<char*>(program.c_str())};
-    for (const char* const word : line) {
-        words.push_back(const_cast<char*>(word));
-    }
-    words.push_back(nullptr);
-    execv(program.c_str(), words.data());
-    return fail(console, makeError("window-missing", "", "this glint was built without its window",
-                                   "install libglfw3-dev, libimgui-dev, libxtst-dev and glslang-tools, then "
-                                   "configure and build Glint again"));
-}
-
 }  // namespace
 
-void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, ShowWindow showWindow) {
+void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, const Companion& companion) {
     CLI::App& command = addCommand(
         app,
         {.name = "view",
@@ -128,13 +110,19 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, S
     addText(command, "--script", arguments->script, "FILE",
             "replay keys, mouse moves and clicks (docs/view.md), for\ntests and tours")
         .group(group);
-    command.callback([arguments, line, showWindow, &command, &chosen] {
+    command.callback([arguments, line, companion, &command, &chosen] {
         checkPackageChoice(command);
         checkSceneOptions(command, *arguments);
         checkProfile(command, *arguments);
-        chosen = [arguments, line, showWindow](const Console& console) {
-            return showWindow != nullptr ? show(console, *arguments, showWindow)
-                                         : startProgram(console, line);
+        chosen = [arguments, line, companion](const Console& console) {
+            return companion.showWindow != nullptr
+                       ? show(console, *arguments, companion)
+                       : startCompanion(
+                             console, "glint-view", line,
+                             makeError(
+                                 "window-missing", "", "this glint was built without its window",
+                                 "install libglfw3-dev, libimgui-dev, libxtst-dev and glslang-tools, then "
+                                 "configure and build Glint again"));
         };
     });
 }

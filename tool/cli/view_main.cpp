@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
     try {
-        return glint::cli::runCommandLine(argc, argv, glint::view::showWindow);
+        return glint::cli::runCommandLine(argc, argv, {.showWindow = glint::view::showWindow});
     } catch (const std::exception& error) {
         std::fprintf(stderr, "glint: error: %s\n", error.what());
         return glint::cli::kExitFailed;

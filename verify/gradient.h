@@ -1,0 +1,40 @@
+// How a value depends on the inputs over a box: enclosures of its partial derivatives. Where one has a
+// constant sign, the value's bounds lie at an end of that input.
+//
+// Floats are no smooth functions, but each operation is a smooth one times 1 + rho, where |rho| is the
+// rounding's bound. The derivatives are enclosed for all rho. So the greatest value over the box, whatever is
+// rounded how, is at most the greatest value at the end, whatever is rounded how there, which is what
+// intervals enclose.
+#pragma once
+
+#include "verify/evaluate.h"
+#include "verify/program.h"
+
+#include <span>
+#include <vector>
+
+namespace glint::verify {
+
+class GradientEvaluator {
+public:
+    explicit GradientEvaluator(const Program& program) : program_(program), adjoints_(program.nodes.size()) {}
+
+    // Sets derivative(k) for each input over the box that `values` has evaluated. Returns false if the node
+    // jumps in the box, as far as is known: an undecided choice, a rounding to integers.
+    bool run(const BoxEvaluator& values, NodeId of, std::size_t inputs);
+    const Interval& derivative(std::size_t input) const {
+        return derivatives_[input];
+    }
+
+private:
+    bool spread(const BoxEvaluator& values, NodeId id);
+    bool spreadFunction(const BoxEvaluator& values, const Node& node, const Interval& z,
+                        const Interval& adjoint);
+    void give(NodeId to, const Interval& adjoint, const Interval& factor);
+
+    const Program& program_;
+    std::vector<Interval> adjoints_;
+    std::vector<Interval> derivatives_;
+};
+
+}  // namespace glint::verify
