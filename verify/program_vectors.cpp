@@ -1,6 +1,6 @@
 // What is known of the components of vectors: normalised, mirrored, on a circle or a sphere; their products
 // and sums.
-#include "verify/program.h"
+#include "verify/program_builder.h"
 
 #include <algorithm>
 #include <utility>

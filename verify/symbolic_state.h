@@ -1,7 +1,7 @@
 // What symbolic execution knows at a point of a function.
 #pragma once
 
-#include "verify/program.h"
+#include "verify/program_builder.h"
 #include "verify/spirv_module.h"
 
 #include <map>

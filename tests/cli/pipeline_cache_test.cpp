@@ -1,6 +1,5 @@
 // Tests glint render --pipeline-cache: what it stores, and how it treats files that it did not write.
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "cli/render_command.h"
 
 #include <algorithm>

@@ -1,14 +1,20 @@
 #include "base/files.h"
 
-#include "base/staged_file.h"
-
 #include <xxhash.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <fcntl.h>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <system_error>
+#include <unistd.h>
+#include <utility>
+#include <vector>
 
 namespace glint::base {
 
@@ -94,6 +100,164 @@ Status writeFile(const fs::path& path, std::span<const std::uint8_t> bytes) {
 
 Status writeFile(const fs::path& path, std::string_view text) {
     return writeFile(path, asBytes(text));
+}
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Temporary files are called "scene.lock.glint-tmp-1234", with the number of the process.
+constexpr std::string_view kTag = ".glint-tmp-";
+
+Diagnostic writeError(const fs::path& path, const std::string& why) {
+    return makeError("file-write", path.string(), "can't be written: " + why,
+                     "check the folder, its permissions and the free space");
+}
+
+bool holds(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    std::error_code error;
+    if (fs::file_size(path, error) != bytes.size() || error) {
+        return false;
+    }
+    const Result<Bytes> present = readFile(path);
+    return present && std::memcmp(present->data(), bytes.data(), bytes.size()) == 0;
+}
+
+// Returns 0, or errno.
+int writeNew(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    File file(std::fopen(path.c_str(), "wb"));
+    if (!file) {
+        return errno;
+    }
+    if (!bytes.empty() && std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) {
+        return errno;
+    }
+    // The file is closed here because a full disk may show only when the buffers are flushed.
+    return std::fclose(file.release()) != 0 ? errno : 0;
+}
+
+fs::path temporaryOf(const fs::path& path) {
+    return path.string() + std::string(kTag) + std::to_string(getpid());
+}
+
+// Makes a file without a name in the folder of `path`, so that nothing is left even by a process that is
+// killed. Where the file system has none, it is the temporary file of `path`. Returns 0, or errno.
+int tryToWrite(const fs::path& path) {
+#ifdef O_TMPFILE
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    constexpr mode_t kOwner = 0600;
+    if (const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY, kOwner); file >= 0) {
+        close(file);
+        return 0;
+    }
+    if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) {
+        return errno;
+    }
+#endif
+    const fs::path probe = temporaryOf(path);
+    const int failure = writeNew(probe, {});
+    std::error_code ignored;
+    fs::remove(probe, ignored);
+    return failure;
+}
+
+bool isOfDeadProcess(std::string_view number) {
+    long process = 0;
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), process);
+    return error == std::errc() && end == number.data() + number.size() && process > 0 &&
+           kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
+}
+
+}  // namespace
+
+std::span<const std::uint8_t> asBytes(std::string_view text) {
+    return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+Result<StagedFile> StagedFile::create(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    if (holds(path, bytes)) {
+        return StagedFile(path, {});
+    }
+    StagedFile staged(path, temporaryOf(path));
+    if (const int failure = writeNew(staged.temporary_, bytes); failure != 0) {
+        return writeError(path, std::strerror(failure));
+    }
+    return staged;
+}
+
+StagedFile::StagedFile(fs::path path, fs::path temporary)
+    : path_(std::move(path)), temporary_(std::move(temporary)) {}
+
+StagedFile::StagedFile(StagedFile&& other) noexcept
+    : path_(std::move(other.path_)), temporary_(std::exchange(other.temporary_, fs::path())) {}
+
+StagedFile::~StagedFile() {
+    if (!temporary_.empty()) {
+        std::error_code ignored;
+        fs::remove(temporary_, ignored);
+    }
+}
+
+Status StagedFile::commit() {
+    if (temporary_.empty()) {
+        return okStatus();
+    }
+    std::error_code error;
+    fs::rename(temporary_, path_, error);
+    if (error) {
+        return writeError(path_, error.message());
+    }
+    temporary_.clear();
+    return okStatus();
+}
+
+Status writeStaged(const fs::path& path, std::span<const std::uint8_t> bytes) {
+    Result<StagedFile> staged = StagedFile::create(path, bytes);
+    return staged ? staged->commit() : Status(staged.error());
+}
+
+Status checkOutputFile(const fs::path& path) {
+    std::error_code error;
+    const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+    if (!fs::is_directory(parent, error)) {
+        return makeError("output-folder", path.string(),
+                         "can't be written, because its folder does not exist",
+                         "make the folder " + parent.string() + " first");
+    }
+    if (fs::is_directory(path, error)) {
+        return makeError("output-folder", path.string(), "is a folder", "name a file within it");
+    }
+    const int failure = tryToWrite(path);
+    return failure == 0 ? okStatus() : Status(writeError(path, std::strerror(failure)));
+}
+
+Status checkOutputFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::path present = fs::absolute(folder.empty() ? fs::path(".") : folder, error);
+    while (!fs::exists(present, error) && present.has_relative_path()) {
+        present = present.parent_path();
+    }
+    if (!fs::is_directory(present, error)) {
+        return writeError(folder, present.string() + " is no folder");
+    }
+    const int failure = tryToWrite(present / "output");
+    return failure == 0 ? okStatus() : Status(writeError(folder, std::strerror(failure)));
+}
+
+void removeAbandoned(const fs::path& path) {
+    const std::string prefix = path.filename().string() + std::string(kTag);
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::vector<fs::path> found;
+    std::error_code error;
+    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        const std::string name = entry->path().filename().string();
+        if (name.starts_with(prefix) && isOfDeadProcess(std::string_view(name).substr(prefix.size()))) {
+            found.push_back(entry->path());
+        }
+    }
+    for (const fs::path& file : found) {
+        fs::remove(file, error);
+    }
 }
 
 }  // namespace glint::base

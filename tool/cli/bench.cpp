@@ -1,7 +1,6 @@
 // glint bench: what each setting costs in time, and what it gains in accuracy.
 #include "base/clock.h"
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "cli/bench/arguments.h"
 #include "cli/bench/calibrate.h"
 #include "cli/bench/text.h"

@@ -1,6 +1,6 @@
 // glint check-materials: checks what the code of packs computes.
+#include "base/files.h"
 #include "base/json.h"
-#include "base/staged_file.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"

@@ -14,14 +14,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <system_error>
-#include <unistd.h>
 #include <vector>
 
 namespace glint::cli {
@@ -104,19 +101,6 @@ int act(const Action& chosen, const ReportArguments& report) {
 }
 
 }  // namespace
-
-int startCompanion(const Console& console, const char* program, Arguments line, const Diagnostic& missing) {
-    std::error_code error;
-    const std::string path =
-        (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / program).string();
-    std::vector<char*> words{const_cast<char*>(path.c_str())};
-    for (const char* const word : line) {
-        words.push_back(const_cast<char*>(word));
-    }
-    words.push_back(nullptr);
-    execv(path.c_str(), words.data());
-    return fail(console, missing);
-}
 
 int runCommandLine(int argc, const char* const* argv, const Companion& companion) {
     CLI::App app;

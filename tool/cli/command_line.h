@@ -1,34 +1,10 @@
 // The `glint` command: subcommands, options, exit codes.
 #pragma once
 
-#include <glint/result.h>
-
-#include <cstdint>
-#include <string>
-#include <vector>
-
-namespace glint::view {
-struct Request;
-}  // namespace glint::view
+#include "cli/companion.h"
+#include "cli/console.h"
 
 namespace glint::cli {
-
-class Console;
-
-inline constexpr int kExitDone = 0;
-inline constexpr int kExitFailed = 1;  // the input or the work failed
-inline constexpr int kExitUsage = 2;   // the command line is wrong
-
-// The work of a program beside glint, which takes the same command line. glint itself has neither function,
-// and starts that program.
-struct Companion {
-    // Opens a window and returns when it is closed. Of glint-view.
-    Status (*showWindow)(const view::Request& request) = nullptr;
-    // Does `glint check-materials --prove` for the folders of packs, with at most so many boxes of inputs for
-    // each feature, and returns the exit code. Of glint-verify.
-    int (*proveMaterials)(const Console& console, const std::vector<std::string>& packs,
-                          std::uint64_t boxes) = nullptr;
-};
 
 // Parses the command line and does what it says. Results go to stdout, diagnostics to stderr.
 int runCommandLine(int argc, const char* const* argv, const Companion& companion = {});

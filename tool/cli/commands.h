@@ -1,7 +1,7 @@
 // The subcommands. Each declares its options. If the command line names it, it sets `chosen` to its work.
 #pragma once
 
-#include "cli/command_line.h"
+#include "cli/companion.h"
 #include "cli/options/options.h"
 
 #include <CLI/CLI.hpp>
@@ -26,10 +26,5 @@ void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* cons
                        const Companion& companion);
 // Call this after all other commands are added, because the script is made from their options.
 void addCompletion(CLI::App& app, Action& chosen);
-
-// Becomes the program of that name beside this one, with the same command line. Returns only if that fails: a
-// failed command's exit code, after `missing` is reported.
-int startCompanion(const Console& console, const char* program, std::span<const char* const> line,
-                   const Diagnostic& missing);
 
 }  // namespace glint::cli

@@ -1,7 +1,7 @@
 // glint compare: measures how far two images differ.
 #include "image/compare.h"
 
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"

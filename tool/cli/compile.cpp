@@ -3,7 +3,6 @@
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/arguments.h"

@@ -1,5 +1,5 @@
 // glint compile-module: compiles one module of a plan.
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/report.h"

@@ -1,8 +1,7 @@
 #include "cli/console.h"
 
 #include "base/clock.h"
-#include "cli/command_line.h"
-#include "cli/report.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
 
@@ -52,7 +51,31 @@ std::string colored(const Diagnostic& diagnostic) {
     return text;
 }
 
+// Returns "/materials/3" for "scene.gltf#/materials/3", or an empty text if the place has no JSON pointer.
+std::string pointerOf(const std::string& where) {
+    const std::size_t begin = where.find("#/");
+    return begin == std::string::npos ? std::string() : where.substr(begin + 1);
+}
+
 }  // namespace
+
+base::Json toJson(const Diagnostic& diagnostic) {
+    static constexpr const char* kNames[] = {"note", "warning", "error"};
+    return {{"severity", kNames[static_cast<int>(diagnostic.severity)]},
+            {"id", diagnostic.id},
+            {"where", diagnostic.where},
+            {"pointer", base::textOrNull(pointerOf(diagnostic.where))},
+            {"message", diagnostic.message},
+            {"hint", diagnostic.hint}};
+}
+
+base::Json toJson(std::span<const Diagnostic> diagnostics) {
+    base::Json list = base::Json::array();
+    for (const Diagnostic& diagnostic : diagnostics) {
+        list.push_back(toJson(diagnostic));
+    }
+    return list;
+}
 
 std::optional<Severity> DiagnosticPolicy::judge(Severity severity, std::string_view id) const {
     if (severity != Severity::Error && dropped.contains(id)) {

@@ -10,10 +10,15 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace glint::cli {
+
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitFailed = 1;  // the input or the work failed
+inline constexpr int kExitUsage = 2;   // the command line is wrong
 
 enum class ColorChoice { Auto, Always, Never };
 
@@ -72,6 +77,9 @@ private:
     struct State;
     std::unique_ptr<State> state_;
 };
+
+nlohmann::ordered_json toJson(const Diagnostic& diagnostic);
+nlohmann::ordered_json toJson(std::span<const Diagnostic> diagnostics);
 
 // Reports an error; returns the exit code of a command that failed.
 int fail(const Console& console, const Diagnostic& error);

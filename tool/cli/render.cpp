@@ -1,6 +1,6 @@
 // glint render: renders a picture of a scene with the runtime.
 #include "base/clock.h"
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/cache.h"

@@ -7,34 +7,6 @@
 
 namespace glint::cli {
 
-namespace {
-
-// Returns "/materials/3" for "scene.gltf#/materials/3", or an empty text if the place has no JSON pointer.
-std::string pointerOf(const std::string& where) {
-    const std::size_t begin = where.find("#/");
-    return begin == std::string::npos ? std::string() : where.substr(begin + 1);
-}
-
-}  // namespace
-
-base::Json toJson(const Diagnostic& diagnostic) {
-    static constexpr const char* kNames[] = {"note", "warning", "error"};
-    return {{"severity", kNames[static_cast<int>(diagnostic.severity)]},
-            {"id", diagnostic.id},
-            {"where", diagnostic.where},
-            {"pointer", base::textOrNull(pointerOf(diagnostic.where))},
-            {"message", diagnostic.message},
-            {"hint", diagnostic.hint}};
-}
-
-base::Json toJson(std::span<const Diagnostic> diagnostics) {
-    base::Json list = base::Json::array();
-    for (const Diagnostic& diagnostic : diagnostics) {
-        list.push_back(toJson(diagnostic));
-    }
-    return list;
-}
-
 base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask) {
     base::Json list = base::Json::array();
     for (const std::string_view name : model.names(mask)) {

@@ -16,8 +16,6 @@
 
 namespace glint::cli {
 
-base::Json toJson(const Diagnostic& diagnostic);
-base::Json toJson(std::span<const Diagnostic> diagnostics);
 base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
 base::Json materialsToJson(const gltf::SceneList& scenes, std::span<const int> materials);

@@ -1,7 +1,6 @@
 #include "emit/module_text.h"
 
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "emit/glsl/prune.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Measures how far a picture is from a converged one, for glint bench.
 #pragma once
 
-#include <glint/renderer.h>
+#include <glint/image.h>
 #include <glint/result.h>
 
 #include <cstdint>

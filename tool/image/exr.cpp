@@ -1,7 +1,7 @@
 #include "image/exr.h"
 
+#include "base/image_limits.h"
 #include "image/exr_bounds.h"
-#include "image/image_file.h"
 
 #include <ImathBox.h>
 #include <ImfChannelList.h>
@@ -122,7 +122,7 @@ Result<LinearImage> decode(MemoryInput& stream, const std::string& where) {
     const Imath::Box2i window = file.header().dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    GLINT_TRY_DO(checkImageSize(width, height, where));
+    GLINT_TRY_DO(base::checkImageSize(width, height, where));
     if (width * height / kMaxExrPixelsPerByte > stream.size()) {
         return exrError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +
                                    " pixels, but has only " + std::to_string(stream.size()) + " bytes");

@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 
-#include <glint/renderer.h>
+#include <glint/image.h>
 #include <glint/result.h>
 
 #include <span>

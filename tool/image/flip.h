@@ -3,7 +3,7 @@
 
 #include "image/png.h"
 
-#include <glint/renderer.h>
+#include <glint/image.h>
 
 #include <span>
 #include <vector>

@@ -1,6 +1,6 @@
 #include "image/hdr.h"
 
-#include "image/image_file.h"
+#include "base/image_limits.h"
 
 #include <algorithm>
 #include <cstring>
@@ -92,7 +92,7 @@ Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::st
     if (stbi_info_from_callbacks(&HdrReader::callbacks(), &header, &width, &height, &channels) == 0) {
         return hdrError(where, "is no Radiance picture (.hdr) that can be read");
     }
-    GLINT_TRY_DO(checkImageSize(width, height, where));
+    GLINT_TRY_DO(base::checkImageSize(width, height, where));
     const std::int64_t count = std::int64_t{width} * height;
     if (count / kMaxHdrPixelsPerByte > static_cast<std::int64_t>(bytes.size())) {
         return hdrError(where, "says it has " + std::to_string(width) + " x " + std::to_string(height) +

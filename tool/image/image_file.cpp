@@ -66,16 +66,6 @@ Result<RadianceFormat> radianceFormat(const std::filesystem::path& path) {
     return extensionError(path, extension, "use .hdr or .exr");
 }
 
-Status checkImageSize(std::int64_t width, std::int64_t height, const std::string& where) {
-    if (width >= 1 && height >= 1 && width <= base::kMaxImageSize && height <= base::kMaxImageSize &&
-        width * height <= base::kMaxImagePixels) {
-        return okStatus();
-    }
-    return makeError("image-size", where,
-                     "is " + std::to_string(width) + " x " + std::to_string(height) +
-                         " pixels; Glint takes 1 to 16384 each way and 67108864 in all");
-}
-
 Result<LinearImage> readImage(const std::filesystem::path& path) {
     GLINT_TRY(const auto format, imageFormat(path));
     GLINT_TRY(const auto bytes, base::readFile(path));

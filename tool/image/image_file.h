@@ -5,7 +5,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 
-#include <glint/renderer.h>
+#include <glint/image.h>
 #include <glint/result.h>
 
 #include <cstdint>
@@ -39,9 +39,5 @@ Status writeImage(const std::filesystem::path& path, const LinearImage& image, d
                   std::span<const ExrLayer> layers = {});
 // Writes PNG only. Errors "image-extension" for other extensions, "png-encode", "file-write".
 Status writeImage(const std::filesystem::path& path, const DisplayImage& image);
-
-// Returns the error "image-size" if an image is empty, above 16384 pixels in either direction, or above 2^26
-// pixels in all.
-Status checkImageSize(std::int64_t width, std::int64_t height, const std::string& where);
 
 }  // namespace glint::image

@@ -1,7 +1,7 @@
 #include "image/png.h"
 
+#include "base/image_limits.h"
 #include "base/png_bounds.h"
-#include "image/image_file.h"
 #include "image/tone.h"
 
 #include <array>
@@ -98,7 +98,7 @@ Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::st
     if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
         return unreadable(where);
     }
-    GLINT_TRY_DO(checkImageSize(width, height, where));
+    GLINT_TRY_DO(base::checkImageSize(width, height, where));
     if (const std::string excess = base::findPngExcess(bytes, width, height); !excess.empty()) {
         return makeError("image-format", where, "is no PNG file that can be read: " + excess, kRewrite);
     }

@@ -1,7 +1,7 @@
 // Converts linear radiance for a display: exposure, tone mapping, the sRGB transfer function.
 #pragma once
 
-#include <glint/renderer.h>
+#include <glint/image.h>
 
 #include <array>
 #include <cstdint>

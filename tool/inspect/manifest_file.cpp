@@ -1,7 +1,7 @@
 #include "inspect/manifest_file.h"
 
 #include "base/files.h"
-#include "base/json_depth.h"
+#include "base/json.h"
 
 #include <glint/package_format.h>
 

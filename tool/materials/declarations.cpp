@@ -1,6 +1,6 @@
 #include "materials/declarations.h"
 
-#include "base/json_depth.h"
+#include "base/json.h"
 #include "materials/effect_reader.h"
 #include "materials/feature_code.h"
 #include "materials/model_builder.h"

@@ -3,6 +3,7 @@
 // docs/schemas/material_feature.json and docs/schemas/effect.json describe.
 #pragma once
 
+#include "materials/declaration_files.h"
 #include "materials/material_model.h"
 
 #include <glint/result.h>
@@ -11,12 +12,6 @@
 #include <string_view>
 
 namespace glint::materials {
-
-struct DeclarationFile {
-    std::string_view name;  // for diagnostics: "materials/sheen/sheen.json"
-    std::string_view text;
-    bool isOfPack = false;  // of a user's own; its features and effects have bits after those of Glint's own
-};
 
 // Makes the model of all files together, as they may refer to each other. The result depends on neither the
 // order of the files nor their folders. Error "declaration": a file is no JSON, has unknown or missing

@@ -1,8 +1,9 @@
 // Builds a material model from declarations. The parts of the work are in files of their own.
 #pragma once
 
+#include "materials/declaration_files.h"
 #include "materials/declaration_json.h"
-#include "materials/declarations.h"
+#include "materials/material_model.h"
 
 #include <cstddef>
 #include <limits>

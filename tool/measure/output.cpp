@@ -1,5 +1,4 @@
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "image/compare.h"
 #include "image/png.h"
 #include "image/tone.h"

@@ -1,6 +1,5 @@
 #include "base/files.h"
 #include "base/json.h"
-#include "base/json_depth.h"
 #include "base/suggest.h"
 #include "settings/table.h"
 

@@ -1,7 +1,6 @@
 #include "plan/effects.h"
 
 #include "plan/held_text.h"
-#include "plan/plan.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,7 @@
 #include "spirv/lint.h"
 
-#include "spirv/lint_pipelines.h"
-#include "spirv/lint_places.h"
 #include "spirv/lint_prepare.h"
-#include "spirv/lint_queries.h"
+#include "spirv/lint_rules.h"
 
 #include <fmt/format.h>
 #include <glslang/SPIRV/spirv.hpp>

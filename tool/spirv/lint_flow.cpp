@@ -1,7 +1,16 @@
 #include "spirv/lint_flow.h"
 
+#include "spirv/lint_prepare.h"
+#include "spirv/reader.h"
+
+#include <glslang/SPIRV/spirv.hpp>
+
 #include <algorithm>
 #include <functional>
+#include <map>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 namespace glint::compiler {
 
@@ -83,6 +92,277 @@ bool repeats(const FlowFunction& function, EventPlace event) {
         return repeated || at(function, place).act == QueryAct::Initialize ? Step::Stop : Step::On;
     });
     return repeated;
+}
+
+namespace {
+
+using Operands = std::span<const std::uint32_t>;
+
+bool exitsFunction(std::uint32_t opcode) {
+    switch (opcode) {
+        case spv::OpReturn:
+        case spv::OpReturnValue:
+        case spv::OpKill:
+        case spv::OpTerminateInvocation:
+        case spv::OpIgnoreIntersectionKHR:
+        case spv::OpTerminateRayKHR:
+            return true;
+        default:
+            return false;  // includes OpUnreachable, which no path reaches
+    }
+}
+
+// The labels of a switch stand behind literals of one word, or of two words if the selector has 64 bits. The
+// second literal tells which: if it is read with the wrong stride, the upper half of a literal stands where a
+// label should be.
+std::vector<std::uint32_t> switchTargets(Operands operands,
+                                         const std::map<std::uint32_t, std::size_t>& labels) {
+    for (const std::size_t stride : {2U, 3U}) {
+        std::vector<std::uint32_t> targets{operands[1]};
+        for (std::size_t i = 1 + stride; i < operands.size(); i += stride) {
+            targets.push_back(operands[i]);
+        }
+        const bool whole = (operands.size() - 2) % stride == 0;
+        if (whole &&
+            std::ranges::all_of(targets, [&](std::uint32_t label) { return labels.contains(label); })) {
+            return targets;
+        }
+    }
+    return {operands[1]};
+}
+
+std::vector<std::uint32_t> branchTargets(const SpirvInstruction& instruction,
+                                         const std::map<std::uint32_t, std::size_t>& labels) {
+    switch (instruction.opcode) {
+        case spv::OpBranch:
+            return {instruction.operands[0]};
+        case spv::OpBranchConditional:
+            return {instruction.operands[1], instruction.operands[2]};
+        case spv::OpSwitch:
+            return switchTargets(instruction.operands, labels);
+        default:
+            return {};
+    }
+}
+
+class FlowReader {
+public:
+    explicit FlowReader(std::span<const std::uint32_t> words) {
+        forEachInstruction(words, [this](const SpirvInstruction& instruction) { visit(instruction); });
+        std::ranges::sort(module_.constants);
+    }
+    FlowModule take() {
+        return std::move(module_);
+    }
+
+private:
+    void visit(const SpirvInstruction& it) {
+        switch (it.opcode) {
+            case spv::OpConstant:
+            case spv::OpSpecConstant:
+                module_.constants.emplace_back(it.operands[1], it.operands[2]);
+                constants_[it.operands[1]] = it.operands[2];
+                break;
+            case spv::OpConstantNull:
+                module_.constants.emplace_back(it.operands[1], 0);
+                constants_[it.operands[1]] = 0;
+                break;
+            case spv::OpSpecConstantOp:
+                fixed_.insert(it.operands[1]);
+                break;
+            case spv::OpTypeRayQueryKHR:
+                queryTypes_.insert(it.operands[0]);
+                break;
+            case spv::OpTypeAccelerationStructureKHR:
+                structureType_ = it.operands[0];
+                break;
+            case spv::OpLoad:
+            case spv::OpConvertUToAccelerationStructureKHR:
+                if (it.operands[0] == structureType_) {
+                    structures_[it.operands[1]] = {it.operands[2], function_.blocks.size()};
+                }
+                break;
+            case spv::OpTypeArray:
+            case spv::OpTypePointer:
+                if (queryTypes_.contains(it.operands[it.opcode == spv::OpTypeArray ? 1 : 2])) {
+                    queryTypes_.insert(it.operands[0]);
+                }
+                break;
+            case spv::OpAccessChain:
+            case spv::OpInBoundsAccessChain:
+            case spv::OpCopyObject:
+                if (queryTypes_.contains(it.operands[0])) {
+                    chains_[it.operands[1]] = it.operands;
+                } else if (it.opcode != spv::OpCopyObject && isIndexed(it.operands)) {
+                    indexed_.insert(it.operands[1]);
+                }
+                break;
+            case spv::OpVariable:
+            case spv::OpFunctionParameter:
+                if (queryTypes_.contains(it.operands[0])) {
+                    chains_[it.operands[1]] = {};
+                }
+                break;
+            case spv::OpLine:
+                line_ = it.operands[1];
+                break;
+            default:
+                visitFlow(it);
+        }
+    }
+
+    // Whether an access chain has an index that is no constant.
+    bool isIndexed(Operands chain) const {
+        return std::ranges::any_of(chain.subspan(3), [this](std::uint32_t index) {
+            return !constants_.contains(index) && !fixed_.contains(index);
+        });
+    }
+
+    void visitFlow(const SpirvInstruction& it) {
+        switch (it.opcode) {
+            case spv::OpFunction:
+                function_ = {};
+                labels_.clear();
+                terminators_.clear();
+                break;
+            case spv::OpLabel:
+                labels_[it.operands[0]] = function_.blocks.size();
+                function_.blocks.emplace_back();
+                break;
+            case spv::OpBranch:
+            case spv::OpBranchConditional:
+            case spv::OpSwitch:
+                terminators_.emplace_back(function_.blocks.size() - 1, it);
+                break;
+            case spv::OpFunctionCall:
+                for (const std::uint32_t argument : it.operands.subspan(3)) {
+                    if (chains_.contains(argument)) {
+                        add({QueryAct::PassedOn, objectOf(argument), 0, 0});
+                    }
+                }
+                break;
+            case spv::OpFunctionEnd:
+                finishFunction();
+                break;
+            default:
+                if (isRayQueryInstruction(it.opcode)) {
+                    addQuery(it);
+                } else if (exitsFunction(it.opcode)) {
+                    function_.blocks.back().exits = true;
+                }
+        }
+    }
+
+    void add(const QueryEvent& event) {
+        function_.blocks.back().events.push_back(event);
+    }
+
+    void addQuery(const SpirvInstruction& it) {
+        QueryEvent event;
+        event.origin = line_;
+        switch (it.opcode) {
+            case spv::OpRayQueryInitializeKHR:
+                event.act = QueryAct::Initialize;
+                event.flags = it.operands[2];
+                event.structure = it.operands[1];
+                if (const auto load = structures_.find(event.structure); load != structures_.end()) {
+                    event.structureIndexed = indexed_.contains(load->second.first);
+                    event.structureElsewhere = load->second.second != function_.blocks.size();
+                }
+                [[fallthrough]];
+            case spv::OpRayQueryTerminateKHR:
+            case spv::OpRayQueryConfirmIntersectionKHR:
+            case spv::OpRayQueryGenerateIntersectionKHR:
+                event.object = objectOf(it.operands[0]);
+                break;
+            case spv::OpRayQueryProceedKHR:
+                event.act = QueryAct::Proceed;
+                event.object = objectOf(it.operands[2]);
+                break;
+            default:
+                event.act = actOfRead(it);
+                event.object = objectOf(it.operands[2]);
+        }
+        add(event);
+    }
+
+    QueryAct actOfRead(const SpirvInstruction& it) const {
+        if (it.operands.size() < 4) {
+            return QueryAct::Other;  // It asks about the ray, not about a hit.
+        }
+        const auto which = constants_.find(it.operands[3]);
+        const bool candidate = which != constants_.end() &&
+                               which->second == spv::RayQueryIntersectionRayQueryCandidateIntersectionKHR;
+        if (candidate) {
+            return QueryAct::Other;
+        }
+        return it.opcode == spv::OpRayQueryGetIntersectionTypeKHR ? QueryAct::ReadType : QueryAct::ReadHit;
+    }
+
+    // Follows access chains to the variable.
+    std::size_t objectOf(std::uint32_t pointer) {
+        QueryObject object;
+        for (auto chain = chains_.find(pointer); chain != chains_.end() && !chain->second.empty();
+             chain = chains_.find(pointer)) {
+            pointer = chain->second[2];
+            for (const std::uint32_t index : chain->second.subspan(3)) {
+                const auto constant = constants_.find(index);
+                object.dynamic = object.dynamic || constant == constants_.end();
+                object.indices.push_back(constant == constants_.end() ? 0 : constant->second);
+            }
+        }
+        object.variable = pointer;
+        if (object.dynamic) {
+            object.indices.clear();
+        }
+        const auto found = std::ranges::find(function_.objects, object);
+        if (found == function_.objects.end()) {
+            function_.objects.push_back(std::move(object));
+            return function_.objects.size() - 1;
+        }
+        return static_cast<std::size_t>(found - function_.objects.begin());
+    }
+
+    void finishFunction() {
+        for (const auto& [block, terminator] : terminators_) {
+            for (const std::uint32_t label : branchTargets(terminator, labels_)) {
+                if (const auto target = labels_.find(label); target != labels_.end()) {
+                    function_.blocks[block].successors.push_back(target->second);
+                }
+            }
+        }
+        if (!function_.objects.empty()) {
+            module_.functions.push_back(std::move(function_));
+        }
+        function_ = {};
+    }
+
+    FlowModule module_;
+    FlowFunction function_;
+    std::unordered_map<std::uint32_t, std::uint32_t> constants_;
+    std::unordered_set<std::uint32_t> queryTypes_;        // ray queries, arrays of ray queries, and pointers
+                                                          // to either
+    std::unordered_map<std::uint32_t, Operands> chains_;  // pointers to ray queries; a variable has no
+                                                          // operands here
+    std::unordered_set<std::uint32_t> fixed_;             // results of operations on specialisation constants
+    std::unordered_set<std::uint32_t> indexed_;           // pointers with an index that is no constant
+    std::uint32_t structureType_ = 0;
+    // By ID of a loaded acceleration structure: what it is loaded from, and the number of blocks until then.
+    std::unordered_map<std::uint32_t, std::pair<std::uint32_t, std::size_t>> structures_;
+    std::map<std::uint32_t, std::size_t> labels_;
+    std::vector<std::pair<std::size_t, SpirvInstruction>> terminators_;
+    std::size_t line_ = 0;
+};
+
+}  // namespace
+
+const std::uint32_t* FlowModule::findConstant(std::uint32_t id) const {
+    const auto found = std::ranges::lower_bound(constants, std::pair(id, std::uint32_t{0}));
+    return found != constants.end() && found->first == id ? &found->second : nullptr;
+}
+
+FlowModule readFlow(std::span<const std::uint32_t> words) {
+    return FlowReader(words).take();
 }
 
 }  // namespace glint::compiler

@@ -1,10 +1,16 @@
-// Prepares a module for the rules about ray queries: checks, inlines and folds it.
+// Prepares a module for the lint rules: checks, inlines and folds it, and finds the place of its
+// instructions.
 #pragma once
+
+#include "spirv/lint_finding.h"
+#include "spirv/reader.h"
 
 #include <glint/result.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -18,5 +24,29 @@ Status checkSpirv(std::span<const std::uint32_t> words);
 // ray queries, and small ones. Before each ray query instruction stands an OpLine whose line is the offset of
 // the original instruction in `words`. Requires a valid module.
 std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words);
+
+// Returns the offset of the first word of `instruction`, which visitSpirv() gave for `words`.
+inline std::size_t offsetOf(std::span<const std::uint32_t> words, const SpirvInstruction& instruction) {
+    return static_cast<std::size_t>(instruction.operands.data() - words.data()) - 1;
+}
+
+// Requires a module that visitSpirv() walks to its end.
+void forEachInstruction(std::span<const std::uint32_t> words,
+                        const std::function<void(const SpirvInstruction&)>& visit);
+
+bool isRayQueryInstruction(std::uint32_t opcode);
+bool isTraceInstruction(std::uint32_t opcode);
+
+struct SpirvEntryPoint {
+    std::uint32_t model = 0;
+    std::uint32_t function = 0;
+    std::string name;
+};
+
+// Requires a valid module.
+std::vector<SpirvEntryPoint> findEntryPoints(std::span<const std::uint32_t> words);
+
+// Returns the places of all ray queries and traces, by offset. Requires a valid module.
+std::map<std::size_t, SpirvPlace> findPlaces(std::span<const std::uint32_t> words);
 
 }  // namespace glint::compiler

@@ -7,9 +7,12 @@
 #pragma once
 
 #include "gltf/scene.h"
+#include "materials/material.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace glint::synthetic {
 
@@ -49,5 +52,54 @@ std::string_view nameOf(Shares shares);        // "uniform"
 // Returns the scene as importScene() would read it, with its images and without sources. With
 // MergePolicy::None it has exactly `cases` keys and so as many cases; the floor has the key of one of them.
 gltf::Scene makeCasesScene(const CasesOptions& options);
+
+struct CaseMaterial {
+    materials::Material material;
+    // The attributes of its primitives, besides positions and texture coordinates.
+    bool normals = false;
+    bool tangents = false;
+    bool colors = false;
+};
+
+// Returns `count` materials. Eight switches make 256 sets. Sets with half of the switches come first, and
+// each set is followed by the set that has exactly the other switches. So any even number of cases has each
+// switch in half of them, and the average work does not grow with the number of cases.
+std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count);
+
+// Returns a material with the same key whose lobes and textures change next to nothing: a mirror, or a white
+// surface that scatters.
+CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence);
+
+// Heights in metres above the floor, which is at height 0: the camera's and the ceiling's.
+inline constexpr double kCameraHeight = 1.0;
+inline constexpr double kCeilingHeight = 3.0;
+// The camera's vertical field of view, in radians.
+inline constexpr double kFieldOfView = 1.0;
+
+// What the camera sees at a distance, from the middle to the edge.
+struct Extent {
+    double x = 0.0;
+    double z = 0.0;
+};
+Extent viewExtent(double distance, double aspect);
+
+// The ceiling. It is parallel to the floor, around the vertical axis.
+struct Ceiling {
+    Extent extent;             // from the middle to the edge
+    int tiles = 0;             // number of tiles a side
+    std::vector<int> cases{};  // row by row from -z, and within a row from -x
+
+    std::size_t place(int row, int column) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(tiles) +
+               static_cast<std::size_t>(column);
+    }
+    // Returns the case above a point, or -1 if there is none.
+    int caseAt(double x, double z) const;
+};
+
+Ceiling makeCeiling(const CasesOptions& options);
+
+// Returns the share that each case should have, largest first. They add up to 1.
+std::vector<double> sharesOf(const CasesOptions& options);
 
 }  // namespace glint::synthetic

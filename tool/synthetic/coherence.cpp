@@ -1,6 +1,6 @@
 #include "synthetic/coherence.h"
 
-#include "synthetic/tiles.h"
+#include "synthetic/cases_scene.h"
 
 #include <algorithm>
 #include <cmath>

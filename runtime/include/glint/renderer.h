@@ -3,6 +3,7 @@
 
 #include <glint/context.h>
 #include <glint/effects.h>
+#include <glint/image.h>
 #include <glint/layers.h>
 #include <glint/memory_report.h>
 #include <glint/package.h>
@@ -259,13 +260,6 @@ struct PipelineProgress {
     std::uint64_t drafts = 0;
 };
 
-// An image of RGBA in linear 32-bit float. The first row is on top.
-struct LinearImage {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::vector<std::array<float, 4>> pixels;
-};
-
 // The surface that a pixel sees.
 struct SurfacePlace {
     std::uint32_t instance = 0;  // index into SceneView::instances
@@ -285,15 +279,6 @@ struct LayerImage {
     VkFormat format = VK_FORMAT_UNDEFINED;
     // It is in this layout after the first recording.
     static constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
-};
-
-// The values of a layer on the host, row by row from the top. One of the two has values.
-struct LayerValues {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::uint32_t components = 0;  // of a pixel
-    std::vector<float> reals;      // width * height * components
-    std::vector<std::uint32_t> integers;
 };
 
 // The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must

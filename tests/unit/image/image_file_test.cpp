@@ -2,7 +2,6 @@
 
 #include "base/files.h"
 #include "base/png_bounds.h"
-#include "base/staged_file.h"
 #include "image/exr_bounds.h"
 #include "image/tone.h"
 

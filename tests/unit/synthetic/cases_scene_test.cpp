@@ -4,7 +4,6 @@
 #include "gltf/import.h"
 #include "plan/plan.h"
 #include "support/features.h"
-#include "synthetic/tiles.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #include "cli/compile/arguments.h"
 
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "base/text.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"

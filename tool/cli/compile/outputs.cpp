@@ -1,7 +1,6 @@
 #include "cli/compile/outputs.h"
 
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "cli/compile/held_signals.h"
 #include "emit/package/embed_source.h"
 

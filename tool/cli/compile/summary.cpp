@@ -1,7 +1,7 @@
 #include "cli/compile/summary.h"
 
-#include "base/json_depth.h"
-#include "base/staged_file.h"
+#include "base/files.h"
+#include "base/json.h"
 #include "cache/packing.h"
 #include "cli/table.h"
 

@@ -1,7 +1,6 @@
 #include "cli/options/lock_option.h"
 
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/report.h"

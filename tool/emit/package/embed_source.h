@@ -1,7 +1,7 @@
 // A package as C++ source, for programs that ship without data files.
 #pragma once
 
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "emit/compile.h"
 #include "gltf/scene_list.h"
 

@@ -1,6 +1,6 @@
 #include "emit/package/in_place.h"
 
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "emit/package/swap.h"
 
 #include <algorithm>

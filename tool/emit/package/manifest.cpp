@@ -1,6 +1,6 @@
 #include "emit/package/manifest.h"
 
-#include "base/json_depth.h"
+#include "base/json.h"
 #include "emit/context.h"
 #include "emit/host.h"
 #include "emit/modules.h"

@@ -1,4 +1,4 @@
-#include "base/staged_file.h"
+#include "base/files.h"
 #include "emit/compile.h"
 #include "emit/package/in_place.h"
 #include "emit/package/manifest.h"

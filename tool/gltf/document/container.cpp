@@ -1,6 +1,6 @@
 #include "gltf/document/container.h"
 
-#include "base/json_depth.h"
+#include "base/json.h"
 
 #include <fmt/format.h>
 
