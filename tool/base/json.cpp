@@ -1,7 +1,6 @@
 #include "base/json.h"
 
 #include "base/files.h"
-#include "base/json_depth.h"
 
 #include <fmt/format.h>
 
@@ -92,6 +91,26 @@ std::vector<std::string> JsonReader::texts(const Json& object, const std::string
         list.push_back(element.get<std::string>());
     });
     return list;
+}
+
+bool nestsTooDeep(std::span<const std::uint8_t> json) {
+    int depth = 0;
+    bool inString = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = static_cast<char>(json[i]);
+        if (inString) {
+            i += c == '\\' ? 1 : 0;
+            inString = c != '"';
+            continue;
+        }
+        inString = c == '"';
+        depth += c == '{' || c == '[' ? 1 : 0;
+        depth -= c == '}' || c == ']' ? 1 : 0;
+        if (depth > kMaxJsonDepth) {
+            return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace glint::base

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,5 +75,13 @@ private:
     std::string hint_;
     Diagnostic error_;
 };
+
+// The files that Glint reads and writes need fewer than a dozen levels, and `extras` of glTF seldom need
+// more.
+inline constexpr int kMaxJsonDepth = 128;
+
+// Returns whether arrays and objects are nested more than kMaxJsonDepth levels deep. The text need not be
+// JSON.
+bool nestsTooDeep(std::span<const std::uint8_t> json);
 
 }  // namespace glint::base

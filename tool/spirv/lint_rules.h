@@ -3,7 +3,11 @@
 
 #include "spirv/lint_finding.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
+#include <span>
+#include <vector>
 
 namespace glint::compiler {
 
