@@ -70,7 +70,7 @@ row "\`tool/spirv\`: reader, statistics, lint" tool/spirv/{call_graph,reader,sta
 row "\`tool/image\`" tool/image/{png,exr,exr_bounds,hdr,image_file}.cpp
 row "\`tool/cache\`" tool/cache/*.cpp
 row "\`tool/inspect\`, \`tool/measure\`: manifest, profile" tool/inspect/package.cpp tool/measure/profile.cpp
-row "\`tool/base\`: JSON and PNG bounds" tool/base/{json_depth,png_bounds}.cpp
+row "\`tool/base\`: JSON and PNG bounds" tool/base/{json,png_bounds}.cpp
 row "\`runtime/src/package/\`" runtime/src/package/package*.cpp
 if [[ -n $html ]]; then
     "$tools/llvm-cov" show -format=html -output-dir "$html" -instr-profile "$build/all.profdata" "${objects[@]}" \
