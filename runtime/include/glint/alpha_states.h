@@ -1,8 +1,8 @@
-// Which triangles, and which parts of them, an alpha test lets no ray through, or every ray: proved by
-// intervals over all texels that a lookup can reach, not sampled.
+// Proves which triangles, and which parts of them, an alpha test lets no ray or every ray through. The proof
+// is by intervals over all texels that a lookup can reach; it takes no samples.
 //
-// What is proved about is the alpha test of hit/alpha.glsl: alpha = factor * texture(uv).a * vertex alpha, in
-// 32 bits, at mip 0, and the surface is there where alpha >= cutoff.
+// The proof is about the alpha test of hit/alpha.glsl: alpha = factor * texture(uv).a * vertex alpha, in 32
+// bits, at mip 0.
 #pragma once
 
 #include <glint/opacity_micromap.h>
@@ -15,7 +15,7 @@
 
 namespace glint::opacity {
 
-// What is assumed about a device's arithmetic. All bounds are widened by it.
+// The errors that a device's arithmetic may have. All bounds are widened by it.
 struct ErrorModel {
     // The error of a coordinate in texels. Vulkan asks for at least 4 bits below a texel
     // (subTexelPrecisionBits).
@@ -23,7 +23,7 @@ struct ErrorModel {
     // The error of a coordinate before it is scaled to texels, relative to the largest number that it is
     // computed from.
     double coordinate = 32.0 * 0x1p-24;
-    // By how much barycentrics may lie outside of their triangle.
+    // The distance by which barycentrics may lie outside of their triangle.
     double outside = 0x1p-20;
     // The distance, in barycentrics, between the point that is tested and the one that chose the
     // micro-triangle.

@@ -83,7 +83,7 @@ struct TrafficRow {
 // Pure. A pass with several units has several rows. Rows without bytes are left out.
 std::vector<TrafficRow> trafficRows(const TrafficShape& shape);
 
-// How many of each unit a frame had.
+// The number of each unit in a frame.
 struct TrafficCounts {
     double of[std::size(kTrafficUnitNames)] = {};
 

@@ -29,7 +29,7 @@ namespace glint {
 class SceneEditor;
 class TextureStream;
 
-// What the last GpuScene::update() did. Times are device times in milliseconds; without timestamps on the
+// The work of the last GpuScene::update(). Times are device times in milliseconds; without timestamps on the
 // queue they are 0.
 struct MotionStatistics {
     enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
@@ -73,7 +73,7 @@ public:
     // Says that the device has completed all commands of frames up to `frame`, and frees what only those
     // used. It calls complete() of the editor and the texture stream, too.
     void complete(std::uint64_t frame);
-    // Whether complete() was called for the frame of the upload.
+    // Returns whether complete() was called for the frame of the upload.
     bool isUploaded() const;
     // Records the replacement of the BLASes by their compacted copies, and a build of the TLAS, if the upload
     // is complete and this was not done before; otherwise it records nothing. Returns whether it has.
@@ -92,14 +92,15 @@ public:
         std::uint32_t blasCount = 0;
         std::uint64_t blasBytes = 0;  // of the present ones: compacted after recordCompaction()
         std::uint64_t blasUncompactedBytes = 0;
-        // How many 16-bit images are stored with 8 bits, because this device can't filter or blit
+        // The number of 16-bit images that are stored with 8 bits, because this device can't filter or blit
         // R16G16B16A16_UNORM.
         std::uint32_t narrowedTextures = 0;
-        // Triangles of meshes whose alpha rays would test, and those that no ray tests (SceneView::opacity).
+        // Triangles of meshes whose alpha rays would test, and those of them that are proved, so that no ray
+        // tests them (SceneView::opacity).
         std::uint64_t maskedTriangles = 0;
         std::uint64_t provedOpaque = 0;
         std::uint64_t provedTransparent = 0;
-        // Micromaps of the others, on devices that have them.
+        // Micromaps of the triangles that are still tested, on devices that have micromaps.
         std::uint32_t micromaps = 0;
         std::uint64_t micromapBytes = 0;
         double opacityMs = 0.0;    // wall clock of proving them
@@ -238,7 +239,7 @@ struct FrameCounters {
     EffectCounters of(package::Effect effect) const;
 };
 
-// How a pixel got the light of an effect.
+// The source of the light that a pixel got of an effect.
 enum class PixelPath : std::uint8_t {
     NoSurface,
     NoRay,   // rough, unlit, or its sample would bring no light
@@ -254,7 +255,7 @@ struct PipelineProgress {
     std::uint32_t adopted = 0;  // those that recordings use
     // The first error. Its passes keep the fallback, or the draft.
     std::optional<Diagnostic> error{};
-    // Whether the next recording may be a draft (RendererOptions::draft), and how many were.
+    // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so far.
     bool draft = false;
     std::uint64_t drafts = 0;
 };
@@ -397,7 +398,8 @@ public:
     // Reads output() back. Waits for the device.
     Result<LinearImage> readOutput();
 
-    // What the renderer uses, also where RendererOptions left the choice to it.
+    // Returns the tracer and the ordering that the renderer uses, also where RendererOptions left the choice
+    // to it.
     package::Tracer tracer() const;
     package::Ordering ordering() const;
     // The number of pipelines, images and buffers, for tests and reports.
@@ -412,18 +414,18 @@ public:
     // Lists each image and buffer of the footprint.
     std::vector<MemoryItem> memory() const;
 
-    // How the pipelines were made.
+    // A report of how the pipelines were made.
     struct PipelineMaking {
         std::uint32_t threads = 0;
         double milliseconds = 0.0;  // wall clock, shader binding tables included
-        // How many of the pipelines the driver found in the Context's cache. No value if the driver does not
-        // say.
+        // The number of pipelines that the driver found in the Context's cache. It has no value if the driver
+        // does not report it. No value if the driver does not say.
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;
-    // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then. These
-    // say how far they are, and wait until the last is made, also of a package that waits to take its place.
-    // Without it nothing is wanted.
+    // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then.
+    // pipelineProgress() says how many are made. The other function waits until the last one is made, also of
+    // a package that waits to replace this one. Without that option no pipeline is missing.
     PipelineProgress pipelineProgress() const;
     void waitForPipelines();
     // Returns what the driver reports about each pipeline. Errors: "pipeline-statistics" without

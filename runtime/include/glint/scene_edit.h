@@ -43,7 +43,7 @@ inline constexpr AttributeMask kAttributeTangents = 2;
 inline constexpr AttributeMask kAttributeTexCoords0 = 4;
 inline constexpr AttributeMask kAttributeTexCoords1 = 8;
 inline constexpr AttributeMask kAttributeColors = 16;  // colours that are not all (1, 1, 1, 1)
-// From this bit on: the attributes of Package::attributes(), in their order.
+// The bits from this one on stand for the attributes of Package::attributes(), in their order.
 inline constexpr std::uint32_t kDeclaredAttributesShift = 8;
 
 // Returns the attributes that the primitive has, as far as `package` knows them. Reads all colours.
@@ -135,8 +135,9 @@ public:
     SceneEditor(const SceneEditor&) = delete;
     SceneEditor& operator=(const SceneEditor&) = delete;
 
-    // What was uploaded, by its numbers in the package's scene (textures, materials, meshes) and in SceneView
-    // (instances, lights). A number that was not uploaded, or was removed, gives a handle that names nothing.
+    // These return the handle of an uploaded thing by its number in the package's scene (textures, materials,
+    // meshes) or in SceneView (instances, lights). A number that was not uploaded, or was removed, gives a
+    // handle that names nothing.
     TextureHandle texture(std::uint32_t number) const;
     MaterialHandle material(std::uint32_t number) const;
     MeshHandle mesh(std::uint32_t number) const;
@@ -201,11 +202,12 @@ public:
     // Says that the device has completed all commands of frames up to `frame`, and frees what they alone
     // used. Command buffers of these frames may not be submitted again.
     void complete(std::uint64_t frame);
-    // Lets the next record() shrink the buffers of records and the TLAS to what they hold, but not below
+    // Lets the next record() shrink the buffers of records and the TLAS to their contents, but not below
     // their size at the upload. Without it they only grow.
     void trim();
 
-    // How many bytes wait for complete(): staging, scratch, and what was removed or replaced.
+    // Returns how many bytes wait for complete(): staging, scratch, and everything that was removed or
+    // replaced.
     std::uint64_t retiredBytes() const;
 
     struct State;  // for the runtime's own sources and their tests

@@ -47,7 +47,7 @@ public:
         std::uint64_t bytes = 0;     // of these levels
     };
     Progress progress() const;
-    // How many bytes wait for complete().
+    // Returns how many bytes wait for complete().
     std::uint64_t retiredBytes() const;
 
     struct State;  // for the runtime's own sources

@@ -73,7 +73,7 @@ struct Context::State {
     ValidationLog log;
     DeviceLimits limits;
     LeafOrder leafOrder = nullptr;  // null: halvingOrder()
-    // What modules may use of the device: moduleFeatures().
+    // The features of the device that modules may use: moduleFeatures().
     std::vector<std::string> features;
     // The renderers of this context share this cache.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;

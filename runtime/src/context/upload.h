@@ -42,7 +42,7 @@ public:
                                                     VkDeviceSize mostStaged = kUnlimited);
     static constexpr VkDeviceSize kUnlimited = ~VkDeviceSize{0};
 
-    // Queues a command. What it refers to must stay until it is recorded.
+    // Queues a command. Everything that it refers to must stay until it is recorded.
     void add(Command command) {
         queued_.push_back(std::move(command));
     }

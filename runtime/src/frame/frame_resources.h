@@ -22,8 +22,8 @@ inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 inline constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 inline constexpr VkFormat kHalfLightFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-// The layout of what counters() reads: the counters first, then for each round of rays the counters of its
-// lists and its buckets.
+// The layout of the data that counters() reads: the counters first, then for each round of rays the counters
+// of its lists and its buckets.
 inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
 
 // Members are destroyed in reverse order: the pool's memory last. Resources that the frame's effects do not
@@ -42,7 +42,7 @@ struct FrameResources {
     // Buffers may lie in its memory, so each frame gives it the layout DEPTH_ATTACHMENT_OPTIMAL anew.
     DeviceImage depth;
     Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
-    // These buffers and those below serve all effects with rays. Samples are those of a band.
+    // These and the following buffers serve all effects with rays. They have room for the samples of a band.
     Buffer sampleStarts;
     Buffer sampleAims;
     Buffer sampleWeights;  // present if samples are not packed
@@ -216,11 +216,11 @@ struct NextBuffers {
     std::uint32_t made = 0;
 };
 
-// Returns the bytes of the images and buffers of a frame of that size, without what a device adds to an
-// image. Pure.
+// Returns the bytes of the images and buffers of a frame of that size, without the padding that a device adds
+// to images. Pure.
 VkDeviceSize frameBytes(const FrameSize& size);
 
-// Whether frames of both sizes have the same images and the same layout of set 1.
+// Returns whether frames of both sizes have the same images and the same layout of set 1.
 bool haveSameImages(const FrameSize& first, const FrameSize& second);
 
 // Makes the buffers that frames of the size `next` need and frames of the size `now` lack. Errors: those of

@@ -66,7 +66,7 @@ Status MotionHistory::makeRoom() {
     return okStatus();
 }
 
-// Geometries that do not deform keep the positions that they have, in whatever form that is.
+// Geometries that do not deform keep their positions, in whatever form they are.
 Status MotionHistory::createVertices() {
     std::vector<gpu::PreviousVertices>& table = newTable_;
     table.reserve(scene_->geometryPositions.size());

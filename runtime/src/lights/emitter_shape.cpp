@@ -9,7 +9,7 @@ namespace {
 
 using package::EmissionEntry;
 
-// Numbers that are none are the same, too.
+// Two NaNs count as the same, too.
 bool same(const gpu::vec3& a, const gpu::vec3& b) {
     return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
 }

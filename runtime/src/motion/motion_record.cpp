@@ -234,7 +234,7 @@ void stage(GpuScene::State& state, std::span<const InstanceView> instances,
 void recordAll(GpuScene::State& state, VkCommandBuffer commands, const Decisions& decisions) {
     SceneMotion& motion = *state.motion;
     motion.timer.recordReset(commands);
-    // Earlier frames may still read what the copies overwrite.
+    // Earlier frames may still read the memory that the copies overwrite.
     recordDependency(state.context, commands, kAllToAll);
     recordCopies(state, commands);
     if (motion.deformer) {

@@ -32,7 +32,7 @@ struct BlasGeometry {
     const DeviceMicromap* micromap = nullptr;  // must outlive the structure; null: none
 };
 
-// The most that one BLAS may hold.
+// The largest content of one BLAS.
 struct BlasCapacity {
     std::uint64_t triangles = 0;
     std::uint64_t geometries = 0;
@@ -44,8 +44,9 @@ struct BlasInput {
     bool updatable = false;                // built fast and refitted; not compacted
 };
 
-// Returns what one BLAS of this device may hold. It follows from the device's limits; also, no structure and
-// no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage buffers.
+// Returns the largest content of one BLAS of this device. It follows from the device's limits; also, no
+// structure and no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage
+// buffers.
 BlasCapacity blasCapacity(const Context::State& context);
 
 struct SceneUpload;

@@ -17,7 +17,7 @@ struct Replacement {
     AccelerationStructure copy;
 };
 
-// Returns nothing if the device has not written them yet.
+// Returns no value if the device has not written the sizes yet.
 Result<std::optional<std::vector<VkDeviceSize>>> readSizes(const GpuScene::State& state) {
     const Compaction& compaction = *state.compaction;
     std::vector<VkDeviceSize> sizes(compaction.count);

@@ -1,4 +1,5 @@
-// What the upload of a scene needs until the device has completed it, and the compaction that follows.
+// The resources of a scene's upload that must stay until the device has completed it, and the compaction that
+// follows.
 #pragma once
 
 #include "context/timer.h"
@@ -51,7 +52,7 @@ void completeCompaction(GpuScene::State& state, std::uint64_t frame);
 // --- The upload ---
 
 struct SceneUpload {
-    // `mostStaged` is that of Uploader::createDeferred().
+    // `mostStaged` is as in Uploader::createDeferred().
     SceneUpload(Context::State& contextState, VkDeviceSize mostStaged)
         : context(contextState),
           pool(contextState),
@@ -69,8 +70,8 @@ struct SceneUpload {
     static constexpr std::uint32_t kTlasStretch = 1;
 
     Context::State& context;
-    // It holds staging, scratch, and what acceleration structures are built from. Members are destroyed in
-    // reverse order: the pool's memory last.
+    // It holds staging, scratch, and the inputs of acceleration structures. Members are destroyed in reverse
+    // order: the pool's memory last.
     MemoryPool pool;
     std::vector<Buffer> kept;
     std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order

@@ -19,8 +19,8 @@ namespace glint {
 // good tree themselves.
 LeafOrder leafOrderFor(const Context::State& context, TraversalOrder wanted);
 
-// Returns what one BLAS holds if triangles are ordered: one geometry. A driver that keeps the geometries of a
-// BLAS in sequence would mix parts of neighbours in its nodes. With one geometry each, instances can be
+// Returns the capacity of one BLAS if triangles are ordered: one geometry. A driver that keeps the geometries
+// of a BLAS in sequence would mix parts of neighbours in its nodes. With one geometry each, instances can be
 // ordered by their positions.
 BlasCapacity orderedCapacity(BlasCapacity capacity);
 

@@ -59,7 +59,7 @@ float valueOnAxis(std::uint32_t code, const AxisGrid& grid) {
     return static_cast<float>(static_cast<double>(grid.least) + offset);
 }
 
-// Returns the exponent of the lowest bit that is set; 0 has none and takes any.
+// Returns the exponent of the lowest bit that is set. 0 has no such bit and fits any exponent.
 int lowestBit(float value) {
     if (value == 0.0F) {
         return std::numeric_limits<int>::max();
