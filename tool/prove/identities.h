@@ -1,7 +1,7 @@
 // Sums whose terms cancel: x + (1 - x). A program's values are expanded as polynomials of those values that
 // are no sums or products; where terms cancel, the polynomial bounds the value better than its operands do.
 // The polynomials are about real numbers. Those of few variables are bounded by their Bernstein coefficients
-// (Cargo and Shisha 1966, "The Bernstein form of a polynomial"). What rounding adds is bounded operation by
+// (Cargo and Shisha 1966, "The Bernstein form of a polynomial"). The rounding errors are bounded operation by
 // operation for each box.
 #pragma once
 
@@ -21,7 +21,8 @@ public:
 
     // Must be called before the first bound() for another box.
     void forgetBox();
-    // Encloses the value of a node, given the values of those before it. Everything where nothing cancels.
+    // Encloses the value of a node, given the values of those before it. The interval is everything where
+    // nothing cancels.
     Interval bound(NodeId id, std::span<const Interval> values);
 
 private:

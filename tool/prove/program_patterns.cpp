@@ -1,4 +1,4 @@
-// Sequences of operations with a known meaning, of which a program knows more than of each operation.
+// Sequences of operations with a known meaning, which have tighter bounds than their single operations.
 #include "prove/concrete.h"
 #include "prove/program.h"
 
@@ -247,7 +247,7 @@ NodeId ProgramBuilder::quotientOfLess(const Node& given) {
     return make(Op::Share, given.format, quotient, given.a, rest);
 }
 
-// max(1 - x, 0) is 1 - min(x, 1), and min(1 - x, 1) is 1 - max(x, 0), to the bit; and min comes after max.
+// max(1 - x, 0) is 1 - min(x, 1), and min(1 - x, 1) is 1 - max(x, 0), bit-exact. min comes after max.
 NodeId ProgramBuilder::limited(const Node& given) {
     if (given.format != Format::Single) {
         return kNoNode;

@@ -8,7 +8,7 @@
 namespace glint::prove {
 namespace {
 
-// What is longer is no share that anybody wrote.
+// Longer products and sums are no shares that anybody wrote.
 constexpr std::size_t kMostTermsOfShares = 16;
 constexpr std::size_t kMostFactorsOfShares = 6;
 constexpr int kMostDepth = 10;
@@ -57,7 +57,7 @@ bool ProgramBuilder::isSumWith(NodeId id, const std::vector<NodeId>& parts, int 
            (isSumWith(at.a, parts, depth - 1) || isSumWith(at.b, parts, depth - 1));
 }
 
-// The sum's terms, each a sorted list of factors. What contains none of the parts stays one factor.
+// The sum's terms, each a sorted list of factors. A factor that contains none of the parts stays whole.
 bool ProgramBuilder::termsOf(NodeId id, const std::vector<NodeId>& parts, std::vector<Factors>& terms,
                              int depth) const {
     const NodeId bare = withoutRefinement(id);

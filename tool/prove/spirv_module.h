@@ -1,4 +1,4 @@
-// A SPIR-V module as types, constants and functions of blocks: what symbolic execution reads.
+// A SPIR-V module as symbolic execution reads it: types, constants and functions of blocks.
 #pragma once
 
 #include <glint/result.h>

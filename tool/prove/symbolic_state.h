@@ -1,4 +1,4 @@
-// What symbolic execution knows at a point of a function.
+// The state of symbolic execution at a point of a function.
 #pragma once
 
 #include "prove/program.h"

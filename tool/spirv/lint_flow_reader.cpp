@@ -129,7 +129,7 @@ private:
         }
     }
 
-    // Whether an access chain has an index that is no constant.
+    // Returns whether an access chain has an index that is no constant.
     bool isIndexed(Operands chain) const {
         return std::ranges::any_of(chain.subspan(3), [this](std::uint32_t index) {
             return !constants_.contains(index) && !fixed_.contains(index);

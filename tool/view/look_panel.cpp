@@ -27,7 +27,7 @@ double percentOf(std::uint64_t pixels, const measure::View& view) {
     return all > 0.0 ? 100.0 * static_cast<double>(pixels) / all : 0.0;
 }
 
-// What the numbers of vectors are shown as: a channel of a layer has no colour of its own.
+// Returns whether the look shows the channels of vectors, which have no colour of their own.
 bool showsChannels(const measure::View& view, const Look& look) {
     return look.view.empty() && view.choice.info->scale != ViewScale::Categories &&
            package::findLayer(view.choice.info->name)->channels.size() > 1;

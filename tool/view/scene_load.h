@@ -42,7 +42,7 @@ private:
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
 };
 
-// What a scene is made from.
+// The inputs of a scene.
 struct SceneSource {
     compiler::Settings settings;
     std::shared_ptr<const gltf::Scene> scene;

@@ -17,7 +17,7 @@ class X11Input {
 public:
     explicit X11Input(GLFWwindow* window);
 
-    // Whether the server takes input from programs.
+    // Returns whether the server takes input from programs.
     bool isAvailable() const;
     // In pixels of the window.
     void move(double x, double y) const;
@@ -27,7 +27,7 @@ public:
     // the keyboard has no such key.
     bool key(const std::string& name, bool down) const;
 
-    // What a window manager does, where there is none; returns false where there is one.
+    // Does the work of a window manager where there is none; returns false where there is one.
     bool setMinimised(bool minimised) const;
 
     struct Pixels {

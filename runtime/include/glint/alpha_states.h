@@ -2,7 +2,7 @@
 // is by intervals over all texels that a lookup can reach; it takes no samples.
 //
 // The proof is about the alpha test of hit/alpha.glsl: alpha = factor * texture(uv).a * vertex alpha, in 32
-// bits, at mip 0.
+// bits, at mip 0. The surface is there where alpha >= cutoff.
 #pragma once
 
 #include <glint/opacity_micromap.h>
@@ -55,7 +55,7 @@ struct AlphaLookup {
     const AlphaTexels* texels = nullptr;
     Wrap wrapU = Wrap::Repeat;
     Wrap wrapV = Wrap::Repeat;
-    bool linear = true;  // whether any of the sampler's filters is
+    bool linear = true;  // one of the sampler's filters is linear
     // The coordinates that are looked up are dot(rowU, (u, v, 1)) and dot(rowV, (u, v, 1)).
     std::array<float, 3> rowU{1, 0, 0};
     std::array<float, 3> rowV{0, 1, 0};

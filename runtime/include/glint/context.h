@@ -23,7 +23,7 @@ struct DeviceHandles {
     VkQueue queue = VK_NULL_HANDLE;  // graphics, compute and transfer
     std::uint32_t queueFamily = 0;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the system's loader
-    bool debugUtils = false;  // whether the instance has VK_EXT_debug_utils: passes then get labels
+    bool debugUtils = false;  // the instance has VK_EXT_debug_utils: passes then get labels
     // True if VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Without it Glint runs
     // too, but textures are blurrier at grazing angles.
     bool samplerAnisotropy = false;

@@ -64,7 +64,7 @@ struct TrafficShape {
     bool marchesScreen = false;
     bool binsRays = false;
     std::vector<package::LayerEntry> layers{};
-    bool layerRays = false;  // they need what rays hit
+    bool layerRays = false;  // they need the hits of rays
     std::uint32_t layerBounces = 0;
     bool layerWalks = false;  // they need the lights that walks find
 };

@@ -38,10 +38,10 @@ enum class LayerSubject : std::uint32_t {
     Surface,  // the primary surface: one image
     Light,    // light that leaves the primary surface: an image for the direct light and for each effect with
               // rays
-    Ray,      // what a ray of an effect found: an image for each effect with rays
+    Ray,      // the end of an effect's ray: an image for each effect with rays
     Bounce,   // what a bounce of its paths brings: an image for each such effect and bounce, where there are
               // several
-    Work,     // what all passes did for the pixel: one image
+    Work,     // the work of all passes for the pixel: one image
 };
 
 // Bounces beyond this number share the layers of the last one.
@@ -51,7 +51,7 @@ inline constexpr std::uint32_t kMostLayerBounces = 4;
 enum class LayerPass : std::uint32_t {
     Lighting,
     Compose,
-    Several,  // lighting begins it, and the passes that do what it counts add to it
+    Several,  // lighting begins it, and the passes whose work it counts add to it
 };
 
 // The combination of a picture's samples into one value.
@@ -64,7 +64,7 @@ enum class LayerMean : std::uint32_t {
 // The needs of a layer beside its image, as bits of a set.
 enum LayerDemand : std::uint32_t {
     kLayerHistory = 1,  // camera, transforms and deformed vertices of the frame before
-    kLayerRays = 2,     // what the rays of effects hit
+    kLayerRays = 2,     // the hits of effects' rays
     kLayerClock = 4,    // shaders read a clock: DeviceHandles::shaderClock
     kLayerQueries = 8,  // rays are traced by ray queries alone
 };

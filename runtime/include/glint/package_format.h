@@ -43,7 +43,7 @@ enum class AlphaPolicy : std::uint32_t {
 
 // The ways in which the light of punctual lights passes through alpha and glass.
 enum class ShadowThrough : std::uint32_t {
-    Alpha = 0,   // what AlphaPolicy gives all rays; glass blocks it
+    Alpha = 0,   // as AlphaPolicy treats all rays; glass blocks it
     Opaque = 1,  // glass and alphaMode BLEND block it
     Glass = 2,   // a share of each colour
 };
@@ -145,7 +145,7 @@ struct PackageHeader {
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
     std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
-    std::uint32_t trustTextures;  // 1: shaders rely on what the textures of the scenes hold
+    std::uint32_t trustTextures;  // 1: shaders rely on the contents of the scenes' textures
     std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
     std::uint32_t early;          // 1: shows an edit; its other modules are those before it
     SampleRecordFormat sampleRecord;
@@ -314,8 +314,7 @@ struct OpacityEntry {
     std::uint32_t texCoord1Input;
     std::uint32_t transformInput;
     std::uint32_t vertexColorInput;
-    // Features whose code changes UVs or opacity. The alpha of a key that has one is unknown. Nothing is
-    // known of the alpha of keys that have one.
+    // Features whose code changes UVs or opacity. The alpha of a key that has one is unknown.
     std::uint64_t code;
 };
 

@@ -419,7 +419,7 @@ public:
         std::uint32_t threads = 0;
         double milliseconds = 0.0;  // wall clock, shader binding tables included
         // The number of pipelines that the driver found in the Context's cache. It has no value if the driver
-        // does not report it. No value if the driver does not say.
+        // does not report it.
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;

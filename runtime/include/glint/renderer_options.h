@@ -144,7 +144,7 @@ struct FrameOptions {
     // exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();
     Binning binning = Binning::None;
-    // The bounces of a path, up to RendererOptions::bounces. 0 means that maximum. 0 means that many.
+    // The bounces of a path, up to RendererOptions::bounces. 0 means that maximum.
     std::uint32_t bounces = 0;
     // Records every bounce of a frame with more than 8. Without it a frame records those that many paths of
     // the frames before have reached, and further ones by chance, with a weight that keeps the mean. What it

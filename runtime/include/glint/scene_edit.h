@@ -54,7 +54,7 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
 struct MaterialKey {
     AttributeMask attributes = 0;
     std::uint64_t features = 0;       // the key, with all lobes
-    std::uint64_t hitFeatures = 0;    // what hits keep of it; the same unless the package has --hit-lobes
+    std::uint64_t hitFeatures = 0;    // those that hits keep; the same unless the package has --hit-lobes
     std::uint32_t geometryFlags = 0;  // kGeometry* of shaders/interop/scene.h
 };
 

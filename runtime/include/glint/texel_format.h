@@ -46,7 +46,7 @@ struct TexelFormatInfo {
     std::uint32_t blockHeight;
     std::uint32_t blockBytes;
     std::uint32_t channels;  // red first; a shader reads 0 for the other colours and 1 for alpha
-    bool hasSrgb;            // whether there is such a format whose colours are in sRGB
+    bool hasSrgb;            // there is such a format with colours in sRGB
 };
 
 // Indexed by TexelFormat.

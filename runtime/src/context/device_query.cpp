@@ -79,7 +79,7 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
 namespace {
 
 // Fills `report` through the system's loader. Returns the names of everything that this needs and the system
-// lacks. Returns what is missing for that.
+// lacks.
 std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report) {
     if (device == VK_NULL_HANDLE) {
         return {"a physical device"};

@@ -20,8 +20,7 @@ using Placed = VkAccelerationStructureInstanceKHR;
 constexpr VkDeviceSize kPlacedAlignment = 16;  // of the array of instances that a TLAS is built from
 constexpr VkBufferUsageFlags kRecordUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-// An array of records on the device. It has no buffer if the package's shaders don't read it. Those that the
-// package's shaders don't read have no buffer.
+// An array of records on the device. It has no buffer if the package's shaders don't read it.
 struct Array {
     RecordStore& store;
     Buffer& device;

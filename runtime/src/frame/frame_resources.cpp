@@ -87,7 +87,7 @@ bool bindsImage(const FrameSize& size, std::uint32_t binding) {
 }
 
 // Returns whether an image has memory of its own. The other images are never written, or are written before
-// the picture is. The others are not written, or written before the picture is.
+// the picture is.
 bool hasImage(const FrameSize& size, std::uint32_t binding) {
     switch (binding) {
         case gpu::kBindingRadiance:

@@ -52,8 +52,8 @@ struct FrameResources {
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer skyShares;    // present if the sky is a light of the package
-    Buffer rayHits;      // present if layers need what rays hit
-    Buffer bounceLight;  // present if layers need what bounces bring
+    Buffer rayHits;      // present if layers need the hits of rays
+    Buffer bounceLight;  // present if layers need the light of bounces
     Buffer walkedLight;  // present if layers need the lights that walks find
     Buffer hits;         // full or packed records; present if hits are ordered and samples don't hold them
     Buffer orderedHits;  // like `hits`, in the order of the buckets
@@ -121,7 +121,7 @@ struct FrameSize {
     bool deferredShadows = false;
     bool environmentMap = false;
     std::uint32_t textureLevels = 0;  // textures whose finest level is noted
-    bool hostRays = false;            // the list of rays and what they bring back are the host's
+    bool hostRays = false;            // the host owns the list of rays and their results
     bool rayPipeline = false;         // a ray tracing pipeline dispatches lists as rays
 
     bool paths = false;  // the package's shaders keep the state of paths
@@ -131,7 +131,7 @@ struct FrameSize {
     std::uint32_t bounces = 1;  // the most of a path
 
     std::vector<package::PackageLayer> layers{};  // images beside the picture
-    bool layerRays = false;                       // layers need what rays hit
+    bool layerRays = false;                       // layers need the hits of rays
     std::uint32_t layerBounces = 0;               // bounces that have layers of their own
     bool layerWalks = false;                      // layers need the lights that walks find
 

@@ -128,8 +128,7 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const TrafficRow traced{
         "", Unit::Ray, rayBytes(shape) + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0),
         answer};
-    // The pass that finds hits stores the data that layers need of them. Each bounce adds its light. Each
-    // bounce adds its light.
+    // The pass that finds hits stores the data that layers need of them. Each bounce adds its light.
     const std::uint32_t bounce = shape.layerBounces > 0 ? kBounce : 0;
     rows.push_back({strategy.ordersHits ? std::string_view("trace") : strategy.modules.front().pass,
                     Unit::Ray, (shape.layerRays ? kWord : 0) + bounce,

@@ -33,7 +33,7 @@ struct EmitterPart {
 };
 
 // Returns the luminance of the emission in a material's record, in linear Rec. 709, as in
-// bsdf/constants.glsl. 709, as in bsdf/constants.glsl.
+// bsdf/constants.glsl.
 double emittedLuminance(std::span<const std::uint8_t> record, const package::EmissionEntry& emission);
 
 class Emitters {

@@ -25,7 +25,7 @@ struct PipelineChoice {
     bool checksOrder = false;
     bool batchEffects = false;
     std::uint32_t bounces = 1;  // the most of a path
-    std::uint32_t bands = 0;    // what chooseBandRows() takes
+    std::uint32_t bands = 0;    // the argument of chooseBandRows()
     // Pipelines with shaders of cases are made later, by threads; until then a fallback replaces them.
     bool background = false;
     // Frames begin with a draft. Requires `background`.

@@ -20,8 +20,7 @@ struct AttributeUpload {
     VkDeviceSize offset = 0;
 };
 
-// The words of attributes in a compact form. An attribute in another form has none. Those of the others are
-// empty.
+// The words of attributes in a compact form. An attribute in another form has none.
 struct CompactWords {
     std::vector<std::uint32_t> indices;
     std::vector<std::uint32_t> normals;

@@ -63,7 +63,7 @@ std::vector<float> joinAttributes(const Package& package, const package::Primiti
                                   const PrimitiveView& view);
 
 // Returns the attributes' values, too, whatever a key reads. If the primitive lacks an attribute, its
-// fallback or 0 is used. The primitive may lack attributes; their fallback then stands for them, or 0.
+// fallback or 0 is used.
 std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
 
 // The parts of a primitive that are uploaded beside the attributes of its view.

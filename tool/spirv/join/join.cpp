@@ -267,7 +267,7 @@ JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const 
         } else if (global.opcode == spv::OpExecutionMode || global.opcode == spv::OpExecutionModeId) {
             appendMapped(module, global, first.ids, modes);
         } else if (keepNames_ && global.opcode == spv::OpSource) {
-            // Without the file, which would need an OpString.
+            // The file is left out, because it would need an OpString.
             append(source, JoinedWords{3U << spv::WordCountShift | spv::OpSource, module.words[global.at + 1],
                                        module.words[global.at + 2]});
         }

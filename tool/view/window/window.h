@@ -1,4 +1,4 @@
-// The window of glint view: what it knows, and what its panels change.
+// The window of glint view: its state, and the changes that its panels make.
 #pragma once
 
 #include "base/clock.h"
@@ -58,7 +58,7 @@ public:
     void onChange(bool size);
 
 private:
-    // A picture with what the user wants of it.
+    // A picture with the user's settings for it.
     struct Side {
         explicit Side(Context& context) : picture(context) {}
 
@@ -156,7 +156,7 @@ private:
     std::unique_ptr<Script> script_;
 
     std::string scene_;
-    // What was shown while another scene is being opened.
+    // The scene and settings before another scene is opened.
     struct Opening {
         std::string scene;
         std::vector<compiler::Settings> wanted;  // of the sides that are there
@@ -190,7 +190,7 @@ private:
     Look look_;                          // of the side whose settings are changed
     std::optional<measure::View> view_;  // as it is shown; no value: the picture itself is shown
     std::string lookNote_;               // why it is not shown
-    // What `view_` was made from.
+    // The inputs of `view_`.
     Look viewedLook_;
     std::size_t viewedSide_ = 0;
     std::uint64_t viewedFrame_ = 0;  // 0: none

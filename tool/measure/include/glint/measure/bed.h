@@ -61,7 +61,7 @@ public:
     Result<Exposure> expose(std::uint32_t seed) const;
     // Renders with other samples and without measuring times.
     Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
-    // Which pixels of the last picture see a surface, as Renderer::readSurfaces() says.
+    // Returns which pixels of the last picture see a surface, as Renderer::readSurfaces() does.
     Result<std::vector<std::uint8_t>> surfaces() const {
         return renderer_->readSurfaces();
     }
@@ -93,7 +93,7 @@ private:
     bool ordersHits_ = false;
 };
 
-// Optional features of a device.
+// The optional features of a device.
 struct DeviceOptions {
     bool positionFetch = false;  // and the compiler
     bool float16 = false;
@@ -118,8 +118,8 @@ public:
     // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
     // ones. Has the errors of each of these steps.
     Result<Mount> mount(const compiler::Configuration& configuration, const std::string& package = {});
-    // Does the same for pictures that are the last of `frames` frames, which a filter has seen. `filter` is
-    // read during the call.
+    // Does the same for pictures that are the last of `frames` frames, all of which a filter gets. `filter`
+    // is read during the call.
     Result<Mount> mountFiltered(const FilterMaker& filter, std::uint32_t frames);
 
     Context& context() {
@@ -165,7 +165,7 @@ private:
     const gltf::Scene& scene_;
     compiler::ModuleCache* cache_;
     compiler::CacheStore* store_;
-    // By whether they are compressed, and whether emission is unpacked as well.
+    // Textures by whether they are compressed, and whether emission is unpacked as well.
     std::map<std::array<bool, 2>, std::shared_ptr<const scene_view::TextureSet>> textures_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;

@@ -24,7 +24,7 @@ class ModuleCache;
 
 namespace glint::measure {
 
-// How far a picture is from that of uber. The way in which hits are shaded must not change it.
+// The difference between a picture and that of uber. The strategy must not change the picture.
 struct PictureDifference {
     double largest = 0.0;         // |a - b| / max(1, |b|) over all channels
     std::uint64_t differing = 0;  // pixels that differ by more than 0.001 of that
@@ -75,10 +75,10 @@ struct CalibrationReport {
     std::vector<CalibrationEntry> entries;
 };
 
-// Returns the mean over the cases, weighted by their shares of hits: what an average hit runs.
+// Returns the mean over the cases, weighted by their shares of hits, that is, the work of an average hit.
 double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member);
 
-// Fills in what follows from the measurements: point.times and fastest.
+// Fills in the members that follow from the measurements: point.times and fastest.
 void settleEntry(CalibrationEntry& entry);
 
 struct CalibrationSettings {

@@ -1,5 +1,5 @@
-// Checks what the code of material features computes: `glint check-materials`. The functions run on the
-// device, as in pictures, over combinations of the declared parameters' values.
+// Checks the code of material features: `glint check-materials`. The functions run on the device, as in
+// pictures, over combinations of the declared parameters' values.
 #pragma once
 
 #include "materials/material_model.h"
@@ -18,7 +18,7 @@
 
 namespace glint::measure {
 
-// What is checked. docs/material_features.md explains each one and its limits.
+// The checks. docs/material_features.md explains each one and its limits.
 enum class MaterialCheck : std::uint8_t {
     Range,        // all values are finite and within their ranges
     Density,      // the density integrates to one, less what samples lose
@@ -31,7 +31,7 @@ inline constexpr MaterialCheck kMaterialChecks[] = {MaterialCheck::Range,   Mate
                                                     MaterialCheck::Samples, MaterialCheck::Reciprocity,
                                                     MaterialCheck::Energy,  MaterialCheck::Albedo};
 std::string_view nameOf(MaterialCheck check);  // "range"
-// What `worst` of its outcome is, and the most or least that it may be.
+// Returns the meaning of `worst` in the check's outcome, and of its limit.
 std::string_view quantityOf(MaterialCheck check);  // "distance of the integral from one"
 
 enum class CheckState : std::uint8_t {
@@ -43,7 +43,7 @@ enum class CheckState : std::uint8_t {
 };
 std::string_view nameOf(CheckState state);  // "passed"
 
-// Where something was evaluated.
+// The place of an evaluation.
 struct CheckPlace {
     // The values of the feature's parameters, by name, with "textures" as the last where it has them.
     std::vector<std::pair<std::string, std::vector<float>>> parameters;
@@ -99,10 +99,10 @@ struct CheckMaterialsOptions {
 // "check-unreachable" if a feature changes nothing for every combination of values.
 Result<MaterialChecksReport> checkMaterials(const CheckMaterialsOptions& options, const Observer& observer);
 
-// Returns an error for each check that failed: what was found, where, and what it means for a picture.
+// Returns an error for each check that failed: the finding, its place, and its effect on a picture.
 std::vector<Diagnostic> failuresOf(const FeatureChecks& feature);
 
-// How far the proof about a feature came (docs/material_features.md, "Proofs").
+// The state of the proof about a feature (docs/material_features.md, "Proofs").
 enum class FeatureProofState : std::uint8_t {
     Proved,
     Undecided,    // for a share of the inputs the bounds are too wide

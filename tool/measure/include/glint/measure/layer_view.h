@@ -1,5 +1,5 @@
-// Pictures of layers as they are, for people who look at one. Views (glint/measure/views.h) say what a layer
-// means; this says what is in it.
+// Pictures of a layer's values as they are, for people. Views (glint/measure/views.h) instead show the
+// meaning of layers.
 #pragma once
 
 #include <glint/measure/views.h>

@@ -27,7 +27,7 @@ double additive(ErrorMetric metric, double error);
 
 enum class PointKind { Default, Single, Pair, Search, Package, Exact, Filtered };
 std::string_view nameOf(PointKind kind);
-// Whether settings alone tell a point from the default.
+// Returns whether settings alone distinguish such a point from the default.
 constexpr bool isOfSettings(PointKind kind) {
     return kind != PointKind::Package && kind != PointKind::Filtered;
 }
@@ -52,7 +52,7 @@ struct BenchPoint {
     std::vector<double> hitRatios;  // of hitMs to that of the default in the same round
     std::vector<image::ImageErrors> errors;
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
-    // Of the mean of all rounds' pictures.
+    // The errors of the mean of all rounds' pictures.
     std::optional<image::ImageErrors> errorOfMean;
     bool sameImage = true;   // as the default's, bit by bit, in every round
     LinearImage image;       // of the first round
