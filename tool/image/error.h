@@ -1,4 +1,4 @@
-// Measures how far a picture is from a converged one, for glint bench.
+// Measures the error of a picture against a converged one, for glint bench.
 #pragma once
 
 #include <glint/renderer.h>

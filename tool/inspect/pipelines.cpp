@@ -75,8 +75,8 @@ double widthOf(const PipelineExecutable& executable) {
 }
 
 // RADV (Mesa 25.0: src/amd/vulkan/radv_shader.c, src/amd/compiler/aco_statistics.cpp). "Subgroups per SIMD"
-// counts a subgroup of 64 lanes twice. "Inverse Throughput" is that of 64 lanes, whatever the subgroup; it is
-// "Latency" over the subgroups in flight where that is more.
+// counts a subgroup of 64 lanes twice. "Inverse Throughput" is that of 64 lanes, whatever the subgroup; or,
+// if that is more, "Latency" over the subgroups in flight.
 PipelineFacts radvFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a SIMD, from RDNA 2 on
     constexpr double kSmallestWidth = 32.0;
@@ -141,7 +141,7 @@ PipelineFacts anvFacts(const Statistics& named, double width) {
     return facts;
 }
 
-// Other drivers, such as NVIDIA's: by words that their names have.
+// Other drivers, such as NVIDIA's: finds statistics by words in their names.
 PipelineFacts otherFacts(const Statistics& named) {
     PipelineFacts facts;
     facts.registers = named.withWord({"register", "vgpr"});
@@ -449,7 +449,7 @@ constexpr std::pair<const char*, double compiler::ModuleCost::*> kModuleNumbers[
     {"scratchBytes", &compiler::ModuleCost::scratchBytes},
     {"codeBytes", &compiler::ModuleCost::codeBytes}};
 
-// Four digits after the point are more than the estimates are good for.
+// The estimates are not accurate beyond four digits after the point.
 double rounded(double value) {
     constexpr double kDigits = 1e4;
     return std::round(value * kDigits) / kDigits;

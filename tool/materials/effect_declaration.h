@@ -16,7 +16,7 @@ enum class Behaviour : std::uint8_t;
 // The lit surfaces that call for an effect.
 struct EffectCall {
     bool byAll = false;     // every surface does; otherwise those with the behaviour
-    Behaviour behaviour{};  // what the surface may do with light
+    Behaviour behaviour{};  // the surface's behaviour towards light
     bool lights = false;    // only where some light shines
     std::string because{};  // of the surfaces that call for it, where all do: "is lit by the sky"
     // The reason if no surface does; {limit} stands for the roughness limit.

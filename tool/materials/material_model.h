@@ -34,7 +34,7 @@ constexpr FeatureMask bitMask(int bit) {
 
 // The stage at which a feature's GLSL runs.
 enum class Stage : std::uint8_t {
-    Attributes,   // what a vertex brings
+    Attributes,   // attributes of vertices
     Coordinates,  // UVs
     Base,         // a base model, without which no hit can do
     Surface,      // base colour, normal, roughness
@@ -204,7 +204,7 @@ struct FeatureCode {
     std::string emission{};
     std::string coordinates{};
     std::string opacity{};
-    bool coversEmission = false;  // the layer takes what it reflects from the emission, too
+    bool coversEmission = false;  // the layer's reflection also weakens the emission
     bool isTraced = false;        // rays may trace the layer's reflection
     bool isReciprocal = false;    // the layer claims that view and light may change places
     bool isOfPack = false;        // of a user's own

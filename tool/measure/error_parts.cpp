@@ -12,7 +12,7 @@ namespace {
 // The two causes of an error, in a measure that adds up.
 struct Causes {
     double bias = 0.0;
-    double noise = 0.0;  // what any number of samples would take away
+    double noise = 0.0;  // the part that more samples remove
 };
 
 // Over N rounds of independent noise the error of the mean picture has 1 / N of the noise that the error of

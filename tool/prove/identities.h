@@ -30,7 +30,7 @@ private:
     using Monomial = std::vector<NodeId>;
     struct Coefficient {
         double value = 0.0;
-        double weight = 0.0;  // of the terms that were added up: bounds what the doubles have rounded
+        double weight = 0.0;  // of the terms that were added up: bounds the rounding error of the doubles
     };
     using Polynomial = std::map<Monomial, Coefficient>;
     // A multiple of a divisor that was cancelled: monomial × divisor / divisor.
@@ -66,7 +66,7 @@ private:
     Interval valueOf(const Monomial& monomial, NodeId before, std::span<const Interval> values) const;
 
     const Program& program_;
-    std::vector<std::optional<Expansion>> expansions_;  // nothing for what stays one factor
+    std::vector<std::optional<Expansion>> expansions_;  // no value for a node that stays one factor
     // The last node that has a node's value and knows more of it.
     std::map<NodeId, NodeId> refined_;
     std::vector<double> errors_;  // of the box; negative: not computed yet

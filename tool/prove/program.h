@@ -102,7 +102,7 @@ struct Node {
     Function function = Function::Sqrt;  // of Apply
     Relation relation = Relation::Less;  // of Refine
     bool isSigned = false;               // of integers
-    bool isAuxiliary = false;            // the shader does not have it; what fails in it does not matter
+    bool isAuxiliary = false;            // the shader does not have it; its failures do not matter
     NodeId a = kNoNode;
     NodeId b = kNoNode;
     NodeId c = kNoNode;

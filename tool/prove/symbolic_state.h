@@ -37,7 +37,7 @@ using Memory = std::shared_ptr<const std::vector<NodeId>>;
 struct SymbolicState {
     NodeId guard = kNoNode;
     std::map<std::uint32_t, Memory> memories;
-    std::map<NodeId, NodeId> refined;  // what a branch knows more of a value
+    std::map<NodeId, NodeId> refined;  // values with tighter bounds from a branch
 
     NodeId resolve(NodeId node) const {
         for (auto found = refined.find(node); found != refined.end(); found = refined.find(node)) {

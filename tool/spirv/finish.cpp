@@ -58,7 +58,7 @@ private:
 
     struct Query {
         ParsedInstruction instruction;
-        std::vector<std::uint32_t> path;  // what is repeated before it, in that order
+        std::vector<std::uint32_t> path;  // the instructions repeated before it, in that order
     };
 
     void read(const ParsedInstruction& instruction) {

@@ -29,7 +29,7 @@ struct LintFinding {
     std::string rule;  // stable name, for instance "query-proceeds"
     SpirvPlace place;
     std::string message;  // one sentence without a full stop
-    std::string hint;     // what to do
+    std::string hint;     // advice
 };
 
 struct SpirvLint {

@@ -74,7 +74,7 @@ std::vector<std::uint32_t> makeSets() {
     return sets;
 }
 
-// Each case has its own colour, by the golden angle, so that a picture shows which case is where.
+// Each case has its own colour, by the golden angle, so that a picture shows the places of the cases.
 std::array<float, 4> colorOf(int index) {
     constexpr double kGoldenTurn = 0.6180339887498949;
     std::array<float, 4> color{0.0F, 0.0F, 0.0F, 1.0F};
@@ -149,7 +149,7 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     // because anisotropy would then have no effect.
     material["metallicFactor"] = mirror ? 1.0F - kFaint : kFaint;
     material["roughnessFactor"] = mirror ? 0.0F : 1.0F - kFaint;
-    // Whatever is there stays, and hardly shows.
+    // The other factors that are above 0 stay, and hardly show.
     for (const char* const name :
          {"clearcoatFactor", "anisotropyStrength", "iridescenceFactor", "transmissionFactor",
           "diffuseTransmissionFactor", "sheenColorFactor", "emissiveFactor"}) {

@@ -21,13 +21,13 @@ enum class Cost : std::uint8_t {
     Expensive  // clearcoat, anisotropy, iridescence, specular and about half of four further lobes
 };
 
-// Whether neighbouring rays hit the same case.
+// The similarity of neighbouring rays' hits.
 enum class Coherence : std::uint8_t {
     Coherent,   // rays from a mirror (the effect reflection); tiles of a case lie together
     Incoherent  // cosine-weighted rays (the effect indirect-diffuse); tiles in random order, many in reach
 };
 
-// How the ceiling is divided among the cases. Each case has at least one tile.
+// The division of the ceiling among the cases. Each case has at least one tile.
 enum class Shares : std::uint8_t {
     Uniform,
     Zipf  // in proportion to 1, 1/2, 1/3, …

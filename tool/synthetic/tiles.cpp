@@ -16,8 +16,8 @@ namespace {
 constexpr int kCoherentTiles = 32;
 constexpr int kIncoherentTiles = 64;
 
-// How far an incoherent ceiling reaches beyond the floor, in heights of the ceiling. Cosine-weighted rays
-// miss it with a chance of about 1 / (1 + 5²).
+// The distance by which an incoherent ceiling extends beyond the floor, in heights of the ceiling.
+// Cosine-weighted rays miss it with a chance of about 1 / (1 + 5²).
 constexpr double kReach = 5.0;
 
 // Returns every second bit of `code`, starting with the lowest.
@@ -105,7 +105,7 @@ Ceiling makeCeiling(const CasesOptions& options) {
     Ceiling ceiling;
     ceiling.tiles = coherent ? kCoherentTiles : kIncoherentTiles;
     if (coherent) {
-        // The mirror shows what a camera sees that is as far below the floor as the real one is above it.
+        // The mirror shows the view of a camera as far below the floor as the real one is above it.
         ceiling.extent = viewExtent(kCameraHeight + kCeilingHeight, options.aspect);
     } else {
         const Extent floor = viewExtent(kCameraHeight, options.aspect);

@@ -14,7 +14,7 @@ inline constexpr double kCeilingHeight = 3.0;
 // The camera's vertical field of view, in radians.
 inline constexpr double kFieldOfView = 1.0;
 
-// What the camera sees at a distance, from the middle to the edge.
+// The half size of the camera's view at a distance, from the middle to the edge.
 struct Extent {
     double x = 0.0;
     double z = 0.0;

@@ -133,7 +133,7 @@ void Builder::work() {
         progress_.clear();
         Slot& slot = slots_[order.picture];
         if (slot.order) {
-            continue;  // what it was asked for has changed
+            continue;  // the order has changed meanwhile
         }
         slot.busy = false;
         slot.early.reset();
@@ -229,7 +229,7 @@ bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage&
     const std::lock_guard lock(mutex_);
     Slot& slot = slots_[picture];
     if (ends_ || slot.order || slot.canceled) {
-        return false;  // what it was asked for has changed
+        return false;  // the order has changed meanwhile
     }
     slot.early = std::move(shown);
     return true;

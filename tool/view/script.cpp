@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kMostMs = 180'000.0;  // for a part of a step
 constexpr std::uint64_t kTaken = 1;    // frames after which the window has taken in an event
-constexpr std::uint64_t kSettle = 3;   // frames after which what it changes is shown
+constexpr std::uint64_t kSettle = 3;   // frames after which the effect of input is shown
 
 Diagnostic scriptError(const std::string& file, int line, const std::string& message) {
     return makeError("window-script", fmt::format("{}:{}", file, line), message, "correct the script");

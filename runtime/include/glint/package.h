@@ -103,8 +103,7 @@ public:
     // Returns whether surfaces sample the sky as a light. An environment map then needs
     // EnvironmentOptions::sampled.
     bool skyLight() const;
-    // Returns whether rays of lobes find punctual lights that have a size (LightView::size), as samples of
-    // these lights do.
+    // Returns whether rays of lobes find area lights (LightView::size), as samples of these lights do.
     bool sizedLights() const;
     // Returns where records of materials say what they emit, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;

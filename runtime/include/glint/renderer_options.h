@@ -126,8 +126,7 @@ struct FrameOptions {
     // A ray of an effect is not sent if the luminance of its sample's weight is below this. Its light is
     // lost. 0 sends every ray.
     float faintWeight = 0.0F;
-    // The number of rays that a primary surface sends, in each sample, to each light that has a size: 1 to
-    // 4096.
+    // The number of rays that a primary surface sends, in each sample, to each area light: 1 to 4096.
     std::uint32_t shadowSamples = 1;
     // Ambient occlusion: the number of rays a sample (1 to 4096), their length in metres (infinite means no
     // limit), and whether an occluder counts less the farther it is. That weight falls linearly to 0 at the

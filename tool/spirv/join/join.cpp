@@ -74,7 +74,7 @@ private:
     JoinedWords extensions_;
     JoinedWords memoryModel_;
     std::set<JoinedWords> settings_;  // capabilities and extensions that were added
-    JoinedWords decorations_;         // of what functions define
+    JoinedWords decorations_;         // of the functions' definitions
     JoinedWords names_;
     std::unordered_map<JoinedWords, std::uint32_t, GlobalTable::HashWords> functions_;
     struct Export {

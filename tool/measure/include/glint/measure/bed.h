@@ -36,11 +36,11 @@ namespace glint::measure {
 struct Exposure {
     LinearImage image;
     double milliseconds = 0.0;  // device time of all samples
-    double hitMs = 0.0;  // of that, what strategies differ in: from the list of rays to their shaded hits
+    double hitMs = 0.0;  // the part in which strategies differ: from the list of rays to their shaded hits
     // Times by pass, from one sample measured that way, times the number of samples. Passes that otherwise
     // overlap do not overlap here, so their sum is larger.
     std::map<std::string, double> passes;  // by name; those of cases together, as "shade cases"
-    HitTimes hits;                         // of those, what strategies differ in
+    HitTimes hits;                         // the times in which strategies differ
     FrameCounters counters;                // of the last sample
 };
 

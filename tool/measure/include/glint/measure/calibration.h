@@ -70,7 +70,7 @@ struct CalibrationReport {
     std::uint32_t seed = 0;
     bool quick = false;
     double compileSeconds = 0.0;  // wall clock, before anything is measured
-    double seconds = 0.0;         // likewise, of everything
+    double seconds = 0.0;         // wall clock of everything
     bool complete = false;        // else more points were to come
     std::vector<CalibrationEntry> entries;
 };

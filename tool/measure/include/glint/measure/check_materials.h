@@ -21,11 +21,11 @@ namespace glint::measure {
 // The checks. docs/material_features.md explains each one and its limits.
 enum class MaterialCheck : std::uint8_t {
     Range,        // all values are finite and within their ranges
-    Density,      // the density integrates to one, less what samples lose
+    Density,      // the density integrates to one, less the share of samples that are lost
     Samples,      // samples follow the density
     Reciprocity,  // view and light may change places, where the declaration says so
     Energy,       // no more light leaves than came in
-    Albedo,       // the layer reflects what it says of a white sky
+    Albedo,       // the layer reflects its declared share of a white sky
 };
 inline constexpr MaterialCheck kMaterialChecks[] = {MaterialCheck::Range,   MaterialCheck::Density,
                                                     MaterialCheck::Samples, MaterialCheck::Reciprocity,
@@ -58,7 +58,7 @@ struct CheckOutcome {
     std::uint64_t evaluations = 0;
     double worst = 0.0;  // the value that is nearest to its limit, or farthest beyond it
     double limit = 0.0;
-    std::string message{};  // of a failure: what was found
+    std::string message{};  // of a failure: the finding
     std::optional<CheckPlace> place{};
 };
 
@@ -107,7 +107,7 @@ enum class FeatureProofState : std::uint8_t {
     Proved,
     Undecided,    // for a share of the inputs the bounds are too wide
     Refuted,      // a counterexample was found
-    Unsupported,  // the code does what intervals can't follow
+    Unsupported,  // the code has operations that intervals can't follow
 };
 std::string_view nameOf(FeatureProofState state);  // "proved"
 
@@ -117,7 +117,7 @@ struct FeatureProofOutcome {
     FeatureProofState state = FeatureProofState::Unsupported;
     double undecidedShare = 1.0;  // of the volume of all inputs
     std::uint64_t boxes = 0;
-    std::string message{};  // what is wrong, what can't be excluded, or what is not supported
+    std::string message{};  // the failure, the undecided operation, or the unsupported one
     std::string place{};    // the inputs for which it is
 };
 

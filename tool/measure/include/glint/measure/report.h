@@ -46,7 +46,7 @@ struct StrategyRow {
     double traceMs = 0.0;  // of hits that are traced by a pass of their own
     double orderMs = 0.0;
     double shadeMs = 0.0;    // the rest of `hits`; with tracing where a strategy shades while it traces
-    double commonMs = 0.0;   // what every strategy does alike
+    double commonMs = 0.0;   // the passes that all strategies share
     std::uint32_t rays = 0;  // of the last sample
 };
 

@@ -23,7 +23,7 @@ namespace glint::measure {
 struct KnownCosts {
     compiler::DeviceCosts device;
     bool builtIn = true;
-    std::optional<compiler::GpuCosts> gpu{};  // `device` is what withGpu() makes of the measured one
+    std::optional<compiler::GpuCosts> gpu{};  // if set, withGpu() has adapted `device` to it
 };
 // Returns the costs in the file of --calibration, or the built-in costs for the type of device if none is
 // named, with the values of --gpu's table. Has the errors of readDeviceFile() and readGpuCosts().
