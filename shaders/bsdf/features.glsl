@@ -63,7 +63,7 @@ bool transmits(Features features) {
     Features(GLINT_ALWAYS_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES, GLINT_SOMETIMES_INPUTS,            \
              (geometry).featureLobes, (geometry).featureInputs)
 
-// The same for hits of rays, with the lobes that hits keep: for code before the switch.
+// Returns the features of a hit of a ray, with the lobes that hits keep: for code before the switch.
 #define GLINT_HIT_FEATURES(geometry)                                                                            \
     Features(GLINT_HIT_ALWAYS_LOBES, GLINT_HIT_ALWAYS_INPUTS, GLINT_HIT_SOMETIMES_LOBES,                        \
              GLINT_HIT_SOMETIMES_INPUTS, (geometry).featureLobes, (geometry).featureInputs)

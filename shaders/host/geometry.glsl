@@ -11,7 +11,7 @@ HostGeometry hostGeometry(uint geometry) {
     return GLINT_FRAME.geometries.data[geometry];
 }
 
-// The same member of hostGeometry(), for passes that order hits and need nothing else.
+// Returns the same member as hostGeometry(), for passes that order hits and need nothing else.
 uint hostShaderId(uint geometry) {
     return GLINT_FRAME.geometries.data[geometry].shaderId;
 }

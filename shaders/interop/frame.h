@@ -55,8 +55,8 @@ struct SampleStart {
 };
 GLINT_CONSTANT(kPathShift, 8u);
 GLINT_CONSTANT(kOutcomeMask, 0xFFu);
-// The same in the state of a packed record with light, which takes 24 bytes: a SampleStart, and a uvec2 in the place of
-// the other two (packed/sample.glsl).
+// These are the same bits in the state of a packed record with light, which takes 24 bytes: a SampleStart, and a uvec2
+// in the place of the other two (packed/sample.glsl).
 GLINT_CONSTANT(kPackedPathShift, 4u);
 GLINT_CONSTANT(kPackedPathMask, 0xFu);
 GLINT_CONSTANT(kPackedOutcomeMask, 0xFu);

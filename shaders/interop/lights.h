@@ -30,11 +30,11 @@ struct LightRecord {
 // LightNode::next of a leaf: the number of its light is in the other bits.
 GLINT_CONSTANT(kLightLeaf, 0x80000000u);
 
-// In packages with emissive lights: the number of a leaf's light with this bit is that of an emissive triangle.
+// With this bit, the number of a leaf's light is that of an emissive triangle, in packages with emissive lights.
 GLINT_CONSTANT(kLightEmitter, 0x40000000u);
 // No emissive triangle.
 GLINT_CONSTANT(kNoEmitter, 0xFFFFFFFFu);
-// In the place of an emissive triangle: the sky.
+// The sky, in place of an emissive triangle.
 GLINT_CONSTANT(kSkyEmitter, 0xFFFFFFFEu);
 
 // The counts of the distribution of an environment map add up to this number, because random numbers have so many values.

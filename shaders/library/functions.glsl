@@ -202,7 +202,7 @@ float glintDensity(const GlintSurface surface, const vec3 wo, const vec3 wi);
 GlintRadiance glintRadiance(const GlintSurface surface);
 
 // Returns the mirror's ray of a surface, with which a host brings reflections of the scene instead of the sky's:
-// glintRadiance() - sky + weight times what the ray finds. It stands for a rough lobe, too, if only roughly;
+// glintRadiance() - sky + weight times the light that the ray finds. It stands for a rough lobe, too, if only roughly;
 // glintSample() is exact. Coats and sheen keep their sky.
 GlintMirror glintMirror(const GlintSurface surface);
 

@@ -16,7 +16,7 @@ const uint kDimensionHostLight = 1u;  // and the next two; three more for each f
 const uint kPairLightArea = 5u;
 const uint kPairLightChoice = 0x10000u;  // and one more for each further light
 
-// The same dimension, for the bounce that is being shaded.
+// Returns the dimension for the bounce that is being shaded.
 uint shadingDimension(uint dimension) {
 #if GLINT_PATHS
     return dimensionOfBounce(dimension);

@@ -192,7 +192,7 @@ vec3 directLight(Hit hit, Surface surface, Features features) {
 
 #endif
 
-// The light that a lit surface scatters, without its emission. `sky` is what remains of the sky's light.
+// The light that a lit surface scatters, without its emission. `sky` holds the remaining shares of the sky's light.
 vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
 #if GLINT_EFFECT_SHADOW
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);

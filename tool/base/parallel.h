@@ -45,8 +45,8 @@ void runParallel(std::size_t count, int jobs, const Work& work) {
 }
 
 // Runs `work` on a thread that others interrupt more often, as do the threads that it starts (on Linux;
-// elsewhere it runs as usual). Returns its result, or throws what it throws. For work that is less urgent
-// than other work at the same time.
+// elsewhere it runs as usual). Returns its result, or throws its exception. For work that is less urgent than
+// other work at the same time.
 template <typename Work>
 auto runBehind(const Work& work) {
     std::optional<decltype(work())> result;

@@ -48,7 +48,7 @@ public:
     // two blocks.
     LinearImage standardError() const;
 
-    // Restores a stored mean; `error` is what standardError() returned.
+    // Restores a stored mean; `error` is the result of standardError().
     static MeanImage restore(const LinearImage& mean, const LinearImage& error, std::uint32_t blocks);
 
 private:

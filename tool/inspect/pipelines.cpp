@@ -92,7 +92,7 @@ PipelineFacts radvFacts(const Statistics& named, double width) {
 }
 
 // turnip (Mesa 25.0: src/freedreno/vulkan/tu_shader.cc, src/freedreno/ir3/ir3.c). A register has four
-// components. An instruction takes a cycle; the other subgroups of a core hide what one waits for.
+// components. An instruction takes a cycle; the other subgroups of a core hide the waits of one.
 PipelineFacts turnipFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a core, Adreno 6xx and 7xx
     constexpr double kComponents = 4.0;

@@ -191,7 +191,7 @@ struct PrimitiveInputs {
     double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
     // The file gives tangents, and they are those that shading would derive.
     bool derivesTangents = false;
-    // By ascending slot. A texture that is not listed has only the content of the whole
+    // The textures by ascending slot. A texture that is not listed has only the content of the whole
     // (TextureInfo::content).
     std::vector<SeenTexture> seen{};
 

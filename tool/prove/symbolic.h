@@ -17,7 +17,7 @@ namespace glint::prove {
 // branch's condition, such as x < y, bounds x and y within the branch.
 //
 // The words are valid SPIR-V that keeps names. Errors: "spirv-format"; "prove-unsupported" where the function
-// does what intervals can't follow: resources, loops without a known end.
+// has operations that intervals can't follow: resources, loops without a known end.
 Result<Program> executeSymbolically(std::span<const std::uint32_t> words, const std::string& name);
 
 }  // namespace glint::prove

@@ -33,7 +33,8 @@ struct Build {
     compiler::Plan plan;
     std::shared_ptr<const Package> package;
     std::shared_ptr<const scene_view::TextureSet> textures;
-    // By shader ID: SPIR-V instructions of the shader of that case alone; 0: it has none, or it is unknown.
+    // The length of each case's own shader in SPIR-V instructions, by shader ID; 0: it has none, or it is
+    // unknown.
     std::vector<std::uint32_t> instructions;
     std::vector<std::string> layers;      // names of those that its packages may have (PackageLayer::name)
     compiler::BenchFacts facts;           // of the scene, about settings that change nothing

@@ -57,7 +57,7 @@ public:
     // must be idle unless load() has begun. `frame` is the number of the next frame, which is submitted after
     // the upload. An error leaves the picture as it was, except that an environment may be another one.
     // `width` and `height` are in pixels. Errors are those of the runtime and of reading environment maps,
-    // and "half-precision" and "position-fetch" where the device lacks what the build needs.
+    // and "half-precision" and "position-fetch" if the device lacks a feature that the build needs.
     Status install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
                    std::vector<Diagnostic>& notes);
     // Shows an early package, until install() takes the whole one or takeBackEarly() the one before the edit.

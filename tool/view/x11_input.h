@@ -19,12 +19,12 @@ public:
 
     // Returns whether the server takes input from programs.
     bool isAvailable() const;
-    // In pixels of the window.
+    // Moves the mouse to a pixel of the window.
     void move(double x, double y) const;
     // 1 left, 2 middle, 3 right, 4 wheel up, 5 wheel down.
     void button(unsigned number, bool down) const;
-    // By the name that X has for the key. Presses Shift too, where the character needs it. Returns false if
-    // the keyboard has no such key.
+    // Presses a key by its X name. Presses Shift too, where the character needs it. Returns false if the
+    // keyboard has no such key.
     bool key(const std::string& name, bool down) const;
 
     // Does the work of a window manager where there is none; returns false where there is one.

@@ -1,4 +1,4 @@
-// The effects of packages, that is, what rays add to a picture. Each is declared by a folder of
+// The effects of packages, that is, the uses of rays in a picture. Each is declared by a folder of
 // shaders/effects or of a pack (docs/effects.md); a package says which it has.
 #pragma once
 

@@ -75,7 +75,7 @@ struct EngineSceneView {
 };
 
 // The tables that Glint's shaders read of such a scene: a record for each geometry, instance, material and
-// light. The Context must outlive it; the host keeps what it points to alive.
+// light. The Context must outlive it; the host keeps the objects that it points to alive.
 class EngineScene {
 public:
     // Makes the records, and records their upload. Nothing waits for the device. The requirements of

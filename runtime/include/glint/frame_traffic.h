@@ -1,7 +1,7 @@
-// The bytes that the passes of a frame move: what they read and write of the frame's own images, samples and
-// lists. Every other pass reads from memory what the one before wrote to it, so these bytes are what a device
-// with little bandwidth has to carry for each pixel. Vertices, textures, acceleration structures and the few
-// bytes of counters and buckets are not in them, and caches and tiles on the chip may save part of them.
+// The bytes that the passes of a frame move: their reads and writes of the frame's own images, samples and
+// lists. Every other pass reads from memory the results of an earlier one, so a device with little bandwidth
+// has to carry these bytes for each pixel. Vertices, textures, acceleration structures and the few bytes of
+// counters and buckets are not in them, and caches and tiles on the chip may save part of them.
 #pragma once
 
 #include <glint/layers.h>

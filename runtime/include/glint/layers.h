@@ -1,7 +1,7 @@
 // The layers of a frame: images beside the picture, such as depth, motion, albedo and the light of each
 // effect, for denoisers, compositing and debug views. docs/layers.md describes each of them.
 //
-// layerTable() is their only declaration. The words of --layers, what a package generates, the images of a
+// layerTable() is their only declaration. The words of --layers, the code of a package, the images of a
 // renderer, the bytes of --stats and the channels of OpenEXR files follow from its rows.
 #pragma once
 

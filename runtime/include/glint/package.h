@@ -105,7 +105,7 @@ public:
     bool skyLight() const;
     // Returns whether rays of lobes find area lights (LightView::size), as samples of these lights do.
     bool sizedLights() const;
-    // Returns where records of materials say what they emit, or null in packages without emissive lights.
+    // Returns where records of materials keep their emission, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
     // Returns where records of materials keep alpha. It is null for packages that do not test alpha, and for
     // those that test it by code that is not Glint's own.

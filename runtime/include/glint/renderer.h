@@ -70,8 +70,8 @@ public:
     // are full. This is for tools, tests, and programs that may stand still while they load.
     static Result<std::unique_ptr<GpuScene>> upload(Context& context, const Package& package,
                                                     const SceneView& scene);
-    // Says that the device has completed all commands of frames up to `frame`, and frees what only those
-    // used. It calls complete() of the editor and the texture stream, too.
+    // Says that the device has completed all commands of frames up to `frame`, and frees the resources that
+    // only those used. It calls complete() of the editor and the texture stream, too.
     void complete(std::uint64_t frame);
     // Returns whether complete() was called for the frame of the upload.
     bool isUploaded() const;
@@ -113,7 +113,7 @@ public:
     // package::Bindings has by default, and its layout. They are for hosts that record RaySteps.
     VkDescriptorSet descriptorSet() const;
     VkDescriptorSetLayout descriptorSetLayout() const;
-    // Lists buffers and images by what they hold. allocatedBytes() is the memory that was allocated for them.
+    // Lists buffers and images by their contents. allocatedBytes() is the memory that was allocated for them.
     std::vector<MemoryItem> memory() const;
     std::uint64_t allocatedBytes() const;
 
@@ -148,7 +148,7 @@ public:
     // Records an update, submits it and waits for the device. This is for tools and tests.
     Status updateAndWait(const MotionView& motion);
 
-    // Returns what the last update did. The caller must have waited until the device completed it. Error
+    // Returns the work of the last update. The caller must have waited until the device completed it. Error
     // "frame-not-recorded" if there was no update, and those of reading device times.
     Result<MotionStatistics> motion() const;
 
@@ -336,10 +336,10 @@ public:
 
     // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
     // recordings there were: the number of the last one. finished() says that the device has completed all
-    // recordings up to a number. It destroys what only those used, and reads how deep their paths were, so
-    // that later recordings with more than 8 bounces leave out those that few paths reach. It never waits. A
-    // program that replaces packages or has many bounces should call it once for each frame; render() and
-    // renderSamples() do so themselves.
+    // recordings up to a number. It destroys the resources that only those used, and reads the depth of their
+    // paths, so that later recordings with more than 8 bounces leave out those that few paths reach. It never
+    // waits. A program that replaces packages or has many bounces should call it once for each frame;
+    // render() and renderSamples() do so themselves.
     std::uint64_t recordings() const;
     void finished(std::uint64_t recording);
 
@@ -428,7 +428,7 @@ public:
     // a package that waits to replace this one. Without that option no pipeline is missing.
     PipelineProgress pipelineProgress() const;
     void waitForPipelines();
-    // Returns what the driver reports about each pipeline. Errors: "pipeline-statistics" without
+    // Returns the driver's report about each pipeline. Errors: "pipeline-statistics" without
     // RendererOptions::pipelineStatistics, "vulkan-call".
     Result<std::vector<PipelineStatistics>> pipelineStatistics() const;
 

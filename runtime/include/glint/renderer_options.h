@@ -146,8 +146,8 @@ struct FrameOptions {
     // The bounces of a path, up to RendererOptions::bounces. 0 means that maximum.
     std::uint32_t bounces = 0;
     // Records every bounce of a frame with more than 8. Without it a frame records those that many paths of
-    // the frames before have reached, and further ones by chance, with a weight that keeps the mean. What it
-    // shows of rare long paths then depends on those frames. Renderer::finished() says which frames the
+    // the frames before have reached, and further ones by chance, with a weight that keeps the mean. The
+    // light of rare long paths then depends on those frames. Renderer::finished() says which frames the
     // device has completed.
     bool recordAllBounces = false;
     // The number of steps of the march in screen space that precedes a ray. 0 means no march. Others need

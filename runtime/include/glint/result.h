@@ -11,7 +11,7 @@ namespace glint {
 
 enum class Severity { Note, Warning, Error };
 
-// One message to the user. It says what is wrong, where, and what to do about it.
+// One message to the user. It names the fault, its place and a remedy.
 struct Diagnostic {
     Severity severity = Severity::Error;
     std::string id;       // stable kebab-case name of the kind of message, for instance "accessor-range"

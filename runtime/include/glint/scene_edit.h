@@ -17,8 +17,9 @@
 
 namespace glint {
 
-// Names something in a scene. A handle stays valid until what it names is removed. Its index may then be used
-// again, with another generation, so an old handle names nothing. The initial value names nothing.
+// Names something in a scene. A handle stays valid until the thing that it names is removed. Its index may
+// then be used again, with another generation, so an old handle names nothing. The initial value names
+// nothing.
 template <typename Kind>
 struct SceneHandle {
     std::uint32_t index = 0;
@@ -118,12 +119,12 @@ struct PlacedMesh {
 // scene.
 //
 // Each function checks its arguments and takes effect in host memory at once, or returns an error and changes
-// nothing. Spans are read in the call and not kept. record() then records what the device has to do for all
+// nothing. Spans are read in the call and not kept. record() then records the work of the device for all
 // edits since the last record(). Nothing waits for the device. The functions may not be called from several
 // threads at the same time, nor during Renderer::record().
 //
 // Errors of all functions: "scene-edit-handle" (a handle names nothing), "scene-edit-used" (something else
-// still uses what is to be removed), "scene-edit-value" (a number is not finite, or an index out of range),
+// still uses the thing to be removed), "scene-edit-value" (a number is not finite, or an index out of range),
 // and those of memory and Vulkan's calls. Errors of those that give a primitive a material: "scene-edit-key"
 // (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the package has no
 // code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the package has the
@@ -199,8 +200,8 @@ public:
     // the last call. Memory that is no longer needed is freed by complete(). On an error nothing is recorded,
     // and the edits wait for the next call. Errors: "scene-edit-frame", "tlas-limit".
     Status record(VkCommandBuffer commands, std::uint64_t frame);
-    // Says that the device has completed all commands of frames up to `frame`, and frees what they alone
-    // used. Command buffers of these frames may not be submitted again.
+    // Says that the device has completed all commands of frames up to `frame`, and frees the resources that
+    // they alone used. Command buffers of these frames may not be submitted again.
     void complete(std::uint64_t frame);
     // Lets the next record() shrink the buffers of records and the TLAS to their contents, but not below
     // their size at the upload. Without it they only grow.

@@ -195,8 +195,8 @@ struct SceneView {
     // for images that SceneEditor gets.
     bool streamsTextures = false;
     std::uint32_t firstTexels = 64;
-    // The place in the world, in metres, where the scene's own coordinates are 0. It should be close to what
-    // is seen.
+    // The place in the world, in metres, where the scene's own coordinates are 0. It should be close to the
+    // visible things.
     std::array<double, 3> origin{};
 };
 
@@ -214,8 +214,8 @@ struct MotionView {
     std::span<const LightView> lights;
     Builds builds = Builds::ByRule;
     std::span<const MaterialView> materials{};  // the materials of the upload, in their order
-    // As SceneView::origin, of these instances and lights. It may differ between poses. Instances that keep
-    // their place in the world then get other transforms, so the TLAS is built anew.
+    // The origin of these instances and lights, as SceneView::origin. It may differ between poses. Instances
+    // that keep their place in the world then get other transforms, so the TLAS is built anew.
     std::array<double, 3> origin{};
 };
 inline constexpr Named<MotionView::Builds> kBuildsNames[] = {

@@ -1,6 +1,6 @@
 // The strategies: how the hits of rays are shaded. A strategy is one row of the table in
 // runtime/src/modules/strategies.cpp and one folder with its GLSL, shaders/strategies/<strategy>/. The
-// compiler, the loader, the renderer, the cost model and the tools act on what the row says.
+// compiler, the loader, the renderer, the cost model and the tools act on the row's fields.
 #pragma once
 
 #include <glint/names.h>

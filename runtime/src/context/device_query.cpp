@@ -1,4 +1,4 @@
-// Queries what physical devices report.
+// Queries the reports of physical devices.
 #include "context/requirements.h"
 #include "context/vulkan_error.h"
 

@@ -190,7 +190,7 @@ void replaceEmission(SceneEditor::State& state, TextureHandle texture);
 Emitters gatherEmitters(SceneEditor::State& state);
 std::vector<InstanceView> emissiveViews(const SceneEditor::State& state);
 
-// Records what is pending, for a frame that is at or after the last one.
+// Records the pending edits, for a frame that is at or after the last one.
 Status recordEdits(SceneEditor::State& state, VkCommandBuffer commands, std::uint64_t frame);
 
 std::string placeOf(const char* what, std::uint32_t index);

@@ -151,7 +151,7 @@ struct WantedBuffer {
     }
 };
 
-// In the order of FrameResources::buffers().
+// Returns the buffers in the order of FrameResources::buffers().
 std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const FrameSize& size) {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =

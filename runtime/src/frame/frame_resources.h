@@ -36,7 +36,8 @@ struct FrameResources {
     // others is `pool`.
     static constexpr std::size_t kBufferCount = 26;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
-    // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
+    // The images by binding, in the layout GENERAL. Bindings that share an image have it in one place
+    // (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
     std::vector<DeviceImage> layers;  // FrameSize::layers; layout GENERAL
     // Buffers may lie in its memory, so each frame gives it the layout DEPTH_ATTACHMENT_OPTIMAL anew.

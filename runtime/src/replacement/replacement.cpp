@@ -20,7 +20,7 @@ using KnownPipelines = std::map<PipelineIdentity, MadePipeline>;
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-// Takes what the threads of a package that waits have made so far.
+// Takes the pipelines that the threads of a waiting package have made so far.
 void collect(NextPackage& next) {
     if (next.pipelines.background) {
         std::ranges::move(next.pipelines.background->take(kAll), std::back_inserter(next.ready));

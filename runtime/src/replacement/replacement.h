@@ -76,7 +76,7 @@ Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_
 // that package. If a pipeline could not be made, gives the package up.
 void switchPackage(Renderer::State& state, VkCommandBuffer commands);
 
-// Destroys what recordings after `recording` do not use; pipelines are gone some time later.
+// Destroys resources that recordings after `recording` do not use; pipelines are gone some time later.
 void releaseLeftovers(Renderer::State& state, std::uint64_t recording);
 
 }  // namespace glint

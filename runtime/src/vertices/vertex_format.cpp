@@ -16,7 +16,7 @@ double dot(const Vector& a, const Vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// The same mapping as octahedralEncode() and octahedralDecode() of shaders/hit/geometry.glsl.
+// These are the mappings octahedralEncode() and octahedralDecode() of shaders/hit/geometry.glsl.
 std::array<double, 2> encode(const Vector& v) {
     const double sum = std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
     const double x = v[0] / sum;

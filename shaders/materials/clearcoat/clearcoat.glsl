@@ -73,7 +73,7 @@ LayerMirror clearcoatMirror(Clearcoat layer) {
 }
 
 // The coat covers the hemisphere about its normal, whatever the normal of the base is. If it turns away from the
-// viewer, it covers only what is above the base, too.
+// viewer, it covers only directions that are also above the base.
 LayerLight clearcoatEvaluate(Clearcoat layer, vec3 view, vec3 l) {
     float nDotL = accurateDot(layer.normal, l);
     float nDotV = clearcoatViewCosine(layer, view);

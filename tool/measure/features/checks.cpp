@@ -338,7 +338,7 @@ std::array<double, 3> randomNumbers(std::uint64_t index, std::uint32_t stream) {
         std::uint64_t z = state;
         z = (z ^ z >> 30U) * 0xbf58476d1ce4e5b9ULL;
         z = (z ^ z >> 27U) * 0x94d049bb133111ebULL;
-        // As many bits as a float below 1 keeps.
+        // The number has as many bits as a float below 1 keeps.
         number = std::ldexp(static_cast<double>((z ^ z >> 31U) >> 40U), -24);
     }
     return numbers;

@@ -250,7 +250,8 @@ JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const 
         if (global.opcode == spv::OpEntryPoint) {
             const std::size_t begin = entry.size();
             appendMapped(module, global, first.ids, entry);
-            // Since SPIR-V 1.4 an entry point names every variable that it or what it calls uses.
+            // Since SPIR-V 1.4 an entry point names every variable that it, or a function that it calls,
+            // uses.
             std::set<std::uint32_t> named;
             for (std::size_t i = 0; i < global.length; ++i) {
                 if (module.isId[global.at + i]) {

@@ -57,7 +57,7 @@ struct ParsedModule {
     std::vector<ParsedFunction> functions;
     Annotations decorations;  // without linkage
     Annotations names;
-    // By ID of a function: the name under which it is linked.
+    // The names under which functions are linked, by their IDs.
     std::map<std::uint32_t, std::string> exports;
     std::map<std::uint32_t, std::string> imports;
 

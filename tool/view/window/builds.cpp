@@ -12,7 +12,7 @@ void Window::order(std::size_t index, std::span<const std::string> changed) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
     BuildOrder order{index, one.wanted, scene_, {changed.begin(), changed.end()}};
-    // As on the command line: textures may hold anything where a fallback or a host stands by.
+    // As on the command line, textures may have any contents if there is a fallback or a host.
     order.settings.compile.trustTextures = one.wanted.compile.trustTextures &&
                                            !one.wanted.compile.plan.fallback &&
                                            one.wanted.compile.host.empty();

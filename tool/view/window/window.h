@@ -31,7 +31,7 @@ struct GLFWwindow;
 
 namespace glint::view {
 
-// In window coordinates, at a content scale of 1.
+// The width in window coordinates, at a content scale of 1.
 inline constexpr float kPanelWidth = 440.0F;
 inline constexpr float kStatusHeight = 26.0F;
 

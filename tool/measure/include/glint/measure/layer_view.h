@@ -16,7 +16,7 @@ namespace glint::measure {
 // - vectors as red, green and blue, from the least to the greatest value of all channels; where some are
 //   below 0, grey is 0
 // The statistics are those of all channels. `name` is PackageLayer::name; View::choice has the layer's name
-// and source, and says what the layer is. Errors: those of Renderer::readLayer().
+// and source, and describes the layer. Errors: those of Renderer::readLayer().
 Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exposure);
 
 }  // namespace glint::measure

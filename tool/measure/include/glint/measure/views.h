@@ -85,8 +85,8 @@ struct ViewInput {
     const materials::MaterialModel* model = &materials::builtinMaterialModel();  // of the scene's materials
     const LinearImage* picture = nullptr;
     const LinearImage* reference = nullptr;  // if the view compares, of equal size
-    // By ViewInfo::layers; those of ViewInfo::everySource by their whole names, such as
-    // "reflection.hit-shader".
+    // The layers of ViewInfo::layers by name, and those of ViewInfo::everySource by their whole names, such
+    // as "reflection.hit-shader".
     std::map<std::string, LayerValues> layers;
 };
 
@@ -141,7 +141,7 @@ struct View {
 Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput input,
                       std::optional<std::array<double, 2>> range = {});
 
-// The same from layers that are in `input` already.
+// Makes the same view from layers that are in `input` already.
 View colorView(const ViewChoice& choice, const ViewInput& input,
                std::optional<std::array<double, 2>> range = {});
 
