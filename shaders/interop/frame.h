@@ -382,7 +382,7 @@ struct FrameConstants {
     uint skyRows;
 #endif
 #if GLINT_LAYER_MEMBERS
-    // The members for packages with layers (glint/layers.h). `previousInstances` are those of the frame before here,
+    // The members for packages with layers (glint/layers.h). `previousInstances` are those of the previous frame here,
     // too.
     vec4 previousView[4];  // the camera of the frame before, rows: clip x and y without jitter, the distance along its
                            // axis, clip w

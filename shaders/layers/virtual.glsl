@@ -27,7 +27,7 @@ uvec4 rayShader(uint target, uint path) {
 
 #if GLINT_LAYER_HISTORY
 
-// A point of a triangle, now and in the frame before, and the frame of the triangle at both times: its first edge, a
+// A point of a triangle, now and in the previous frame, and the frame of the triangle at both times: its first edge, a
 // normal, and the vector that completes the frame.
 struct MovedPoint {
     vec3 now;
@@ -70,7 +70,7 @@ vec3 mirroredAt(vec3 v, vec3 normal) {
     return v - 2.0 * dot(v, normal) * normal;
 }
 
-// The point that a ray found, with its place in the frame before.
+// The point that a ray found, with its place in the previous frame.
 MovedPoint foundPoint(RayHit found) {
     if (found.geometry == kScreenGeometry) {
         return movedPointOf(ivec2(found.primitive % GLINT_FRAME.width, found.primitive / GLINT_FRAME.width));

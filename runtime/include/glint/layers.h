@@ -63,7 +63,7 @@ enum class LayerMean : std::uint32_t {
 
 // The needs of a layer beside its image, as bits of a set.
 enum LayerDemand : std::uint32_t {
-    kLayerHistory = 1,  // camera, transforms and deformed vertices of the frame before
+    kLayerHistory = 1,  // camera, transforms and deformed vertices of the previous frame
     kLayerRays = 2,     // the hits of effects' rays
     kLayerClock = 4,    // shaders read a clock: DeviceHandles::shaderClock
     kLayerQueries = 8,  // rays are traced by ray queries alone

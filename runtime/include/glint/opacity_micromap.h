@@ -97,7 +97,7 @@ struct TriangleStates {
 // `twoStates` is set, which makes unknown states those that they lean to, and is no longer exact.
 MicromapArray packMicromaps(std::span<const TriangleStates> triangles, bool twoStates = false);
 
-// Returns how many triangles have the records of each level and format. A bottom level asks for that
+// Returns how many triangles have the records of each level and format. A BLAS asks for that
 // (VkAccelerationStructureTrianglesOpacityMicromapEXT::pUsageCounts). Requires valid indices.
 std::vector<MicromapUsage> usagesOf(const MicromapArray& array);
 

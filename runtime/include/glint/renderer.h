@@ -34,8 +34,8 @@ class TextureStream;
 struct MotionStatistics {
     enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
     std::uint32_t deformed = 0;  // instances whose vertices were computed again
-    std::uint32_t refits = 0;    // bottom levels that were refitted
-    std::uint32_t rebuilds = 0;  // bottom levels that were built anew
+    std::uint32_t refits = 0;    // BLASes that were refitted
+    std::uint32_t rebuilds = 0;  // BLASes that were built anew
     TopLevel topLevel = TopLevel::Kept;
     double deformMs = 0.0;
     double blasMs = 0.0;
@@ -362,7 +362,7 @@ public:
     // renderer. Shaders of a recording write them last, so commands that read them need a dependency on its
     // shader writes, and are to complete before those of the next recording, or be ordered before them on the
     // same queue. The values are those of the picture so far, as LayerInfo::mean says; a draft
-    // (RendererOptions::draft) leaves them as they are. Motion leads to the frame before: the picture that
+    // (RendererOptions::draft) leaves them as they are. Motion leads to the previous frame: the picture that
     // this renderer began before this one.
     std::vector<LayerImage> layers() const;
     // Reads a layer of the last recording back and waits for the device. Errors: "layer-missing" if the

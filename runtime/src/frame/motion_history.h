@@ -1,4 +1,4 @@
-// The state of the frame before, for motion: the camera, the transforms of instances, and the positions of
+// The state of the previous frame, for motion: the camera, the transforms of instances, and the positions of
 // vertices that follow joints or morph weights.
 #pragma once
 

@@ -37,9 +37,9 @@ struct TlasHistory {
     std::uint32_t updates = 0;
     std::vector<Box> boxes;  // boxes of the instances at the build
 
-    // The top level is built anew if an instance has moved farther than its box was long. Until then no node
-    // above the instance has grown by more than the instance's own size. `moved` says whether an instance or
-    // a bottom level has changed.
+    // The TLAS is built anew if an instance has moved farther than its box was long. Until then no node above
+    // the instance has grown by more than the instance's own size. `moved` says whether an instance or a BLAS
+    // has changed.
     BuildAction next(bool moved, std::span<const Box> now) const;
     void apply(BuildAction action, std::span<const Box> now);
 };

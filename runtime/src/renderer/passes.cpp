@@ -43,7 +43,7 @@ public:
         }
         passes_.endStretch(whole);
         // Layers of motion describe a picture's first sample, so only that sample needs the state of the
-        // frame before.
+        // previous frame.
         if (state_.history != nullptr && constants.averaged == 0) {
             state_.history->record(commands_);
         }

@@ -1,4 +1,4 @@
-// Bottom levels: their sizes, and the builds of an upload.
+// BLASes: their sizes, and the builds of an upload.
 #include "context/commands.h"
 #include "context/vulkan_error.h"
 #include "renderer/pass_dependencies.h"

@@ -1,4 +1,4 @@
-// The description of a bottom level in Vulkan's terms.
+// The description of a BLAS in Vulkan's terms.
 #pragma once
 
 #include "context/commands.h"

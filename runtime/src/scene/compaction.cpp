@@ -1,4 +1,4 @@
-// Compaction: copies of the bottom levels, and the top level over them.
+// Compaction: copies of the BLASes, and the TLAS over them.
 #include "context/vulkan_error.h"
 #include "edit/editor_state.h"
 #include "renderer/pass_dependencies.h"

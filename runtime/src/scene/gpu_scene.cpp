@@ -224,7 +224,7 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
     return input;
 }
 
-// Builds the bottom levels that stay as they are. createMotion() builds those that move.
+// Builds the BLASes that stay as they are. createMotion() builds those that move.
 Status buildBottomLevels(GpuScene::State& state, SceneUpload& upload, const PackageScene& known,
                          const SceneView& scene, const SceneLayout& layout, bool dataAccess,
                          std::vector<BlasInput>& refitted) {

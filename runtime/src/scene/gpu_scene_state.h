@@ -47,7 +47,7 @@ struct GpuScene::State {
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     std::vector<AccelerationStructure> blases;          // the BLASes that are built once
     std::vector<VkDeviceAddress> partBlases;            // indexed as SceneLayout::parts
-    // Null if the top level has its instances in the scene's own order.
+    // Null if the TLAS has its instances in the scene's own order.
     std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;
     Buffer geometries;
@@ -55,7 +55,7 @@ struct GpuScene::State {
     // One for each geometry record, for Renderer::readPlace(); empty in scenes that are edited.
     std::vector<GeometryPlace> places;
     std::vector<GeometryPositions>
-        geometryPositions;  // likewise, if some vertices follow joints or morph weights
+        geometryPositions;  // for each, too, if some vertices follow joints or morph weights
     Buffer instances;
     Buffer materials;
     Buffer lights;

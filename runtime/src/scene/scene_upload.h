@@ -18,8 +18,7 @@
 namespace glint {
 
 // --- Compaction ---
-// Bottom levels are built at their full size, and the size of a compacted copy is known when the device has
-// built them.
+// BLASes are built at their full size, and the size of a compacted copy is known when the device has built them.
 
 // The place of a BLAS in a scene that is edited.
 struct PartOfMesh {
@@ -38,7 +37,7 @@ struct Compaction {
     std::uint32_t count = 0;
     std::vector<AccelerationStructure> replaced;
     std::vector<Buffer> kept;
-    // The top level of a scene that neither moves nor is edited, as it was built.
+    // The TLAS of a scene that neither moves nor is edited, as it was built.
     std::vector<VkAccelerationStructureInstanceKHR> placed;
     std::vector<PartOfMesh> parts;       // in a scene that is edited
     bool queued = false;                 // the editor has the copies

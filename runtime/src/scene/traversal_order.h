@@ -33,7 +33,7 @@ std::vector<std::vector<std::uint32_t>> orderedTriangles(
     std::span<const std::vector<std::uint32_t>> sorted = {},
     const std::map<std::uint32_t, OpacitySplit>& splits = {});
 
-// Knows the boxes of a top level's instances in any pose of the scene.
+// Knows the boxes of a TLAS's instances in any pose of the scene.
 class InstanceOrder {
 public:
     // Keeps no reference to its arguments. `primitives` are those of the scene.
