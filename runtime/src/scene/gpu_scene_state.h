@@ -55,7 +55,7 @@ struct GpuScene::State {
     // One for each geometry record, for Renderer::readPlace(); empty in scenes that are edited.
     std::vector<GeometryPlace> places;
     std::vector<GeometryPositions>
-        geometryPositions;  // for each, too, if some vertices follow joints or morph weights
+        geometryPositions;  // by record, if some vertices follow joints or morph weights
     Buffer instances;
     Buffer materials;
     Buffer lights;

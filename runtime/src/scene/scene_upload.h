@@ -18,7 +18,7 @@
 namespace glint {
 
 // --- Compaction ---
-// BLASes are built at their full size, and the size of a compacted copy is known when the device has built them.
+// BLASes are built at their full size. The size of a compacted copy is known when the device has built them.
 
 // The place of a BLAS in a scene that is edited.
 struct PartOfMesh {
