@@ -81,9 +81,9 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 #endif
 
 #if GLINT_TRACER == 1 || GLINT_RAY_GENERATION
-// Does the same for rays that `sees` other surfaces (kShadow*). If shadow rays do not pass glass, rays of lobes bring
-// the light of emissive triangles through it. If shadow rays pass glass, rays of lobes leave that light out, so the
-// sample counts whole.
+// Does the same for rays that see other surfaces: `sees` is one of kShadow*. If shadow rays do not pass glass, rays of
+// lobes bring the light of emissive triangles through it. If shadow rays pass glass, rays of lobes leave that light
+// out, so the sample counts whole.
 bool lightArrivesTo(uint sees, vec3 origin, vec3 direction, float distance, inout vec3 light) {
 #if GLINT_SHARED_LIGHTS
 #if GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE

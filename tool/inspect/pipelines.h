@@ -47,7 +47,8 @@ std::span<const FactInfo> factTable();
 
 // Returns the facts about one executable.
 PipelineFacts factsOf(const PipelineExecutable& executable);
-// Returns the facts of all executables of a pipeline
+// Returns the facts of all executables of a pipeline: the most registers, scratch memory and cost, the least
+// occupancy, and the sum of spills and code.
 PipelineFacts factsOf(std::span<const PipelineExecutable> executables);
 
 // A module that a pipeline was made for.

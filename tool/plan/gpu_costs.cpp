@@ -19,8 +19,7 @@ const PackageCosts* findPackage(const GpuCosts& gpu, std::string_view merge, std
     return found == gpu.packages.end() ? nullptr : &*found;
 }
 
-// Returns the strategy that has a module for each case, of which the table of strategies has one. The table
-// has one.
+// Returns the strategy that has a module for each case. The table of strategies has one.
 std::string_view caseStrategy() {
     return std::ranges::find_if(package::strategyTable(), &package::StrategyInfo::dispatchesCases)->name;
 }

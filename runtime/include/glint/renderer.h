@@ -239,7 +239,7 @@ struct FrameCounters {
     EffectCounters of(package::Effect effect) const;
 };
 
-// The source of the light that a pixel got of an effect.
+// The source of a pixel's light from an effect.
 enum class PixelPath : std::uint8_t {
     NoSurface,
     NoRay,   // rough, unlit, or its sample would bring no light

@@ -1,4 +1,4 @@
-// Triangles that emit light, as lights: their number, their bounds and their intensity.
+// Triangles that emit light, as lights: their records, their bounds and their intensity.
 #pragma once
 
 #include "lights/emitter_shape.h"

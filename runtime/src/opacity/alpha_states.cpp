@@ -38,7 +38,7 @@ float valueOf(std::uint32_t texel, int ulps, float towards) {
     return isExact ? value : stepped(value, ulps, towards);
 }
 
-// The value of a filter beyond that of a texel. Filters make no values outside of [0, 1].
+// Returns a texel's value, moved by the filter's error. Filters make no values outside of [0, 1].
 float filtered(float value, double error, float towards) {
     if (error == 0.0) {
         return value;

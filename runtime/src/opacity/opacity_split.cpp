@@ -22,7 +22,7 @@ using opacity::State;
 
 // Triangles whose states one thread finds at a time.
 constexpr std::size_t kTrianglesOfJob = 512;
-// The size of a micro-triangle , in texels, below which one more level is not worth its bytes.
+// The size of a micro-triangle, in texels, below which one more level is not worth its bytes.
 constexpr double kTexelsOfMicroTriangle = 2.0;
 
 float floatAt(const MaterialTable& materials, std::uint32_t material, std::uint32_t offset) {

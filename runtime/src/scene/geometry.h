@@ -156,7 +156,7 @@ struct PrimitiveRange {
 };
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
 
-// The origin of a geometry record.
+// The instance and the primitive of a geometry record.
 struct GeometryPlace {
     std::uint32_t instance = 0;  // index into SceneView::instances
     std::uint32_t mesh = 0;

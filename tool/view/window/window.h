@@ -31,7 +31,7 @@ struct GLFWwindow;
 
 namespace glint::view {
 
-// The width in window coordinates, at a content scale of 1.
+// These are in window coordinates, at a content scale of 1.
 inline constexpr float kPanelWidth = 440.0F;
 inline constexpr float kStatusHeight = 26.0F;
 
@@ -156,7 +156,7 @@ private:
     std::unique_ptr<Script> script_;
 
     std::string scene_;
-    // The scene and settings before another scene is opened.
+    // The scene and settings that are shown while another scene is being opened.
     struct Opening {
         std::string scene;
         std::vector<compiler::Settings> wanted;  // of the sides that are there
