@@ -68,7 +68,7 @@ std::optional<double> scaled(std::optional<double> value, double factor) {
     return value ? std::optional(*value * factor) : std::nullopt;
 }
 
-constexpr double kLanes = 64.0;  // that PipelineFacts::cost is for
+constexpr double kLanes = 64.0;  // the lanes of PipelineFacts::cost
 
 double widthOf(const PipelineExecutable& executable) {
     return executable.subgroupSize > 0 ? executable.subgroupSize : kLanes;
@@ -787,7 +787,7 @@ std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineB
     }
     for (const ReportedPipeline& pipeline : report.pipelines) {
         if (!pipeline.failure.empty()) {
-            continue;  // which is an error by itself
+            continue;  // a failed pipeline is an error by itself
         }
         PipelineFacts limits;
         for (std::size_t i = 0; i < budget.rules.size(); ++i) {

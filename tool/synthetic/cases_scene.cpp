@@ -63,7 +63,7 @@ void addSquare(gltf::Primitive& primitive, const CaseMaterial& attributes, const
 }
 
 gltf::Mesh makeFloor(const CaseMaterial& attributes, int material, double aspect) {
-    constexpr double kMargin = 1.01;  // how far beyond the picture's edge
+    constexpr double kMargin = 1.01;  // extent beyond the picture's edge
     const Extent extent = viewExtent(kCameraHeight, aspect);
     gltf::Mesh mesh{"floor", {makePrimitive(attributes, material, "/meshes/0/primitives/0")}};
     addSquare(mesh.primitives[0], attributes,

@@ -27,7 +27,7 @@ namespace glint::view {
 
 // The inputs of a picture, apart from the device's copy.
 struct Build {
-    compiler::Settings settings;  // with which it was made; the strategy is chosen
+    compiler::Settings settings;  // those of the build; the strategy is chosen
     std::shared_ptr<const gltf::Scene> scene;
     compiler::PlanOptions options;
     compiler::Plan plan;

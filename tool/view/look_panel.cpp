@@ -16,7 +16,7 @@ namespace {
 using measure::ViewScale;
 using measure::ViewStatistics;
 
-constexpr std::size_t kMostCategories = 40;  // that the legend lists
+constexpr std::size_t kMostCategories = 40;  // the most that the legend lists
 
 ImU32 packed(const image::Color8& color) {
     return IM_COL32(color[0], color[1], color[2], 255);

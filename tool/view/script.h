@@ -89,8 +89,8 @@ private:
         Act act;
     };
     std::deque<Step> steps_;
-    int line_ = 0;   // that is being parsed
-    int shown_ = 0;  // that runs
+    int line_ = 0;   // the line that is being parsed
+    int shown_ = 0;  // the line that runs
     std::vector<std::string> lines_;
     std::int64_t began_ = 0;
 };

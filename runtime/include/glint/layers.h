@@ -39,7 +39,7 @@ enum class LayerSubject : std::uint32_t {
     Light,    // light that leaves the primary surface: an image for the direct light and for each effect with
               // rays
     Ray,      // the end of an effect's ray: an image for each effect with rays
-    Bounce,   // what a bounce of its paths brings: an image for each such effect and bounce, where there are
+    Bounce,   // light of a bounce of its paths: an image for each such effect and bounce, where there are
               // several
     Work,     // the work of all passes for the pixel: one image
 };

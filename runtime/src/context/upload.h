@@ -125,7 +125,7 @@ struct StagedCopies {
     MemoryPool pool;  // of the staging memory. Members are destroyed in reverse order.
     std::unique_ptr<Uploader> uploader;
     std::vector<Buffer> staging;
-    std::uint64_t frame = 0;  // that the commands belong to
+    std::uint64_t frame = 0;  // frame of the commands
 };
 
 // Returns the bytes of an array of plain structures.

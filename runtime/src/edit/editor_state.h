@@ -128,7 +128,7 @@ struct SceneEditor::State {
     Uploader* uploader = nullptr;
     struct PendingBuild {
         BlasBuild build;  // with its destination
-        Buffer input;     // that this build and those before it of the same primitive read; may be none
+        Buffer input;     // input of this and earlier builds of the same primitive; may be none
     };
     std::vector<PendingBuild> builds;
     bool tlasDirty = true;

@@ -79,7 +79,7 @@ public:
 
     // The size of the array on the device, in records.
     std::uint32_t capacity = 0;
-    std::uint32_t firstCapacity = 0;  // that of the upload
+    std::uint32_t firstCapacity = 0;  // the capacity at the upload
 
 private:
     std::size_t stride_;

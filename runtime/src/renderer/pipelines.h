@@ -81,7 +81,7 @@ struct Pipelines {
     std::map<std::pair<package::ModuleRole, std::uint32_t>, PassPipeline> effectPasses;
     std::vector<PassPipeline> cases;  // indexed by shader ID; cases that share a module share a pipeline
     std::vector<MadePipeline> owned;
-    std::shared_ptr<const Package> package;  // that threads read; null if the caller keeps it
+    std::shared_ptr<const Package> package;  // the package that threads read; null if the caller keeps it
     std::uint32_t threads = 0;               // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;

@@ -110,7 +110,7 @@ struct TriangleRange {
     std::uint32_t primitive = 0;  // index into SceneView::primitives
     std::uint32_t first = 0;
     std::uint32_t count = 0;  // in the BLAS
-    std::uint32_t drawn = 0;  // that the raster pass draws, from `first` on; 0: another geometry draws them
+    std::uint32_t drawn = 0;  // triangles of the raster pass, from `first` on; 0: another geometry draws them
     bool opaque = false;      // every ray stops there, although the material is tested for alpha
 };
 

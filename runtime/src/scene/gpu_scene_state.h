@@ -40,7 +40,7 @@ struct GpuScene::State {
     MemoryPool pool;
     std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
-    ScenePackage package;                    // that the scene is drawn with
+    ScenePackage package;                    // the package that draws the scene
     std::array<double, 3> origin{};          // SceneView::origin, or that of the last MotionView
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;

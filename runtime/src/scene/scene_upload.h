@@ -41,7 +41,7 @@ struct Compaction {
     std::vector<VkAccelerationStructureInstanceKHR> placed;
     std::vector<PartOfMesh> parts;       // in a scene that is edited
     bool queued = false;                 // the editor has the copies
-    std::optional<std::uint64_t> frame;  // in which the copies were recorded
+    std::optional<std::uint64_t> frame;  // frame of the recorded copies
 };
 
 // These implement GpuScene::recordCompaction() and the part of GpuScene::complete() that is about it.
@@ -76,9 +76,9 @@ struct SceneUpload {
     std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order
     std::unique_ptr<Deformer> deformer;  // of a scene that does not move and is not in its rest pose
     std::optional<Timer> timer;
-    std::uint32_t stretches = 0;             // that are recorded
+    std::uint32_t stretches = 0;             // recorded ones
     std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
-    std::uint64_t frame = 0;                 // that the commands belong to
+    std::uint64_t frame = 0;                 // frame of the commands
 };
 
 }  // namespace glint

@@ -19,7 +19,7 @@ struct StreamedTexture {
     StoredImage image;
     std::uint32_t level = 0;   // the finest that is complete
     std::uint32_t row = 0;     // of the next finer one: the first row of blocks that is missing
-    std::uint32_t finest = 0;  // that may be brought
+    std::uint32_t finest = 0;  // the finest level that may be brought
 
     bool waits() const {
         return level > finest;

@@ -76,7 +76,7 @@ std::optional<std::uint32_t> decorationOf(const ParsedModule& module, std::uint3
 struct GlobalTable::Added {
     std::vector<std::uint32_t> ids;
     std::vector<const ParsedInstruction*> definitions;           // by the module's ID
-    std::unordered_map<Words, std::uint32_t, HashWords> counts;  // how often a key has come
+    std::unordered_map<Words, std::uint32_t, HashWords> counts;  // occurrences of each key so far
 };
 
 void appendMapped(const ParsedModule& module, const ParsedInstruction& instruction,

@@ -33,8 +33,8 @@ struct NumberedFunction {
     JoinedWords words;
     std::vector<std::uint32_t> ids;       // by number
     JoinedWords annotations;              // decorations of those IDs
-    std::vector<std::size_t> ownWords;    // which of `words` have kOwnId
-    std::vector<std::size_t> ownTargets;  // which of `annotations`
+    std::vector<std::size_t> ownWords;    // indices of `words` with kOwnId
+    std::vector<std::size_t> ownTargets;  // indices of such `annotations`
 };
 
 class Joiner {

@@ -16,7 +16,7 @@ namespace glint::view {
 
 namespace {
 
-constexpr std::size_t kMessages = 200;  // that are kept
+constexpr std::size_t kMessages = 200;  // the most that are kept
 
 Window& windowOf(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));

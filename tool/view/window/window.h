@@ -215,7 +215,7 @@ private:
 
     base::InputWatch watch_;
     std::optional<PackageWatch> packageWatch_;
-    std::uint64_t earlyPackages_ = 0;  // that were shown
+    std::uint64_t earlyPackages_ = 0;  // early packages shown so far
     base::Clock::time_point polled_{};
 
     std::vector<KeyPress> keys_;

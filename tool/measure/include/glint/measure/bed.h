@@ -87,7 +87,7 @@ private:
     std::shared_ptr<MountedPackage> package_;
     std::shared_ptr<Renderer> renderer_;
     std::shared_ptr<PictureFilter> filter_;  // null: none
-    std::uint32_t frames_ = 1;               // that the filter sees, with the picture
+    std::uint32_t frames_ = 1;               // frames that the filter sees, with the picture
     FrameOptions frame_;
     std::uint32_t samples_ = 1;
     bool ordersHits_ = false;

@@ -54,7 +54,7 @@ struct CalibrationEntry {
     bool shadows = false;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::uint32_t samples = 0;  // that each time is the mean of
+    std::uint32_t samples = 0;  // samples of which each time is the mean
     std::uint64_t hits = 0;     // a sample
     std::uint32_t filledCases = 0;
     std::vector<StrategyMeasure> strategies;

@@ -31,8 +31,8 @@ public:
 };
 
 struct FilterMaker {
-    std::vector<std::string> layers;       // that a package needs
-    std::vector<std::string> imageLayers;  // that are read if an effect of the package has them
+    std::vector<std::string> layers;       // layers that a package needs
+    std::vector<std::string> imageLayers;  // layers that are read if an effect of the package has them
     // Makes the filter of a renderer with pictures of that size, which have `samples` samples a pixel.
     std::function<Result<std::unique_ptr<PictureFilter>>(const Context& context, const Renderer& renderer,
                                                          std::uint32_t width, std::uint32_t height,

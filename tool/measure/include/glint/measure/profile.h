@@ -19,7 +19,7 @@ namespace glint::measure {
 // A key as the names of its features, which stay valid if a version of Glint numbers them differently.
 struct ProfileKey {
     std::vector<std::string> features;   // in order of bits
-    std::vector<std::string> materials;  // that have the key; for people
+    std::vector<std::string> materials;  // materials with the key; for people
     std::uint64_t hits = 0;
 };
 

@@ -29,7 +29,7 @@ struct Reference {
     // The root of noise.trimmed. A light that few rays find leaves outliers after any number of samples, and
     // these would otherwise dominate the error.
     double relativeError = 0.0;
-    double target = 0.0;   // that was asked for
+    double target = 0.0;   // the requested error
     bool reached = false;  // the target
     bool cached = false;   // samples were taken from the cache, all or some
     double seconds = 0.0;  // wall clock
@@ -56,7 +56,7 @@ struct StrategyReport {
     // Counts of hits in the last sample of a strategy that counts them by case; the members are 0 if no such
     // strategy was measured.
     std::uint32_t cases = 0;
-    std::uint32_t filledCases = 0;  // that any hit has
+    std::uint32_t filledCases = 0;  // cases with hits
     double largestShare = 0.0;      // of hits in the case that has most
     // The average number of cases among 32 hits in random order. An uber shader runs at most that many one
     // after another in a subgroup of that size.

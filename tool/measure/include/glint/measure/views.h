@@ -118,8 +118,8 @@ struct ViewStatistics {
     double mean = 0.0;
     double median = 0.0;
     double percentile99 = 0.0;
-    double percentileHalf = 0.0;    // that of 0.5 %
-    double percentile99Half = 0.0;  // that of 99.5 %
+    double percentileHalf = 0.0;    // at 0.5 %
+    double percentile99Half = 0.0;  // at 99.5 %
     // Pixels in equal steps from scale[0] to scale[1]; of a logarithmic view the steps are equal in the
     // logarithm. The first and the last step include the pixels beyond the scale: it leaves out the outermost
     // half percent of the numbers where these are far from the others.
