@@ -103,8 +103,8 @@ float densityAbove(Bsdf b, vec3 l) {
     return mirroredPdf(b.view, sum / max(sqrt(dot(sum, sum)), 1e-12), b.alpha);
 }
 
-// The density of the microfacets' reflections, of which `facets` is that of the facets: of a direction above the plane,
-// or below it.
+// The density of the microfacets' reflections in a direction above or below the plane. `facets` is the density of the
+// facets.
 float reflectedPdf(Bsdf b, Features features, vec3 l, float facets) {
     vec2 facet2 = halfCosine2(b.view, l);
     float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;

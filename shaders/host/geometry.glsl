@@ -112,8 +112,8 @@ vec4 hostColor(HostGeometry geometry, uint vertex) {
     return geometry.colors.data[vertex];
 }
 
-// One number of a vertex's attributes that packs declare: `channel` counts over all of them, of which a vertex has
-// `stride` (Package::attributes()).
+// One number of a vertex's attributes that packs declare. `channel` counts over all of them; a vertex has `stride`
+// numbers (Package::attributes()).
 float hostAttribute(HostGeometry geometry, uint vertex, uint channel, uint stride) {
     return geometry.attributes.data[stride * vertex + channel];
 }

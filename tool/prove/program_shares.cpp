@@ -173,8 +173,8 @@ NodeId ProgramBuilder::sumOfShares(const Node& given) {
     return shareOf(appendOnce(given), std::move(own), first->second.divisor);
 }
 
-// Moves an operation into the two sides of a choice of which one is a constant: c ? 0 : x, times y; or the
-// sum of two choices by the same condition.
+// Moves an operation into the two sides of a choice with a constant side: c ? 0 : x, times y; or the sum of
+// two choices by the same condition.
 NodeId ProgramBuilder::intoChoice(const Node& given) {
     for (const auto& [choice, other] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
         const Node chosen = node(choice);

@@ -22,7 +22,7 @@ namespace glint {
 // position and a normal, four a tangent and a colour, two a UV. The address of an attribute may be 0 only if
 // the package's key of this primitive lacks the attribute.
 struct EngineGeometryView {
-    std::uint32_t mesh = 0;  // primitive of the package's scene with this geometry's material and key
+    std::uint32_t mesh = 0;       // mesh of the package's scene that gives material and key
     std::uint32_t primitive = 0;  // within the mesh
     std::uint32_t instance = 0;   // index into EngineSceneView::instances
     VkDeviceAddress indices = 0;

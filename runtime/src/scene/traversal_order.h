@@ -26,8 +26,8 @@ BlasCapacity orderedCapacity(BlasCapacity capacity);
 
 // Returns the indices of each primitive in the order of its triangles; the corners of a triangle keep their
 // order. `capacity` is that of orderedCapacity(). A primitive above it is cut into pieces that are ordered
-// one by one. A primitive with a split has the indices `sorted`, of which each kind is ordered by itself.
-// Takes 56 bytes a triangle while a primitive is ordered, 12 of which stay.
+// one by one. In a primitive with a split, each kind of triangles in `sorted` is ordered by itself. Takes 56
+// bytes a triangle while a primitive is ordered, and keeps 12 of them.
 std::vector<std::vector<std::uint32_t>> orderedTriangles(
     std::span<const PrimitiveView> primitives, const BlasCapacity& capacity, LeafOrder order,
     std::span<const std::vector<std::uint32_t>> sorted = {},

@@ -88,7 +88,7 @@ std::optional<AxisGrid> gridOfIntegers(std::span<const PrimitiveView> mesh, std:
     return std::nullopt;
 }
 
-// Tries the largest power of two of which all values are multiples.
+// Tries the largest power of two that divides all values.
 std::optional<AxisGrid> gridOfPowers(std::span<const PrimitiveView> mesh, std::size_t axis,
                                      const Bounds& bounds) {
     int lowest = std::numeric_limits<int>::max();

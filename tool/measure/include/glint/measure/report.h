@@ -94,7 +94,7 @@ struct ErrorParts {
     double rest = 0.0;
 };
 
-// `points` has the default first. Settings of which no point has the exact value alone are left out.
+// `points` has the default first. A setting is left out if no point has its exact value alone.
 ErrorParts partsOfError(std::span<const BenchPoint> points, std::span<const Setting> settings,
                         ErrorMetric metric);
 

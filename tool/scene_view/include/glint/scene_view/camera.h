@@ -68,7 +68,7 @@ Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& 
 // Returns the warning "nothing-seen" if no triangle can be in a picture of this camera at the pose of
 // `scene`: all are outside of the frustum, hidden, without an area, or one-sided and turned away. It stops at
 // the first triangle that may be seen. `isCertain`: the picture has no surface, and the warning looks for the
-// reasons. Returns nothing for a scene without instances, of which importScene() warns.
+// reasons. Returns nothing for a scene without instances; importScene() warns of it.
 std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewData& view,
                                       const CameraChoice& camera, bool isCertain = false);
 
