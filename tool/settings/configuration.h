@@ -22,7 +22,7 @@ struct BenchFacts {
     bool emits = false;          // some triangles emit light
     bool lightsMayEmit = false;  // and packages with the default's effects can have them as lights
     bool skyMayLight = false;    // packages with the default's effects can have the sky as a light
-    bool sizedMayShow = false;   // rays of packages with the default's effects can find lights with a size
+    bool sizedMayShow = false;   // rays of packages with the default's effects can find area lights
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool placedLights = false;       // the picture has point or spot lights
