@@ -6,7 +6,7 @@
 namespace glint::verify {
 namespace {
 
-// Bounds what the doubles of an operation on forms round, relative to the size of the numbers in it.
+// A bound of the rounding error of the doubles in an operation on forms, relative to the size of its numbers.
 constexpr double kSlack = 0x1p-46;
 
 void finish(Affine& result, double terms) {
@@ -34,7 +34,7 @@ void chord(const Affine& a, double low, double high, double atLow, double atHigh
     const double secantLow = atLow - slope * low;
     const double secantHigh = atHigh - slope * high;
     const double touching = atTouch - slope * touch;
-    // The parallel line is lower by what the derivative at `touch` differs from the slope.
+    // The difference between the derivative at `touch` and the slope lowers the parallel line.
     const double miss = std::abs(derivative - slope) * width;
     const double least = std::min({secantLow, secantHigh, touching}) - miss;
     const double greatest = std::max({secantLow, secantHigh, touching}) + miss;
@@ -46,7 +46,7 @@ void chord(const Affine& a, double low, double high, double atLow, double atHigh
          result);
 }
 
-// What glibc's functions of doubles are off, generously.
+// A generous bound of the error of glibc's functions of doubles.
 constexpr double kFunctionError = 0x1p-48;
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Affine forms: a value as a linear function of the inputs and an error. They know that terms with the same
 // inputs cancel, which intervals do not (Comba and Stolfi 1993, "Affine Arithmetic and its Applications to
-// Computer Graphics"). Here only the inputs are symbols; what is nonlinear or rounded goes into the error.
+// Computer Graphics"). Here only the inputs are symbols. Nonlinear parts and rounding go into the error.
 #pragma once
 
 #include "verify/interval.h"

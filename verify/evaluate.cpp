@@ -336,7 +336,8 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
                                               ignored));
         }
         case Op::MirroredSum: {
-            // |v|² + 4 (v·h)² (|h|² - 1), where (v·h)² <= |v|² |h|²; rounding is relative to the terms.
+            // The result is |v|² + 4 (v·h)² (|h|² - 1), where (v·h)² <= |v|² |h|²; rounding is relative to
+            // the terms.
             const double most = b.high * (1.0 + 2.0 * c.high) * (1.0 + 2.0 * c.high);
             const double error =
                 4.0 * b.high * c.high * std::max(std::abs(c.low - 1.0), std::abs(c.high - 1.0)) +
@@ -354,8 +355,9 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::LessEqual:
         case Op::Equal:
             return compared(node);
-        // An operand without a value belongs to a branch that is not taken. It decides nothing: the other one
-        // may be the condition of that branch, and then it says the same, or that of another branch.
+        // An operand without a value belongs to a branch that is not taken. It decides nothing. The other
+        // operand may be the condition of that branch, and then has the same result, or that of another
+        // branch.
         case Op::And:
             return {a.isEmpty() || b.isEmpty() ? 0.0 : std::min(a.low, b.low),
                     std::min(a.isEmpty() ? 1.0 : a.high, b.isEmpty() ? 1.0 : b.high)};
@@ -383,7 +385,7 @@ Interval BoxEvaluator::unitQuotient(const Node& node) {
     if (!isPositive || !length2.isFinite()) {
         return plain;
     }
-    // The square of the component may have lost the smallest number, which the others need not make good.
+    // The square of the component may have lost the smallest number, which the others need not make up for.
     Interval result = meet(plain, {-1.5, 1.5});
     if (length2.low >= leastSquaredLength(node.value)) {
         const bool isFirst = quotient.op == Op::Divide || program_.nodes[quotient.b].op == Op::Apply;
@@ -430,7 +432,7 @@ Interval BoxEvaluator::compared(const Node& node) {
     if (plain != kUndecided || !withForms_ || !forms_[node.a].isValid || !forms_[node.b].isValid) {
         return plain;
     }
-    // What both have in common cancels.
+    // The common part of both cancels.
     Affine difference;
     difference.slopes = scratch_[0];
     addAffine(forms_[node.a], forms_[node.b], -1.0, difference);

@@ -1,4 +1,4 @@
-// Evaluates a program for all inputs of a box: intervals, and affine forms where these are wanted.
+// Evaluates a program for all inputs of a box: by intervals, and by affine forms where they are requested.
 #pragma once
 
 #include "verify/affine.h"
@@ -27,7 +27,7 @@ public:
     // `box` has an interval for each input of the program.
     void run(std::span<const Interval> box, bool withAffineForms);
 
-    // Adds what is known of a node for the boxes to come, until forget().
+    // Adds known bounds of a node for the boxes to come, until forget().
     void know(NodeId node, const Interval& range);
     void forget() {
         known_.clear();
@@ -39,7 +39,8 @@ public:
     const std::vector<Finding>& findings() const {
         return findings_;
     }
-    // How much the node changes over the box with one input alone, as far as forms are known; 0 otherwise.
+    // Returns by how much the node changes over the box with one input alone, as far as forms are known; 0
+    // otherwise.
     double change(NodeId node, std::size_t input) const;
 
 private:

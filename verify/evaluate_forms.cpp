@@ -18,7 +18,7 @@ void BoxEvaluator::evaluateForm(NodeId id) {
         form.isValid = false;
         return;
     }
-    // A form that knows less than the interval is a burden for what follows.
+    // A form that is wider than the interval only makes later operations worse.
     if (!form.isValid || form.error > 0.5 * values_[id].width()) {
         form.set(values_[id]);
     }
@@ -33,7 +33,7 @@ void BoxEvaluator::joinForm(const Affine& other, bool isFirst, Affine& result) {
         result.isValid = false;
         return;
     }
-    // The mean of both, and half of what lies between them.
+    // The mean of both, and half of the distance between them.
     double between = std::abs(result.center - other.center);
     for (std::size_t d = 0; d < result.slopes.size(); ++d) {
         between += std::abs(result.slopes[d] - other.slopes[d]);

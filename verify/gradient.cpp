@@ -6,7 +6,8 @@
 namespace glint::verify {
 namespace {
 
-// More than the roundoff of any format that gradients are taken in, and than what the doubles here round.
+// A bound above the roundoff of every format in which gradients are taken, and above the error of the doubles
+// here.
 constexpr double kRounding = 0x1p-20;
 
 double productOf(double a, double b) {

@@ -1,10 +1,9 @@
-// How a value depends on the inputs over a box: enclosures of its partial derivatives. Where one has a
-// constant sign, the value's bounds lie at an end of that input.
+// Encloses the partial derivatives of a value by the inputs over a box. Where one has a constant sign, the
+// value's bounds lie at an end of that input.
 //
-// Floats are no smooth functions, but each operation is a smooth one times 1 + rho, where |rho| is the
-// rounding's bound. The derivatives are enclosed for all rho. So the greatest value over the box, whatever is
-// rounded how, is at most the greatest value at the end, whatever is rounded how there, which is what
-// intervals enclose.
+// Floats are no smooth functions, but each operation is a smooth one times 1 + rho, where |rho| is at most
+// the rounding error. The derivatives are enclosed for all rho. So the greatest value over the box, for any
+// rounding, is at most the greatest value at the end, for any rounding there. Intervals enclose that value.
 #pragma once
 
 #include "verify/evaluate.h"

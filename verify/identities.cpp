@@ -14,9 +14,9 @@ constexpr std::size_t kMostProducts = 600;
 constexpr std::size_t kMostFactors = 14;
 constexpr std::size_t kMostVariables = 3;
 constexpr std::size_t kMostCoefficients = 128;  // of a Bernstein form
-// Coefficients are floats or results of them, so that a rest of this size is what rounding left.
+// Coefficients are floats or results of them, so a rest of this size is a rounding error.
 constexpr double kRest = 1e-5;
-// More than all operations on a coefficient round, relative to its terms.
+// A bound above the rounding errors of all operations on a coefficient, relative to its terms.
 constexpr double kCoefficientSlack = 0x1p-40;
 
 Interval timesReal(const Interval& a, const Interval& b) {
@@ -98,7 +98,7 @@ std::optional<Identities::Polynomial> Identities::product(const Polynomial& a, c
     return result;
 }
 
-// Whether a term of one operand takes away one of the other.
+// Returns whether a term of one operand cancels a term of the other.
 bool Identities::cancels(const Polynomial& sum, const Polynomial& a, const Polynomial& b) {
     return std::any_of(a.begin(), a.end(), [&](const auto& term) {
         const auto other = b.find(term.first);
@@ -112,7 +112,7 @@ const Identities::Polynomial* Identities::termsOf(NodeId id) const {
     return expansion ? &expansion->terms : nullptr;
 }
 
-// The polynomial of an operation's operands; nothing for what is no sum or product.
+// Returns the polynomial of an operation's operands; no value for a node that is no sum or product.
 std::optional<Identities::Polynomial> Identities::expansionOf(const Node& node) const {
     const auto of = [&](NodeId id) -> Polynomial {
         const NodeId bare = bareOf(id);

@@ -1,7 +1,7 @@
 // Sums whose terms cancel: x + (1 - x). A program's values are expanded as polynomials of those values that
 // are no sums or products; where terms cancel, the polynomial bounds the value better than its operands do.
 // The polynomials are about real numbers. Those of few variables are bounded by their Bernstein coefficients
-// (Cargo and Shisha 1966, "The Bernstein form of a polynomial"). What rounding adds is bounded operation by
+// (Cargo and Shisha 1966, "The Bernstein form of a polynomial"). The rounding errors are bounded operation by
 // operation for each box.
 #pragma once
 
@@ -21,7 +21,8 @@ public:
 
     // Must be called before the first bound() for another box.
     void forgetBox();
-    // Encloses the value of a node, given the values of those before it. Everything where nothing cancels.
+    // Encloses the value of a node, given the values of those before it. The interval is everything where
+    // nothing cancels.
     Interval bound(NodeId id, std::span<const Interval> values);
 
 private:
@@ -29,7 +30,7 @@ private:
     using Monomial = std::vector<NodeId>;
     struct Coefficient {
         double value = 0.0;
-        double weight = 0.0;  // of the terms that were added up: bounds what the doubles have rounded
+        double weight = 0.0;  // of the terms that were added up: bounds the rounding error of the doubles
     };
     using Polynomial = std::map<Monomial, Coefficient>;
     // A multiple of a divisor that was cancelled: monomial × divisor / divisor.
@@ -65,7 +66,7 @@ private:
     Interval valueOf(const Monomial& monomial, NodeId before, std::span<const Interval> values) const;
 
     const Program& program_;
-    std::vector<std::optional<Expansion>> expansions_;  // nothing for what stays one factor
+    std::vector<std::optional<Expansion>> expansions_;  // no value for a node that stays one factor
     // The last node that has a node's value and knows more of it.
     std::map<NodeId, NodeId> refined_;
     std::vector<double> errors_;  // of the box; negative: not computed yet

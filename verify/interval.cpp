@@ -6,8 +6,8 @@
 namespace glint::verify {
 namespace {
 
-// Doubles have 53 bits, so products of two floats are exact, and what a sum, a quotient or a root rounds is
-// known exactly by one more operation.
+// Doubles have 53 bits, so products of two floats are exact, and one more operation gives the exact rounding
+// error of a sum, a quotient or a root.
 
 double divideDown(double a, double b) {
     const double quotient = a / b;
@@ -29,7 +29,7 @@ double rootUp(double a) {
     return std::isfinite(root) && std::fma(-root, root, a) > 0.0 ? nextAbove(root) : root;
 }
 
-// A bound of what glibc's functions of doubles are off, and four times that.
+// A bound of the error of glibc's functions of doubles, and four times that.
 constexpr double kLibraryError = 0x1p-50;
 
 double lessLibraryError(double x) {
@@ -49,8 +49,8 @@ bool hasInfinity(const Interval& a) {
     return !a.isFinite();
 }
 
-// Whether one of the points offset + k period lies in the interval. Near its ends the answer may be yes by
-// mistake.
+// Returns whether one of the points offset + k period lies in the interval. Near its ends the answer may
+// wrongly be yes.
 bool meetsPeriod(const Interval& a, double offset, double period) {
     const double slack = 1e-14 * (a.magnitude() + std::abs(offset) + period);
     const double first = std::ceil((a.low - slack - offset) / period);

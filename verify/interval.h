@@ -1,7 +1,7 @@
-// Interval arithmetic that encloses what a shader computes: the exact result of each operation for all
-// arguments in the given intervals, and what rounding makes of it. Glint has a type of its own, because
-// libraries of intervals enclose real numbers, and a proof about floats needs the rounding of each operation
-// with the error bound of the function that computes it.
+// Interval arithmetic that encloses the results of a shader: the exact result of each operation for all
+// arguments in the given intervals, and its rounded value. Glint has a type of its own, because libraries of
+// intervals enclose real numbers, and a proof about floats needs the rounding of each operation with the
+// error bound of the function that computes it.
 #pragma once
 
 #include "verify/rounding.h"
@@ -11,8 +11,8 @@
 
 namespace glint::verify {
 
-// All numbers from low to high; an infinite end belongs to it. Ends are numbers of the format of what made
-// them.
+// All numbers from low to high; an infinite end belongs to it. Ends are numbers of the format of the
+// operation that made them.
 struct Interval {
     double low = -kInfinity;
     double high = kInfinity;
@@ -66,7 +66,7 @@ inline Interval meet(const Interval& a, const Interval& b) {
     return {std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 
-// What can go wrong in an operation. Each is a bit.
+// The ways in which an operation can fail. Each is a bit.
 enum class Hazard : std::uint16_t {
     None = 0,
     DivisionByZero = 1 << 0,

@@ -1,5 +1,5 @@
-// A shader's function as a list of operations on scalars, without loops and branches: what symbolic execution
-// makes of its SPIR-V (spirv_program.h). Intervals (evaluate.h) and floats (concrete.h) are evaluated along
+// A shader's function as a list of operations on scalars, without loops and branches. Symbolic execution
+// makes it from the SPIR-V (symbolic.h). Intervals (evaluate.h) and floats (concrete.h) are evaluated along
 // the list.
 #pragma once
 
@@ -46,7 +46,7 @@ enum class Op : std::uint8_t {
     SplitLow,
     ProductError,
     SumError,
-    // What is known of sums as a whole.
+    // Bounds of sums as a whole.
     CircleSum,     // c = (a cos t)² + (b sin t)², which lies between a² and b²
     SquareOfRoot,  // b = √(a)², which is a but for rounding
     Bounded,       // a, where |a| <= √b: a dot product and the product of the squared lengths
@@ -99,14 +99,14 @@ struct Node {
     Function function = Function::Sqrt;  // of Apply
     Relation relation = Relation::Less;  // of Refine
     bool isSigned = false;               // of integers
-    bool isAuxiliary = false;            // the shader does not have it; what fails in it does not matter
+    bool isAuxiliary = false;            // the shader does not have it; its failures do not matter
     NodeId a = kNoNode;
     NodeId b = kNoNode;
     NodeId c = kNoNode;
     // The operation takes place where this truth value is true. kNoNode: always.
     NodeId guard = kNoNode;
-    // What a Constant is, the number of an Input, or the length below which UnitQuotient, UnitSum and
-    // PartOfUnit divide vectors by this instead.
+    // The value of a Constant, the number of an Input, or the length below which UnitQuotient, UnitSum and
+    // PartOfUnit divide vectors by it instead.
     double value = 0.0;
     std::uint32_t first = 0;  // of Merge: its edges
     std::uint32_t count = 0;

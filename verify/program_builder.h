@@ -19,16 +19,16 @@ public:
     NodeId truth(bool value) {
         return constant(value ? 1.0 : 0.0, Format::Integer);
     }
-    // Makes an operation under the current guard. Of `given`, op, format, operands and what belongs to the
-    // operation count.
+    // Makes an operation under the current guard. It uses the op, the format, the operands and the
+    // operation's own members of `given`.
     NodeId make(Node given);
     NodeId make(Op op, Format format, NodeId a, NodeId b = kNoNode, NodeId c = kNoNode);
-    // Makes a node of another program, whose operands are of this one. What is known of it is kept.
+    // Makes a node of another program, whose operands are of this one. Keeps its known bounds.
     NodeId remake(const Node& node);
     NodeId apply(Function function, Format format, NodeId a);
     NodeId refine(NodeId a, Relation relation, NodeId b);
-    // A dot product, which is no larger than the product of the lengths: `sum`, or what is known to be the
-    // same.
+    // A dot product, which is no larger than the product of the lengths: `sum`, or an equal node that is
+    // known.
     NodeId boundedDot(NodeId sum, const std::vector<NodeId>& a, const std::vector<NodeId>& b);
     NodeId merge(const std::vector<Edge>& edges);
     NodeId both(NodeId a, NodeId b);    // a and b; kNoNode is true
@@ -108,14 +108,14 @@ private:
     NodeId unitPart(const Node& node, NodeId part, NodeId length2, double leastLength);
     NodeId unitQuotient(const Node& node);
     NodeId squaredRadius(const Node& node);
-    // Whether `product` is `part` times a factor.
+    // Returns whether `product` is `part` times a factor.
     bool factorOf(NodeId product, NodeId part, NodeId& factor);
-    // √((1 - z)(1 + z)) times a factor.
+    // Returns whether the node is √((1 - z)(1 + z)) times a factor.
     bool isSineOf(NodeId id, NodeId& cosine, NodeId& factor);
     NodeId folded(const Node& node);
-    // Whether what is computed under `outer` is known under the current guard.
+    // Returns whether a value that is computed under `outer` is known under the current guard.
     bool covers(NodeId outer) const;
-    // The operation that the shader has.
+    // Returns the operation that the shader has.
     NodeId plainOf(NodeId id) const;
     bool isHighOf(NodeId high, NodeId of) const;
     bool isLowOf(NodeId low, NodeId of) const;

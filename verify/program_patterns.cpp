@@ -1,4 +1,4 @@
-// Sequences of operations with a known meaning, of which a program knows more than of each operation.
+// Sequences of operations with a known meaning, which have tighter bounds than their single operations.
 #include "verify/concrete.h"
 #include "verify/program_builder.h"
 
@@ -247,7 +247,7 @@ NodeId ProgramBuilder::quotientOfLess(const Node& given) {
     return make(Op::Share, given.format, quotient, given.a, rest);
 }
 
-// max(1 - x, 0) is 1 - min(x, 1), and min(1 - x, 1) is 1 - max(x, 0), to the bit; and min comes after max.
+// max(1 - x, 0) is 1 - min(x, 1), and min(1 - x, 1) is 1 - max(x, 0), bit-exact. min comes after max.
 NodeId ProgramBuilder::limited(const Node& given) {
     if (given.format != Format::Single) {
         return kNoNode;
@@ -276,7 +276,7 @@ NodeId ProgramBuilder::limited(const Node& given) {
 
 namespace {
 
-// What is longer is no share that anybody wrote.
+// Longer products and sums are no shares that anybody wrote.
 constexpr std::size_t kMostTermsOfShares = 16;
 constexpr std::size_t kMostFactorsOfShares = 6;
 constexpr int kMostDepth = 10;
@@ -325,7 +325,7 @@ bool ProgramBuilder::isSumWith(NodeId id, const std::vector<NodeId>& parts, int 
            (isSumWith(at.a, parts, depth - 1) || isSumWith(at.b, parts, depth - 1));
 }
 
-// The sum's terms, each a sorted list of factors. What contains none of the parts stays one factor.
+// The sum's terms, each a sorted list of factors. A factor that contains none of the parts stays whole.
 bool ProgramBuilder::termsOf(NodeId id, const std::vector<NodeId>& parts, std::vector<Factors>& terms,
                              int depth) const {
     const NodeId bare = withoutRefinement(id);
@@ -441,8 +441,8 @@ NodeId ProgramBuilder::sumOfShares(const Node& given) {
     return shareOf(appendOnce(given), std::move(own), first->second.divisor);
 }
 
-// Moves an operation into the two sides of a choice of which one is a constant: c ? 0 : x, times y; or the
-// sum of two choices by the same condition.
+// Moves an operation into the two sides of a choice with a constant side: c ? 0 : x, times y; or the sum of
+// two choices by the same condition.
 NodeId ProgramBuilder::intoChoice(const Node& given) {
     for (const auto& [choice, other] : {std::pair(given.a, given.b), std::pair(given.b, given.a)}) {
         const Node chosen = node(choice);

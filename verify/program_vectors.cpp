@@ -1,5 +1,5 @@
-// What is known of the components of vectors: normalised, mirrored, on a circle or a sphere; their products
-// and sums.
+// Bounds for components of vectors: normalised, mirrored, on a circle or a sphere; and for their products and
+// sums.
 #include "verify/program_builder.h"
 
 #include <algorithm>

@@ -27,7 +27,7 @@ struct FeatureProofOutcome {
     FeatureProofState state = FeatureProofState::Unsupported;
     double undecidedShare = 1.0;  // of the volume of all inputs
     std::uint64_t boxes = 0;
-    std::string message{};  // what is wrong, what can't be excluded, or what is not supported
+    std::string message{};  // the failure, the undecided operation, or the unsupported one
     std::string place{};    // the inputs for which it is
 };
 

@@ -31,7 +31,8 @@ double toSingle(double value) {
     return static_cast<double>(static_cast<float>(value));
 }
 
-// Where a side is cut: the greatest float of the lower half. The upper half begins with the next float.
+// Returns the place where a side is cut: the greatest float of the lower half. The upper half begins with the
+// next float.
 std::optional<double> cutOf(const Interval& side, Scale scale) {
     if (scale == Scale::Whole || side.isPoint()) {
         return std::nullopt;
@@ -113,7 +114,7 @@ private:
 
 double Search::pointIn(const Interval& side, Scale scale) {
     const double share = static_cast<double>(random_() >> 11U) * 0x1p-53;
-    // The ends are where functions fail.
+    // Functions fail at the ends.
     if (share < 0.1) {
         return side.low;
     }
@@ -168,7 +169,7 @@ std::string Search::describeFinding(const Finding& finding) const {
     return text;
 }
 
-// Returns what the bounds can't exclude, and the node that is to blame; empty if nothing.
+// Returns the failures that the bounds can't exclude, and the node that causes them; empty if there are none.
 std::string Search::failureOf(NodeId& blamed) const {
     if (!boxes_.findings().empty()) {
         const Finding& finding = boxes_.findings().front();
@@ -194,8 +195,8 @@ bool Search::holds(Box& box, bool withForms) {
     return box.why.empty();
 }
 
-// Narrows what is known of the node to blame, by the ends of the inputs in which it is monotone. Returns
-// whether that gave anything.
+// Narrows the bounds of the blamed node, by the ends of the inputs in which it is monotone. Returns whether
+// that gave anything.
 bool Search::learnFromGradient(const Box& box) {
     const NodeId target = blamed_;
     if (target == kNoNode || !gradient_.run(boxes_, target, box.sides.size())) {
@@ -276,7 +277,8 @@ std::vector<bool> Search::inputsOf(NodeId target) const {
     return inputs;
 }
 
-// The side whose halves have the narrowest bound of what is to blame; a large side where that says nothing.
+// Returns the side whose halves have the narrowest bound of the blamed node, or a large side if the bounds
+// are equal.
 std::optional<std::size_t> Search::sideToCut(const Box& box) {
     const NodeId target = blamed_;
     const double width = target == kNoNode ? kInfinity : boxes_.value(target).width();

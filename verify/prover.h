@@ -36,7 +36,7 @@ struct OutputRange {
 struct Claim {
     std::vector<InputRange> inputs;
     std::vector<OutputRange> outputs;
-    // If set, the domain is where this further output, which comes after the others, is above 0.
+    // If set, there is a further output after the others, and the domain is where it is above 0.
     bool hasCondition = false;
 };
 
@@ -60,7 +60,7 @@ struct ProofResult {
     double undecidedShare = 1.0;  // of the domain's volume, in the scales of its inputs
     std::uint64_t boxes = 0;
     std::optional<Counterexample> counterexample;
-    // What fails in the largest box that is not decided, as far as the bounds know.
+    // The failure in the largest undecided box, as far as the bounds show it.
     std::vector<Interval> undecidedBox;
     std::string undecidedWhy;
 };

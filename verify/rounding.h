@@ -37,7 +37,7 @@ inline double nextAbove(double x) {
     return -nextBelow(-x);
 }
 
-// A sum rounded down, or up; what rounding takes from it is known exactly (Knuth 1969).
+// A sum rounded down, or up; its rounding error is known exactly (Knuth 1969).
 inline double addDown(double a, double b) {
     const double sum = a + b;
     if (!std::isfinite(sum)) {

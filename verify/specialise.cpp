@@ -30,7 +30,7 @@ private:
     NodeId madeOf(NodeId id) const {
         return id == kNoNode ? kNoNode : made_[id];
     }
-    // Whether the node is never computed.
+    // Returns whether the node is never computed.
     bool isDead(NodeId id) const {
         return values_.value(id).isEmpty();
     }
@@ -47,7 +47,8 @@ private:
             return builder_.input(static_cast<std::uint32_t>(node.value), node.format);
         }
         const Interval& value = values_.value(id);
-        // Truth values that are the same over the domain. Nothing needs the value of what is never computed.
+        // Truth values that are the same over the domain. Nothing needs the value of a node that is never
+        // computed.
         const bool isTruth = node.op == Op::Less || node.op == Op::LessEqual || node.op == Op::Equal ||
                              node.op == Op::And || node.op == Op::Or || node.op == Op::Not;
         if (isDead(id) || (isTruth && value.isPoint())) {

@@ -1,5 +1,5 @@
-// What is left of a program over a domain: without the branches that no input of it takes, and with one value
-// where a choice always chooses the same. Patterns (program_patterns.cpp) that a choice hid are found then.
+// Specialises a program for a domain: removes the branches that no input of the domain takes, and replaces
+// choices that always choose the same side. Then finds the patterns (program_patterns.cpp) that a choice hid.
 #pragma once
 
 #include "verify/program.h"

@@ -123,7 +123,7 @@ bool ModuleReader::readType(const SpirvInstruction& instruction) {
     return true;
 }
 
-// Whether an instruction has a type and a result, for those that the module may hold.
+// Finds whether an instruction has a type and a result, for the instructions that the module may hold.
 void shapeOf(std::uint32_t opcode, bool& hasType, bool& hasResult) {
     hasType = true;
     hasResult = true;

@@ -1,4 +1,4 @@
-// A SPIR-V module as types, constants and functions of blocks: what symbolic execution reads.
+// A SPIR-V module as symbolic execution reads it: types, constants and functions of blocks.
 #pragma once
 
 #include <glint/result.h>
@@ -31,7 +31,7 @@ struct SpirvType {
     Kind kind = Kind::Other;
     std::uint32_t width = 0;  // bits of a scalar
     bool isSigned = false;
-    SpirvId element = 0;      // of vectors, matrices, arrays; what a pointer points to
+    SpirvId element = 0;      // of vectors, matrices, arrays; the target of a pointer
     std::uint32_t count = 0;  // of elements
     std::vector<SpirvId> members;
     std::uint32_t scalars = 0;  // in the whole type; a pointer counts as one

@@ -247,7 +247,7 @@ Status Executor::leave(Frame& frame, const SpirvBlock& block, SpirvId target, Sy
     return okStatus();
 }
 
-// What a loop has computed may be used after it, and each way out of the loop has its own values.
+// Code after a loop may use the loop's values, and each exit of the loop has its own.
 void Executor::keepLoopValues(const Frame& frame, const SpirvBlock& next, IncomingEdge& edge) {
     for (const SpirvBlock& header : frame.function.blocks) {
         if (!header.isLoop || header.merge != next.label) {

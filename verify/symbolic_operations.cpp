@@ -357,7 +357,7 @@ NodeId SymbolicOperations::bitcast(const Scalar& to, NodeId a) {
     return a;
 }
 
-// Returns kNoNode for an operation that is not known.
+// Returns kNoNode for an unknown operation.
 NodeId SymbolicOperations::elementwise(const SpirvOperation& operation, const Scalar& result,
                                        const std::vector<NodeId>& x) {
     const auto simple = [&](Op op) { return make(op, result, x[0], x.size() > 1 ? x[1] : kNoNode); };
@@ -429,7 +429,7 @@ NodeId SymbolicOperations::elementwise(const SpirvOperation& operation, const Sc
         case spv::OpSelect:
             return make(Op::Select, result, x[0], x[1], x[2]);
         case spv::OpIsNan:
-            // What is not a number has been found where it was made.
+            // The operation that makes a NaN has already been reported.
             return builder_.truth(false);
         case spv::OpIsInf:
             return builder_.make(Op::Less, Format::Integer, builder_.constant(kLargestSingle, Format::Single),

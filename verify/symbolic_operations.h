@@ -18,7 +18,7 @@ public:
     SymbolicValue constantOf(SpirvId id) const;
     std::vector<NodeId> zeroOf(SpirvId type);
 
-    // How many of the operands are values; the others are literals.
+    // Returns how many of the operands are values; the others are literals.
     std::size_t idOperands(const SpirvOperation& operation) const;
     // Error "prove-unsupported".
     Result<SymbolicValue> apply(const SpirvOperation& operation, const std::vector<SymbolicValue>& operands);

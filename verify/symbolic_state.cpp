@@ -42,7 +42,7 @@ void learnComparison(ProgramBuilder& builder, SymbolicState& state, const Node& 
     narrow(builder, state, b, learned.ofB, a);
 }
 
-// Whether `a` is "p and c" and `b` is "p and not c"; sets c.
+// Returns whether `a` is "p and c" and `b` is "p and not c"; sets c.
 bool areOpposite(const ProgramBuilder& builder, NodeId a, NodeId b, NodeId& condition) {
     if (a == kNoNode || b == kNoNode) {
         return false;

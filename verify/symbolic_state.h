@@ -1,4 +1,4 @@
-// What symbolic execution knows at a point of a function.
+// The state of symbolic execution at a point of a function.
 #pragma once
 
 #include "verify/program_builder.h"
@@ -37,7 +37,7 @@ using Memory = std::shared_ptr<const std::vector<NodeId>>;
 struct SymbolicState {
     NodeId guard = kNoNode;
     std::map<std::uint32_t, Memory> memories;
-    std::map<NodeId, NodeId> refined;  // what a branch knows more of a value
+    std::map<NodeId, NodeId> refined;  // values with tighter bounds from a branch
 
     NodeId resolve(NodeId node) const {
         for (auto found = refined.find(node); found != refined.end(); found = refined.find(node)) {

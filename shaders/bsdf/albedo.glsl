@@ -1,6 +1,6 @@
-// Directional albedos in closed form: what a lobe reflects of a uniform white sky. Constants and bounds come from
-// benchmarks/fit_directional_albedo.py, which checks them in single precision against quadrature. The fits err on the high
-// side, so that the terms that take the rest add no light.
+// Directional albedos in closed form: the share of a uniform white sky that a lobe reflects. Constants and bounds come
+// from benchmarks/fit_directional_albedo.py, which checks them in single precision against quadrature. The fits err on
+// the high side, so that the terms that take the rest add no light.
 #include "bsdf/constants.glsl"
 
 // The share that white microfacets lose by single scattering: ggxAlbedo().x.

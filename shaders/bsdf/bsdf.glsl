@@ -1,5 +1,5 @@
-// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers over a
-// base that is part metal, part dielectric. A lobe that no key of the case has leaves no code.
+// The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers over a base that
+// is part metal, part dielectric. A lobe leaves no code if no key of the case has it.
 //
 // Appendix B.1 mixes two BRDFs: mix(dielectric, metal, metallic). Both have the same microfacets. A key with
 // GLINT_PARTIAL_METAL has both bases; in any other key the base is all metal or all dielectric.
@@ -39,7 +39,7 @@ struct Bsdf {
     float meanBias;
 };
 
-// Returns what both bases together have of a quantity that is known of each.
+// Returns a quantity of both bases together, given that of each.
 GLINT_RELAXED vec3 withMetal(Bsdf b, Features features, GLINT_RELAXED vec3 dielectric, GLINT_RELAXED vec3 metal) {
     return hasInput(features, GLINT_PARTIAL_METAL) ? mix(dielectric, metal, b.metallic) : dielectric;
 }
@@ -56,7 +56,7 @@ GLINT_RELAXED vec3 multiScatterOf(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90
     return mean * mean * (1.0 - loss) / (vec3(1.0) - mean * loss);
 }
 
-// The same for both bases together. A bounce between facets of the same base is not linear in its reflectance.
+// Returns the same for both bases together. A bounce between facets of the same base is not linear in its reflectance.
 GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b, Features features) {
     return withMetal(b, features, multiScatterOf(b.f0, b.f90, b.meanLoss), multiScatterOf(b.metalF0, 1.0, b.meanLoss));
 }
@@ -67,13 +67,13 @@ GLINT_RELAXED vec3 singleScatterAlbedo(Bsdf b, Features features, GLINT_RELAXED 
     return withMetal(b, features, dielectric, b.metalF0 * (1.0 - loss - bias) + vec3(bias));
 }
 
-// The share that they reflect in all. With energy compensation this includes the later bounces.
+// The share that the microfacets reflect in all. With energy compensation this includes the later bounces.
 GLINT_RELAXED vec3 specularAlbedo(Bsdf b, Features features, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 single = singleScatterAlbedo(b, features, loss, bias);
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b, features) * loss : single;
 }
 
-// What of the light that single scattering loses passes the dielectric's microfacets in the end: 1 -
+// The share of the light that single scattering loses and that passes the dielectric's microfacets in the end: 1 -
 // multiScatterFresnel(), or all of it without compensation.
 GLINT_RELAXED vec3 passedAgain(Bsdf b) {
     if (GLINT_ENERGY_COMPENSATION == 0) {
@@ -87,15 +87,16 @@ GLINT_RELAXED vec3 passedAgain(Bsdf b) {
     return rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
 }
 
-// What the microfacets of the dielectric do not reflect: 1 - specularAlbedo() without metal. It is a sum of positive
-// terms; the difference would lose its digits where nearly all light is reflected.
+// The share that the microfacets of the dielectric do not reflect: 1 - specularAlbedo() without metal. It is a sum of
+// positive terms; the difference would lose its digits where nearly all light is reflected.
 GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
     GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
     GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
     return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + passedAgain(b) * loss;
 }
 
-// The part of it that a white lobe lets through at the first bounce: the albedo of thinTransmission() with Fresnel.
+// The part of specularPassed() that a white lobe lets through at the first bounce: the albedo of thinTransmission()
+// with Fresnel.
 GLINT_RELAXED float passedOnce(Bsdf b) {
     return (1.0 - largest(b.f0)) * (1.0 - b.viewLoss - b.viewBias) + (1.0 - b.f90) * b.viewBias;
 }
@@ -140,23 +141,24 @@ bool seenFromWithin(Bsdf b, Features features) {
     return hasLobe(features, GLINT_VOLUME) && b.eta.y < 1.0 && refracts(b.eta.y);
 }
 
-// Returns whether what the facets of a volume block leaves along their own directions all the same, as the walk of
-// refracted rays has it: mirrored at the plane if these point to its other side. Then an interface loses nothing. The
-// albedo of a lobe that bends, by which its light could be divided instead, is not known in closed form.
+// Returns whether light that the facets of a volume block still leaves along their own directions, as in the walk of
+// refracted rays: mirrored at the plane if these point to its other side. Then an interface loses nothing. The albedo
+// of a lobe that bends, by which its light could be divided instead, is not known in closed form.
 bool keepsBlocked(Bsdf b, Features features, float eta) {
     return GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_VOLUME) && !passesStraight(features, eta);
 }
 
 // The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is reciprocal, and the
-// whole reflects at most what comes in: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF
-// Model" (2001). Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5. l.z > 0; light on
-// the far side is mirrored.
+// whole gains no energy: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model" (2001).
+// Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5. l.z > 0; light on the far side
+// is mirrored.
 GLINT_RELAXED float diffuseShare(Bsdf b, Features features, vec3 l, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
         if (keepsBlocked(b, features, b.eta.y)) {
             return 0.0;  // The facets take all: volumeBsdf() removes the diffuse lobes from within.
         }
-        // E does not include total reflection, so this uses what the smooth interface lets through, in both directions.
+        // E does not include total reflection, so this uses the light that the smooth interface lets through, in both
+        // directions.
         vec2 view2 = exactSquare(vec2(b.view.z, 0.0));
         vec2 light2 = exactSquare(vec2(l.z, 0.0));
         return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
@@ -193,7 +195,7 @@ Facet facetBetween(Bsdf b, Features features, vec3 l) {
     return facet;
 }
 
-// Returns whether a thin wall lets through what its facets block, in a lobe of its own.
+// Returns whether a thin wall lets light that its facets block through in a lobe of its own.
 bool scattersPassage(Features features) {
     return GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_TRANSMISSION) && !hasLobe(features, GLINT_VOLUME);
 }
@@ -208,7 +210,7 @@ float facetDensity(Bsdf b, vec3 l) {
     return h.z > 0.0 && dot(b.view, h) < size ? mirroredPdf(b.view, h, b.alpha) : 0.0;
 }
 
-// What the facets of a volume's surface reflect to l within it, where l may be below the plane.
+// Light that the facets of a volume's surface reflect to l within it, where l may be below the plane.
 vec3 facetReflection(Bsdf b, vec3 l) {
     return fresnelInterface(b.f0, b.f90, halfCosine2(b.view, l), b.eta.y) * facetDensity(b, l);
 }
@@ -265,7 +267,8 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
     return lobe * passed;
 }
 
-// What a volume's facets pass from outside in all, over what they pass at the first bounce if none blocks another.
+// All light that a volume's facets pass from outside, over the light that they pass at the first bounce if none blocks
+// another.
 GLINT_RELAXED float passedShare(Bsdf b) {
     // The mean of (1 - v·h)^5 over visible facets: over those whose reflection leaves it is the bias, and those whose
     // reflection is blocked have about this cosine. Facets block each other by their slopes towards the view.
@@ -278,8 +281,7 @@ GLINT_RELAXED float passedShare(Bsdf b) {
     return max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0) / max(1.0 - reflected, 1e-3);
 }
 
-// The density with which visible facets bend the view to l, for the index of one channel, times what they let through.
-// l may be on either side.
+// The density with which visible facets bend the view to l, for the index of one channel, times their transmittance.
 float bentLight(Bsdf b, vec3 l, float eta) {
     RefractingFacet facet;
     if (!refractionHalfVector(b.view, l, eta, facet)) {
@@ -290,7 +292,7 @@ float bentLight(Bsdf b, vec3 l, float eta) {
     return passed * visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL;
 }
 
-// specularTransmission() with what a volume's facets block.
+// specularTransmission() with the light that a volume's facets block.
 float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
     return keepsBlocked(b, features, eta) ? bentLight(b, l, eta) + bentLight(b, vec3(l.xy, -l.z), eta)
                                           : specularTransmission(b, features, l, eta);
@@ -323,8 +325,8 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
 
 #if GLINT_SHARED_LIGHTS
 
-// Returns π times what the diffuse lobes of the base send from l to the view, through the layers above it. It is what
-// evaluateBsdf() has of them: rays that share the light with samples must bring the same.
+// Returns π times the light that the diffuse lobes of the base send from l to the view, through the layers above it. It
+// is their part of evaluateBsdf(): rays that share the light with samples must bring the same.
 vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
     vec3 base = vec3(0.0);
     if (l.z > 0.0) {
@@ -334,7 +336,7 @@ vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
         GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
         base = b.diffuseTransmitted * diffuseShare(b, features, vec3(l.xy, -l.z), fresnel);
     }
-    // Without their own reflection; that of mirrors would cost the digits of the difference.
+    // The layers count without their own reflection. That of mirrors would cost the digits of the difference.
     b.layers.counted = noLayerShares();
     return addLayersAbove(b.layers, features, b.view, l, l.z, base) -
            addLayersAbove(b.layers, features, b.view, l, l.z, vec3(0.0));
@@ -342,7 +344,7 @@ vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
 
 #endif
 
-// Returns what the base reflects or transmits, times |n·l|, without the layers above it.
+// Returns the light that the base reflects or transmits, times |n·l|, without the layers above it.
 vec3 evaluateBase(Bsdf b, Features features, vec3 l) {
     if (l.z > 0.0) {
         return baseReflection(b, features, l);

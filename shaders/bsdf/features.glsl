@@ -24,8 +24,7 @@ bool inputOfKey(Features features, uint bit) {
 }
 
 // The features that all cases of the module have, and those that any has. A module that defines them before it includes
-// this file compiles several times faster, because what is decided for the whole module is removed before functions are
-// inlined.
+// this file compiles several times faster, because code of decided features is removed before functions are inlined.
 #ifndef GLINT_MODULE_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_LOBES 0u
 #define GLINT_MODULE_ALWAYS_INPUTS 0u
@@ -33,8 +32,8 @@ bool inputOfKey(Features features, uint bit) {
 #define GLINT_MODULE_ANY_INPUTS 0xFFFFFFFFu
 #endif
 
-// Every module also evaluates what emissive lights emit, whichever case they belong to. So nothing is decided for a
-// module as a whole that is not decided for them.
+// Every module also evaluates the emission of emissive lights, whichever case they belong to. So nothing is decided for
+// a module as a whole that is not decided for them.
 #if GLINT_EMISSIVE_LIGHTS
 #define GLINT_DECIDED_ALWAYS_LOBES GLINT_EMITTER_ALWAYS_LOBES
 #define GLINT_DECIDED_ALWAYS_INPUTS GLINT_EMITTER_ALWAYS_INPUTS
@@ -54,7 +53,7 @@ bool inputOfKey(Features features, uint bit) {
     ((GLINT_MODULE_ALWAYS_INPUTS & GLINT_DECIDED_ALWAYS_INPUTS & (bit)) != 0u ||                                \
      (((GLINT_MODULE_ANY_INPUTS | GLINT_DECIDED_ANY_INPUTS) & (bit)) != 0u && inputOfKey(features, bit)))
 
-// Whether the base sends light to the far side.
+// Returns whether the base sends light to the far side.
 bool transmits(Features features) {
     return hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
 }
@@ -64,7 +63,7 @@ bool transmits(Features features) {
     Features(GLINT_ALWAYS_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES, GLINT_SOMETIMES_INPUTS,            \
              (geometry).featureLobes, (geometry).featureInputs)
 
-// The same for what rays hit, with the lobes that hits keep: for code before the switch.
+// Returns the features of a hit of a ray, with the lobes that hits keep: for code before the switch.
 #define GLINT_HIT_FEATURES(geometry)                                                                            \
     Features(GLINT_HIT_ALWAYS_LOBES, GLINT_HIT_ALWAYS_INPUTS, GLINT_HIT_SOMETIMES_LOBES,                        \
              GLINT_HIT_SOMETIMES_INPUTS, (geometry).featureLobes, (geometry).featureInputs)

@@ -38,7 +38,7 @@ GLINT_RELAXED vec3 fresnelSchlick(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90
     return f0 + (vec3(f90) - f0) * schlickWeight(cosine);
 }
 
-// The same for an interface of relative index eta = n_t / n_i, from the squared cosine and its error. If light leaves
+// Fresnel for an interface of relative index eta = n_t / n_i, from the squared cosine and its error. If light leaves
 // the denser side, Schlick's cosine is that of the transmitted angle (van der Burg 1999, "Schlick's approximation").
 // Beyond the critical angle all light is reflected, whatever f90 is.
 GLINT_RELAXED vec3 fresnelInterface(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, vec2 cosine2, float eta) {
@@ -55,7 +55,7 @@ GLINT_RELAXED float schlickPassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90
     return (1.0 - largest(f0)) * schlickRest(cosine) + (1.0 - f90) * schlickWeight(cosine);
 }
 
-// The same for an interface: 1 - largest(fresnelInterface()).
+// The same share for an interface: 1 - largest(fresnelInterface()).
 GLINT_RELAXED float interfacePassed(GLINT_RELAXED vec3 f0, GLINT_RELAXED float f90, vec2 cosine2, float eta) {
     if (eta >= 1.0) {
         return schlickPassed(f0, f90, sqrt(cosine2.x));

@@ -1,5 +1,5 @@
-// What a layer over the base gives. A feature with the stage "layer" has a struct of its own name, here Coat, and these
-// functions, which take the prepared view and directions in the frame of the base:
+// The interface of a layer over the base. A feature with the stage "layer" has a struct of its own name, here Coat, and
+// these functions, which take the prepared view and directions in the frame of the base:
 //
 //   void coatPrepare(inout Coat layer, vec3 view)             what depends on the view alone
 //   LayerAlbedo coatShares(Coat layer, vec3 view)             what it does with a uniform white sky

@@ -95,16 +95,16 @@ float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
     return keepsBlocked(b, features, eta) ? pdf + bendingPdf(b, features, vec3(l.xy, -l.z), eta) : pdf;
 }
 
-// facetDensity() for what baseReflection() has above the plane: the half vector counts as rounding leaves it. At grazing
-// angles that may be nothing of it. Then the density is as wrong as the lobe, and their quotient is still a share of
-// light. A density of 0 would let the few samples of a weak lobe bring the whole peak.
+// facetDensity() for the lobe that baseReflection() has above the plane. The half vector counts with its rounding
+// error, which may be all of it at grazing angles. Then the density is as wrong as the lobe, and their quotient is
+// still a share of light. A density of 0 would let the few samples of a weak lobe bring the whole peak.
 float densityAbove(Bsdf b, vec3 l) {
     vec3 sum = b.view + l;
     return mirroredPdf(b.view, sum / max(sqrt(dot(sum, sum)), 1e-12), b.alpha);
 }
 
-// The density of the microfacets' reflections, of which `facets` is that of the facets: of a direction above the plane,
-// or below it.
+// The density of the microfacets' reflections in a direction above or below the plane. `facets` is the density of the
+// facets.
 float reflectedPdf(Bsdf b, Features features, vec3 l, float facets) {
     vec2 facet2 = halfCosine2(b.view, l);
     float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;

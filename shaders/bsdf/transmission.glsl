@@ -6,7 +6,7 @@
 // the microfacets are.
 const float kMinIndexStep = 1e-4;
 
-// Red, green and blue have indices of their own (KHR_materials_dispersion). What is computed for each is in a loop, so
+// Red, green and blue have indices of their own (KHR_materials_dispersion). Values of each are computed in a loop, so
 // that shaders that decide about dispersion at run time have its code once.
 float channelOf(vec3 v, int channel) {
     return channel == 0 ? v.x : channel == 1 ? v.y : v.z;

@@ -1,5 +1,5 @@
 // The sky's light on a surface, for the part that no rays bring. In packages whose sky is a light (--sky-light),
-// samples of the sky bring most of that part, and leave only what they would hardly find.
+// samples of the sky bring most of that part, and leave only light that they would hardly find.
 #include "bsdf/ggx.glsl"
 #include "host/sky.glsl"
 #include "effects/sky_shares.glsl"
@@ -53,7 +53,7 @@ SkyShares ambientShares(Surface surface, Features features, SkyShares sky) {
     return sky;
 }
 
-// Returns the shares of `shares` that samples of the sky bring, of which `sky` is what no ray brings.
+// Returns the part of `shares` that samples of the sky bring, where `sky` is the share that no ray brings.
 SkyShares sampledShares(Surface surface, Features features, SkyShares shares, SkyShares sky) {
     SkyShares ambient = ambientShares(surface, features, sky);
     shares.mirrored -= ambient.mirrored;
@@ -70,11 +70,11 @@ vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELA
     GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss,
                                                    surface.bsdf.viewBias);
 #if GLINT_SKY_LIGHT
-    // Samples of the sky bring what bounces between microfacets.
+    // Samples of the sky bring the light that bounces between microfacets.
     all = first;
 #endif
     if (hasLobe(features, GLINT_ANISOTROPY)) {
-        // Later bounces have nearly forgotten where the view was.
+        // Later bounces have nearly forgotten the view.
         vec3 again = (all - first) * hostSkyIrradianceOverPi(surface.normal);
         return mirrored > 0.0 ? again + first * mirrored * skyAroundLobe(surface) : again;
     }

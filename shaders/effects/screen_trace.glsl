@@ -47,9 +47,9 @@ vec3 normalOf(vec4 position) {
     return octahedralDecode(unpackSnorm2x16(floatBitsToUint(position.w)));
 }
 
-// Returns whether the surface of a pixel hides the point: the surface is nearer, and the point is behind its plane too.
-// The depth is that of the pixel's centre, while the point may be anywhere in the pixel. By depth alone a ray would hit
-// the floor that it leaves.
+// Returns whether the surface of a pixel hides the point: the surface is nearer, and the point is also behind its
+// plane. The depth is that of the pixel's centre, while the point may be anywhere in the pixel. By depth alone a ray
+// would hit the floor that it leaves.
 bool isHidden(ScreenPoint point, ivec2 place) {
     float seen = seenDepth(place);
     if (seen == 0.0 || point.depth < seen) {
@@ -95,9 +95,9 @@ ScreenMarch hitBetween(ScreenRay ray, vec3 origin, vec3 direction, float free, f
     return ScreenMarch(thick && crossed && point.place != insideImage(ray.begin), point.place, 0.0);
 }
 
-// Ends at the first surface that hides the ray, whether it is a hit or not, because anything may be behind it. If the
-// steps look at every pixel of the line, the returned distance is that of the last clear point but one, which is a
-// pixel before anything that the line may meet next. Otherwise it is 0.
+// Ends at the first surface that hides the ray, even if it is no hit, because anything may be behind it. If the steps
+// look at every pixel of the line, the returned distance is that of the last clear point but one, which is a pixel
+// before anything that the line may meet next. Otherwise it is 0.
 ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     ScreenRay ray = screenRay(toClip(vec4(origin, 1.0)), toClip(vec4(direction, 0.0)),
                               vec2(GLINT_FRAME.width, GLINT_FRAME.height), kFarDistance);
@@ -134,8 +134,8 @@ ScreenMarch marchScreen(vec3 origin, vec3 direction) {
     return result;
 }
 
-// The light that the surface of a pixel sends to the ray: its light as the camera sees it, with the sky for what it
-// reflects, as in hits of rays.
+// The light that the surface of a pixel sends to the ray: its light as the camera sees it, with the sky in its
+// reflection, as in hits of rays.
 vec3 screenRadiance(ivec2 place, vec3 direction) {
     vec3 normal = normalOf(imageLoad(positionImage, place));
     uint target = sampleTarget(GLINT_SLOT_REFLECTION, uint(place.x) + uint(place.y) * GLINT_FRAME.width);

@@ -1,6 +1,6 @@
 // Accumulates the samples of a pixel into one value.
 
-// The mean of the samples so far is mean + residual; the residual holds what the rounding of `mean` left out.
+// The mean of the samples so far is mean + residual; the residual holds the rounding error of `mean`.
 struct RunningMean {
     vec3 mean;
     vec3 residual;

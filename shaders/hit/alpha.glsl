@@ -4,7 +4,7 @@
 
 #if GLINT_BLENDED
 
-// What tells a ray from other rays, whichever strategy and tracer sends it.
+// Returns a number that distinguishes rays, whichever strategy and tracer sends them.
 uint rayKey(vec3 origin, vec3 direction) {
     uvec3 a = floatBitsToUint(origin);
     uvec3 b = floatBitsToUint(direction);

@@ -1,6 +1,6 @@
-// Stochastic transparency (Enderton, Sintorn, Shirley and Luebke 2010): what meets a surface of alphaMode BLEND stops
-// there with the probability alpha, and does not see it otherwise. The mean over samples is what the operator "over"
-// gives for surfaces in the order of depth (glTF 2.0, section 3.9.4), so nothing needs sorting.
+// Stochastic transparency (Enderton, Sintorn, Shirley and Luebke 2010): a ray or pixel that meets a surface of
+// alphaMode BLEND stops there with the probability alpha, and otherwise does not see it. The mean over samples is the
+// result of the operator "over" for surfaces in the order of depth (glTF 2.0, section 3.9.4), so nothing needs sorting.
 #include "host/random.glsl"
 
 #if GLINT_BLENDED

@@ -1,4 +1,4 @@
-// Counts what effects do. Each count has kCounterCopies counters, and adjacent workgroups add to different ones,
+// Counts the work of effects. Each count has kCounterCopies counters, and adjacent workgroups add to different ones,
 // because a GPU executes atomics on one address one after the other. The host sums them up.
 //
 // Compute shaders use one atomic for each subgroup, and all of its threads must call. Ray generation shaders, which may

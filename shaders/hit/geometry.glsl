@@ -69,7 +69,7 @@ vec3 edgeInset(vec3 weights, vec3 edge1, vec3 edge2, float least) {
     if (!(sum > 0.0)) {
         return vec3(0.0);
     }
-    // The corner with the largest weight gives what the others get.
+    // The largest weight is reduced by as much as the other two get.
     bool first = weights.x >= weights.y && weights.x >= weights.z;
     bool second = !first && weights.y >= weights.z;
     precise float step1 = missing.y - (second ? sum : 0.0);

@@ -1,4 +1,4 @@
-// From what a traversal says about a hit to its GeometryRecord.
+// Finds the GeometryRecord of a hit from the numbers that a traversal gives.
 #include "hit/bindings.glsl"
 
 // Returns the number of the record. Glint's own instances have the number of their first record as custom index; the
@@ -13,7 +13,7 @@ uint geometryOfHit(int instance, int customIndex, int geometry) {
     return uint(customIndex + geometry);
 }
 
-// Instances that share no bit with it are not hit.
+// Rays do not hit instances that share no bit with this mask.
 #if GLINT_STEPS
 #define GLINT_RAY_MASK GLINT_FRAME.rayMask
 #else

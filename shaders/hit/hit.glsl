@@ -67,8 +67,8 @@ vec3 trianglePosition(HostGeometry geometry, uint primitive, vec2 barycentrics) 
                           p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
 }
 
-// The corners of a triangle in its mesh's space, with the numbers of their vertices. These may have several forms, and
-// code that reads them is long, so it stands here once.
+// The corners of a triangle in its mesh's space, with the numbers of their vertices. Positions may have several forms,
+// and the code that reads them is long, so it stands here once.
 struct TriangleCorners {
     uvec3 vertices;
     vec3 corners[3];
@@ -184,7 +184,7 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
     return hit;
 }
 
-// The same for the triangle that was hit, whose corners a module may know already.
+// Does the same for the triangle that was hit, whose corners a module may know already.
 Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
              uint target, Features features) {
     TriangleCorners triangle;

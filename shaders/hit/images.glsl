@@ -8,7 +8,7 @@ layout(set = kSetFrame, binding = kBindingAccumulated, rgba32f) uniform image2D 
 layout(set = kSetFrame, binding = kBindingResidual, rgba32f) uniform image2D residualImage;
 layout(set = kSetFrame, binding = kBindingPosition, rgba32f) uniform image2D positionImage;
 
-// Returns what the images of light can hold of a value. One that is not a number stays that.
+// Returns a value as the images of light can hold it. NaN stays NaN.
 vec4 storable(vec4 value) {
     if ((GLINT_FRAME.accumulates & kPictureIsHalf) != 0u) {
         value = mix(value, vec4(kMostHalf), greaterThan(value, vec4(kMostHalf)));

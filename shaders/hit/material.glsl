@@ -1,14 +1,14 @@
 // Makes a Surface of a hit and its material, by the stages of the material's features.
 #include "generated/material_stages.glsl"
 
-// Returns what the material says about the surface at coordinates that are already changed.
+// Returns the material's values of the surface at coordinates that are already changed.
 SurfaceValues valuesAt(Hit hit, Features features) {
     SurfaceValues values = SurfaceValues(vec4(1.0), 1.0, 1.0, vec3(0.04), 1.0, hit.normal, 1.0, 1.0);
     runSurfaceStage(hit, features, values);
     return values;
 }
 
-// Returns what the material says about the surface.
+// Returns the material's values of the surface.
 SurfaceValues surfaceValues(Hit hit, Features features) {
     changeCoordinates(hit, features);
     return valuesAt(hit, features);
@@ -59,7 +59,7 @@ Surface evaluateSurface(Hit hit, Features features) {
     return surfaceWith(hit, features, valuesAt(hit, features));
 }
 
-// Returns the surface of any key. One that is unlit has a colour alone, which is the emission. Shaders of both kinds of
+// Returns the surface of any key. An unlit surface has a colour alone, which is the emission. Shaders of both kinds of
 // keys have the code of the stage "surface" only once in this way.
 Surface evaluateAny(Hit hit, Features features) {
     changeCoordinates(hit, features);

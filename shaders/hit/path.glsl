@@ -1,8 +1,8 @@
-// Paths of several bounces: what a hit knows of the ray that found it, and how the path goes on. The state of each
-// sample's path lies in memory from one bounce to the next.
+// Paths of several bounces: the data of a hit about the ray that found it, and the next ray of the path. The state of
+// each sample's path lies in memory from one bounce to the next.
 #include "hit/bindings.glsl"
 
-// What a hit knows of its path.
+// The data of a hit about its path.
 struct PathArrival {
     vec3 start;         // of the ray that found the hit
     vec3 throughput;    // at the start of that ray
@@ -42,7 +42,7 @@ PathStep endOfPath() {
     return step;
 }
 
-// Whether hits of this bounce send further rays. Primary surfaces send those of the effects instead.
+// Returns whether hits of this bounce send further rays. Primary surfaces send those of the effects instead.
 bool pathGoesOn() {
     return GLINT_FRAME.bounce > 0u && GLINT_FRAME.bounce < GLINT_FRAME.lastBounce;
 }

@@ -15,11 +15,11 @@
 const uint kPairPathDirection = 6u;
 const uint kPairPathLobe = 7u;
 
-// The most that a cone grows in a metre at a bounce: see kIndirectSpread of the effect indirect diffuse.
+// The largest growth of a cone in a metre at a bounce: see kIndirectSpread of the effect indirect diffuse.
 const float kMostPathSpread = 0.125;
 
-// The share of the light at a hit that arrives at the primary surface. The walk of a refracted ray counts what its own
-// last part absorbs.
+// The share of the light at a hit that arrives at the primary surface. The walk of a refracted ray counts the
+// absorption of its own last part.
 vec3 arrivingShare(PathArrival arrival, vec3 position) {
     vec3 share = arrival.throughput;
 #ifdef GLINT_RECORD_ABSORPTION
@@ -37,8 +37,8 @@ Media mediaOfStep(Hit hit, Features features, bool passes) {
 }
 
 #if GLINT_SHADOW_GLASS
-// Returns whether the light that arrives through the hit is light that the surface which sent the ray has sampled. Then
-// the ray keeps its share.
+// Returns whether the surface that sent the ray has sampled the light that arrives through the hit. Then the ray keeps
+// its share.
 bool seesSkyFromBefore(Hit hit, Features features, bool passes) {
     return isWithinGlass(hit, features) || (passes && hasLobe(features, GLINT_TRANSMISSION));
 }
@@ -78,7 +78,7 @@ PathStep nextStep(Hit hit, Surface surface, Features features, BsdfSample drawn,
     step.receiver = receiverNormal(hit, features);
 #if GLINT_SHADOW_GLASS
     if (seesSkyFromBefore(hit, features, passes)) {
-        // A ray whose place no sample could have taken brings all that is behind the glass.
+        // A ray brings all light behind the glass if no sample could have taken its place.
         float before = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)].density;
         step.density = before > 0.0 ? -1.0 : before;
     }

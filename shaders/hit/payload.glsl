@@ -2,8 +2,8 @@
 #include "generated/scene.glsl"
 #include "light/passage.glsl"
 
-// The payload of rays that are shaded elsewhere, 20 bytes. A shadow ray reads only the first member, and in packages
-// that have it the last one: then the payload has 56 bytes.
+// The payload of rays that are shaded elsewhere, 20 bytes. A shadow ray reads only the first member and, in packages
+// that have it, the last one. The payload then has 56 bytes.
 struct TracePayload {
     uint geometry;  // kMissGeometry if nothing was hit
     uint primitive;

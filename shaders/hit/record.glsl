@@ -18,13 +18,13 @@ float unpackConeWidth(uint code) {
 
 #if GLINT_HITS_IN_SAMPLES
 
-// What includes this file also includes hit/samples.glsl, which has these.
+// A file that includes this one also includes hit/samples.glsl, which has these functions.
 uint samplePlace(uint target);
 void putHit(uint place, HitRecord hit);
 HitRecord packedHit(uint place);
 uint packedHitGeometry(uint place);
 
-// Takes the place of the ray's start.
+// Stores the hit in the place of the ray's start.
 void storeHit(uint index, HitRecord hit) {
     putHit(samplePlace(GLINT_FRAME.listed.data[index]), hit);
 }
@@ -33,7 +33,7 @@ HitRecord storedHit(uint index) {
     return packedHit(samplePlace(GLINT_FRAME.listed.data[index]));
 }
 
-// Returns the geometry of a stored hit, or kMissGeometry, or after its light is stored a geometry that there is not.
+// Returns the geometry of a stored hit, or kMissGeometry, or, after its light is stored, a number of no geometry.
 uint storedGeometry(uint index) {
     return packedHitGeometry(samplePlace(GLINT_FRAME.listed.data[index]));
 }
@@ -78,8 +78,8 @@ uint storedGeometry(uint index) {
 
 #endif
 
-// Returns the bucket of what a ray hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes
-// to the misses; their pass shows it in an error colour and counts it.
+// Returns the bucket of a ray's hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to
+// the misses; their pass shows it in an error colour and counts it.
 uint bucketOfGeometry(uint geometry) {
     if (geometry == kMissGeometry) {
         return 0u;

@@ -1,4 +1,4 @@
-// The samples of effects in memory: what primary surfaces send, and the light that comes back.
+// The samples of effects in memory: the rays of primary surfaces, and the light that comes back.
 #include "hit/bindings.glsl"
 #include "packed/hit_codes.glsl"
 #if GLINT_PATHS
@@ -8,14 +8,14 @@
 #include "generated/tallies.glsl"
 #endif
 
-// Whether light has an array of its own, because the rest of a sample is still needed, or because it is a host's.
+// 1 if light has an array of its own, because the rest of a sample is still needed, or because it is a host's.
 #if GLINT_PATHS || GLINT_STEPS
 #define GLINT_RADIANCE_APART 1
 #else
 #define GLINT_RADIANCE_APART 0
 #endif
 
-// A ray that a primary surface sends for an effect, and the weight of what it finds.
+// A ray that a primary surface sends for an effect, and the weight of the light that it finds.
 struct EffectSample {
     vec3 origin;
     uint outcome;      // kRaySent, or why there is no ray
@@ -66,7 +66,7 @@ void storeSampleRay(uint place, EffectSample drawn) {
 #if GLINT_LAYER_BOUNCES
 const uint kLayerBounces = GLINT_LAYER_BOUNCES;
 
-// Adds light to what the bounce at hand brings.
+// Adds light to that of the bounce at hand.
 void addToBounce(uint place, vec3 light) {
     uint bounce = clamp(GLINT_FRAME.bounce, 1u, kLayerBounces) - 1u;
     GLINT_FRAME.bounceLight.data[place * kLayerBounces + bounce].light += light;
@@ -108,7 +108,7 @@ void storeSample(uint target, EffectSample drawn) {
 #endif
 }
 
-// Returns whether a sample sends a ray, or why not. Before light is stored.
+// Returns whether a sample sends a ray, or why not. It must be called before light is stored.
 uint sampleOutcome(uint target) {
 #if GLINT_SAMPLE_RECORD_PACKED
     return packedOutcome(samplePlace(target));
@@ -117,7 +117,7 @@ uint sampleOutcome(uint target) {
 #endif
 }
 
-// Returns a sample that sends a ray, before light is stored.
+// Returns a sample that sends a ray. It must be called before light is stored.
 EffectSample storedSample(uint target) {
     uint place = samplePlace(target);
 #if GLINT_SAMPLE_RECORD_PACKED
@@ -159,7 +159,7 @@ RayRecord listedRay(uint index) {
 #endif
 }
 
-// Returns the direction of a sample that sends a ray, before light is stored.
+// Returns the direction of a sample that sends a ray. It must be called before light is stored.
 vec3 sampleDirection(uint target) {
     uint place = samplePlace(target);
 #if GLINT_SAMPLE_RECORD_PACKED
@@ -194,7 +194,7 @@ RayRecord shadedRay(uint index) {
 #endif
 
 #if GLINT_EMISSIVE_LIGHTS
-// How the ray of a sample was chosen, for what it finds on emissive lights.
+// Stores how the ray of a sample was chosen, for emissive lights that it finds.
 void storeLobeRay(uint target, float density, uint normal) {
     GLINT_FRAME.lobeRays.data[samplePlace(target)] = LobeRay(density, normal);
 }

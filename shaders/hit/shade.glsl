@@ -16,7 +16,7 @@ vec3 unshadowedLight(Hit hit, Surface surface, Features features, LightSample li
 
 #if GLINT_SHARED_LIGHTS
 
-// Whether a ray of the path follows from the hit, which finds shared lights, too.
+// Returns whether a ray of the path follows from the hit. It finds shared lights, too.
 bool sendsRay() {
 #if GLINT_PATHS
     return pathGoesOn();
@@ -25,7 +25,7 @@ bool sendsRay() {
 #endif
 }
 
-// Leaves the lobes on which samples of the light bring its light. `sky` is what no ray of an effect brings.
+// Leaves the lobes on which samples of the light bring its light. `sky` is the share that no ray of an effect brings.
 void keepSampledLobes(Hit hit, Features features, uint emitter, SkyShares sky, inout Surface surface) {
     // An effect that follows the transmitted light finds shared lights itself.
     surface.bsdf.transmitted *= sky.transmitted;
@@ -45,7 +45,7 @@ void keepSampledLobes(Hit hit, Features features, uint emitter, SkyShares sky, i
 }
 
 // The irradiance of a sample of a shared light at the hit of a ray, without its shadow, on the lobes that `lit` keeps.
-// Where no ray follows, this sample counts alone. `part` is what of its light it counts for.
+// Where no ray follows, this sample counts alone. `part` is the share of its light that it counts for.
 vec3 irradianceOfShared(Hit hit, Features features, DrawnLight light, SkyShares sky, inout Surface lit,
                         out float part) {
     part = 1.0;
@@ -74,7 +74,7 @@ vec3 irradianceOfShared(Hit hit, Features features, DrawnLight light, SkyShares 
     return light.aim.distance > 0.0 ? light.aim.irradiance / density : vec3(0.0);
 }
 
-// What its shadow ray sees: as much as a ray of the path, or what rays to other lights see.
+// Returns the surfaces that its shadow ray sees: as for a ray of the path, or as for rays to other lights.
 uint seenTowardsShared(Hit hit, Features features, uint emitter, vec3 direction, float part) {
     if (passesAsLight(emitter)) {
         return kShadowOfLight;
@@ -101,8 +101,9 @@ vec3 countedEmission(Hit hit, Surface surface) {
     return surface.emission;
 }
 
-// The irradiance of another light. Where shadow rays pass glass, the surface that sent the ray has had the light of such
-// lights behind this glass on the straight line, with all that happens within: it would count twice.
+// The irradiance of another light. Where shadow rays pass glass, the surface that sent the ray has had the light of
+// such lights behind this glass on the straight line, with all that happens within the glass, and this light would
+// count twice.
 vec3 irradianceOf(Hit hit, Features features, DrawnLight light, inout Surface lit) {
 #if GLINT_SHADOW_GLASS
     if (hasLobe(features, GLINT_TRANSMISSION)) {
@@ -117,8 +118,8 @@ vec3 irradianceOf(Hit hit, Features features, DrawnLight light, inout Surface li
 
 #if GLINT_SIZED_LIGHTS && GLINT_PATHS
 
-// Returns whether samples alone bring the light from a side of the surface: with --shadow-through glass, what passes
-// glass, which the surface that sent the ray has sampled (irradianceOf()).
+// Returns whether samples alone bring the light from a side of the surface: with --shadow-through glass, the light
+// through glass that the surface which sent the ray has sampled (irradianceOf()).
 bool isSampledAlone(Hit hit, Features features, bool passes) {
 #if GLINT_SHADOW_GLASS
     return hasLobe(features, GLINT_TRANSMISSION) && (passes || isWithinGlass(hit, features));
@@ -132,7 +133,7 @@ bool isSampledAlone(Hit hit, Features features, bool passes) {
 #if GLINT_SIZED_LIGHTS
 
 // The part of its light that the sample of a light counts for, on the lobes that `lit` keeps. The direction of the path
-// brings the rest, and the walk of a refracted ray has found what passes the surface at which it ended.
+// brings the rest, and the walk of a refracted ray has found the light through the surface at which it ended.
 float partOfSample(Hit hit, Surface surface, Features features, DrawnLight light, SkyShares sky, inout Surface lit) {
     if (light.density <= 0.0) {
         return 1.0;
@@ -265,7 +266,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
 }
 
 // The shares of the ambient light where no ray follows the hit. Where shadow rays to the sky pass glass, those of the
-// surface that sent the ray have brought a part of what is behind this glass.
+// surface that sent the ray have brought a part of the light behind this glass.
 SkyShares ambientOfHit(Hit hit, SkyShares sky) {
 #if GLINT_SKY_LIGHT && GLINT_SHADOW_GLASS
     sky.transmitted *= storedSkyShare(hit.target);
@@ -337,7 +338,7 @@ ShadeResult shadeAlone(Hit hit, Features features) {
 
 #if GLINT_PATHS
 
-// Returns what of that light arrives at the primary surface.
+// Returns the part of that light that arrives at the primary surface.
 ShadeResult shade(Hit hit, Features features) {
     vec3 arriving = arrivingShare(hit.arrival, hit.position);
     if (isWithin(hit.arrival.media) && !hit.frontFace && !showsBack(features)) {

@@ -16,7 +16,7 @@ struct SurfacePoint {
 #endif
 };
 
-// Fetches what `features` may need: attributes that they read alone. The features may be of any key.
+// Fetches the attributes that `features` may need and that only they read. The features may be of any key.
 SurfacePoint surfacePoint(HostGeometry geometry, uint primitive, vec2 barycentrics, Features features) {
     uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
                          hostVertex(geometry, 3u * primitive + 2u));

@@ -1,4 +1,4 @@
-// What a material says about a surface: what the stage "surface" of the features sets, before a BSDF is made of it.
+// The material's values of a surface: the stage "surface" of the features sets them, before a BSDF is made of them.
 #include "hit/surface.glsl"
 #include "hit/texture.glsl"
 
@@ -13,7 +13,7 @@ struct SurfaceValues {
     GLINT_RELAXED float dielectric; // share of the light below the microfacets that no feature has taken yet
 };
 
-// Whether a hit may show the back of the surface: rays within a volume meet its surface from there.
+// Returns whether a hit may show the back of the surface: rays within a volume meet its surface from there.
 bool showsBack(Features features) {
 #if GLINT_PATHS
     return hasInput(features, GLINT_DOUBLE_SIDED) || hasLobe(features, GLINT_VOLUME);
@@ -23,7 +23,7 @@ bool showsBack(Features features) {
 }
 
 // Returns whether the hit is on the inside of glass. Where shadow rays pass glass, those of the surface that sent the
-// ray have passed this glass on the straight line, with all that happens within.
+// ray have passed this glass on the straight line, with all that happens within the glass.
 bool isWithinGlass(Hit hit, Features features) {
     return hasLobe(features, GLINT_TRANSMISSION) && hasLobe(features, GLINT_VOLUME) && showsBack(features) &&
            !hit.frontFace;

@@ -10,7 +10,7 @@
 #include "generated/tallies.glsl"
 #endif
 
-// What a ray meets first.
+// The first surface that a ray meets.
 struct TracedHit {
     uint geometry;  // kMissGeometry if it leaves the scene
     uint primitive;
@@ -92,8 +92,8 @@ TracedHit traceRay(RayRecord ray, uint flags) {
     return tracedHit(ray, found);
 }
 
-// Returns whether nothing stands in the way, seen from either side. What light keeps on its way from a light is for
-// lightArrives() (light/ray.glsl).
+// Returns whether nothing stands in the way, seen from either side. lightArrives() (light/ray.glsl) instead returns the
+// share of a light that arrives.
 bool isVisible(vec3 origin, vec3 direction, float distance) {
     GLINT_TALLY_RAYS(1u);
     rayQueryEXT query;
@@ -104,7 +104,7 @@ bool isVisible(vec3 origin, vec3 direction, float distance) {
 }
 
 #if GLINT_SHARED_LIGHTS
-// The same for what sees other surfaces (kShadow*).
+// Does the same for rays that see other surfaces (kShadow*).
 bool isVisibleTo(uint sees, vec3 origin, vec3 direction, float distance) {
     GLINT_TALLY_RAYS(1u);
     uint culled = sees == kShadowOfShared ? gl_RayFlagsCullBackFacingTrianglesEXT : 0u;

@@ -2,7 +2,7 @@
 #include "hit/geometry.glsl"
 #include "host/resources.glsl"
 
-// What the host knows of the geometry that was hit. Glint reads its members shaderId, materialIndex, featureLobes,
+// The host's data about the geometry that was hit. Glint reads its members shaderId, materialIndex, featureLobes,
 // featureInputs and flags, as GeometryRecord describes them, and hands it back to the functions below.
 #define HostGeometry GeometryRecord
 
@@ -11,7 +11,7 @@ HostGeometry hostGeometry(uint geometry) {
     return GLINT_FRAME.geometries.data[geometry];
 }
 
-// The same member of hostGeometry(), for what orders hits and needs nothing else.
+// Returns the same member as hostGeometry(), for passes that order hits and need nothing else.
 uint hostShaderId(uint geometry) {
     return GLINT_FRAME.geometries.data[geometry].shaderId;
 }
@@ -21,7 +21,7 @@ InstanceRecord hostInstance(HostGeometry geometry) {
 }
 
 #if GLINT_ANSWERS_SURFACE
-// The instance as it was in the frame before, for the motion of its points.
+// The instance of the previous frame, for the motion of its points.
 InstanceRecord hostPreviousInstance(HostGeometry geometry) {
     return GLINT_FRAME.previousInstances.data[geometry.instanceIndex];
 }
@@ -36,7 +36,7 @@ uint hostVertex(HostGeometry geometry, uint corner) {
     return geometry.indices.data[corner];
 }
 
-// Attributes are read in the form that their flag says.
+// Attributes are read in the form of their flag.
 
 // Three coordinates of 16 bits behind their range. Products and sums are rounded as on the host, so that the position
 // is that of the acceleration structure.
@@ -52,7 +52,7 @@ vec3 packedPosition(UintArray words, uint vertex) {
     return position;
 }
 
-// In the mesh's space. Counter-clockwise corners show the front.
+// Returns the position in the mesh's space. Counter-clockwise corners show the front.
 vec3 hostPosition(HostGeometry geometry, uint vertex) {
     if ((geometry.flags & kGeometryPackedPositions) != 0u) {
         return packedPosition(UintArray(geometry.positions), vertex);
@@ -60,7 +60,7 @@ vec3 hostPosition(HostGeometry geometry, uint vertex) {
     return geometry.positions.data[vertex];
 }
 
-// The following are asked for only if featureInputs says that the geometry has them.
+// The following are called only if featureInputs says that the geometry has them.
 
 // A unit vector in the mesh's space.
 vec3 hostNormal(HostGeometry geometry, uint vertex) {
@@ -112,8 +112,8 @@ vec4 hostColor(HostGeometry geometry, uint vertex) {
     return geometry.colors.data[vertex];
 }
 
-// One number of a vertex's attributes that packs declare: `channel` counts over all of them, of which a vertex has
-// `stride` (Package::attributes()).
+// One number of a vertex's attributes that packs declare. `channel` counts over all of them; a vertex has `stride`
+// numbers (Package::attributes()).
 float hostAttribute(HostGeometry geometry, uint vertex, uint channel, uint stride) {
     return geometry.attributes.data[stride * vertex + channel];
 }

@@ -1,6 +1,6 @@
 // Lights that a surface may see. The light at a point is the sum over all of them. Here they are the punctual lights of
-// Glint's scene and, in packages with emissive lights, the triangles that emit light; or with --lights K those without
-// bounds and K of the others, which a hierarchy chooses. In packages whose sky is a light, it is the last one.
+// Glint's scene and, in packages with emissive lights, the triangles that emit light; or, with --lights K, those
+// without bounds and K of the others, which a hierarchy chooses. In packages whose sky is a light, it is the last one.
 //
 // A host with many lights may return few: each stands for those that it was chosen from, at random, and its irradiance
 // is divided by the probability with which it was chosen. Then the mean of the sum is right, and so is the picture's.
@@ -84,7 +84,7 @@ HostLight lightOfEmitter(uint emitter, float chance) {
     return light;
 }
 
-// How many samples of an emissive triangle a surface expects to take: SceneLight::chance.
+// Returns how many samples of an emissive triangle a surface expects to take: SceneLight::chance.
 float emitterChance(LightReceiver receiver, uint emitter) {
     uint leaf = GLINT_FRAME.emitters.data[emitter].leaf;
 #if GLINT_LIGHT_SAMPLES > 0
@@ -129,7 +129,7 @@ HostLight hostLight(uint index, LightReceiver receiver, vec3 random) {
     float chance;
     uint chosen = lightOfTree(receiver, place, random.yz, chance);
 #if GLINT_EMISSIVE_LIGHTS
-    // Without light from any, it is an emitter with no chance, because there may be no other light.
+    // If no light reaches the surface, the result is an emitter with the chance 0, because there may be no other light.
     if ((chosen & kLightEmitter) != 0u || chance <= 0.0) {
         return lightOfEmitter(chosen & ~kLightEmitter, chance);
     }
@@ -167,14 +167,14 @@ LightSample hostSampleLight(HostLight light, vec3 position) {
     return sampleLight(GLINT_PUNCTUAL(light), position);
 }
 
-// Whether the light has a size. Its light then comes from random points of it, instead of its centre.
+// Returns whether the light has a size. Its light then comes from random points of it, instead of its centre.
 bool hostLightHasSize(HostLight light) {
     return GLINT_PUNCTUAL(light).size > 0.0;
 }
 
-// Samples a point of a light that has a size, by the solid angle that it fills. `centre` comes from hostSampleLight(),
-// and u is uniform in [0, 1)². The irradiance is that of a surface that faces the point, if all of the light were there.
-// The distance is 0 if the surface is within the light.
+// Samples a point of an area light, by the solid angle that it fills. `centre` comes from hostSampleLight(), and u is
+// uniform in [0, 1)². The irradiance is that of a surface that faces the point, if all of the light were there. The
+// distance is 0 if the surface is within the light.
 LightSample hostSampleLightPoint(HostLight light, LightSample centre, vec2 u) {
     return sampleLightArea(GLINT_PUNCTUAL(light), centre, u);
 }

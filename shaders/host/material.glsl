@@ -1,4 +1,4 @@
-// Where the records of materials are, and what these may follow.
+// The place of materials' records, and the time that these may follow.
 #include "host/resources.glsl"
 
 // Returns the address of the records. That of a geometry's material is at its materialIndex.

@@ -96,7 +96,7 @@ float hostSkyDensity(vec3 direction) {
                           skyCountOf(GLINT_FRAME.skyRows + row * GLINT_FRAME.skyColumns, column).y);
 }
 
-// `u` chooses the cell. Its numbers are multiples of 2^-24, as the counts are; `within` says what lies between them.
+// `u` chooses the cell. Its numbers are multiples of 2^-24, as the counts are; `within` chooses the place between them.
 SkySample hostSampleSky(vec2 u, vec2 within) {
     uvec2 number = uvec2(u * float(kSkyCounts));
     uint row = skyCellOf(0u, GLINT_FRAME.skyRows, number.x);
@@ -106,7 +106,7 @@ SkySample hostSampleSky(vec2 u, vec2 within) {
     uvec2 ofColumn = skyCountOf(first, column);
     precise vec2 part = min((vec2(number - uvec2(ofRow.x, ofColumn.x)) + within) / vec2(ofRow.y, ofColumn.y),
                             vec2(kBelowWhole));
-    // Uniform in sin²(θ/2), which keeps its digits at the pole.
+    // The place is uniform in sin²(θ/2), which keeps its digits at the pole.
     float half_ = kPi / (2.0 * float(GLINT_FRAME.skyRows));
     precise float above = sin(half_ * float(row));
     precise float below = sin(half_ * float(row + 1u));
@@ -142,8 +142,8 @@ vec3 hostSkyAround(vec3 direction, float roughness) {
 
 #if GLINT_SKY_LIGHT
 
-// The luminance (ITU-R BT.709) at horizon, zenith and ground. As much is added as makes every direction possible; it
-// makes a black sky uniform.
+// The luminance (ITU-R BT.709) at horizon, zenith and ground. A small amount is added, so that every direction is
+// possible and a black sky is uniform.
 vec3 skyWeights() {
     const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
     precise vec3 weights = vec3(dot(GLINT_FRAME.skyHorizon, kLuminance), dot(GLINT_FRAME.skyZenith, kLuminance),

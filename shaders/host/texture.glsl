@@ -51,8 +51,8 @@ vec3 hostTextureFilter(TextureRecord record) {
 }
 
 #ifdef GLINT_RASTER
-// In fragment shaders: the level that the derivatives of the screen choose, plus `bias`. The record is the same for the
-// whole draw.
+// For fragment shaders: uses the level that the derivatives of the screen choose, plus `bias`. The record is the same
+// for the whole draw.
 vec4 hostScreenTexture(TextureRecord record, vec2 uv, float bias) {
     return texture(sampler2D(sceneTextures[record.textureIndex], sceneSamplers[record.samplerIndex]), uv, bias);
 }

@@ -39,13 +39,14 @@ GLINT_CONSTANT(kNoHit, 0xFFFFFFFFu);
 // G-buffer: the geometry index of a pixel without a surface.
 GLINT_CONSTANT(kNoSurface, 0xFFFFFFFFu);
 
-// The number of what an effect sends from a primary surface: slot * width * height + x + y * width, where slot is that
-// of the effect among the package's effects that send rays. Samples, rays and random numbers go by this number. A frame
+// The number of an effect's sample of a primary surface: slot * width * height + x + y * width, where slot is that of
+// the effect among the package's effects that send rays. Samples, rays and random numbers go by this number. A frame
 // may be lit in bands of rows, one after the other, which share memory. The records of a sample then lie at its place
 // in its band (samplePlace() in hit/samples.glsl).
 
-// A sample of an effect is a ray and the weight of what it finds. Three records hold it, so that each pass reads what
-// it needs. The second and the third are written only if the ray is sent or the march in screen space may read them.
+// A sample of an effect is a ray and the weight of the light that it finds. Three records hold it, so that each pass
+// reads only the members that it needs. The second and the third are written only if the ray is sent or the march in
+// screen space may read them.
 
 // 16 bytes. In packages with paths of one bounce, light takes the place of the origin when the ray is shaded.
 struct SampleStart {
@@ -54,8 +55,8 @@ struct SampleStart {
 };
 GLINT_CONSTANT(kPathShift, 8u);
 GLINT_CONSTANT(kOutcomeMask, 0xFFu);
-// The same in the state of a packed record with light, which takes 24 bytes: a SampleStart, and a uvec2 in the place of
-// the other two (packed/sample.glsl).
+// These are the same bits in the state of a packed record with light, which takes 24 bytes: a SampleStart, and a uvec2
+// in the place of the other two (packed/sample.glsl).
 GLINT_CONSTANT(kPackedPathShift, 4u);
 GLINT_CONSTANT(kPackedPathMask, 0xFu);
 GLINT_CONSTANT(kPackedOutcomeMask, 0xFu);
@@ -81,14 +82,14 @@ struct RayRecord {
     float coneSpread;  // growth of the width in a metre
 };
 
-// How the path of a sample goes on. There is one for each sample, in packages with paths of several bounces. The next
-// ray takes the place of the last one in the sample's records. 20 bytes.
+// The state of a sample's path after a bounce. There is one for each sample, in packages with paths of several bounces.
+// The next ray takes the place of the last one in the sample's records. 20 bytes.
 struct PathState {
     vec3 throughput;  // factor of the radiance that the ray finds, since the primary surface
     uint media[2];    // volumes that the ray is in (materials/volume/media.glsl)
 };
 
-// What a ray hit. Its index is that of the ray in the list. 20 bytes.
+// The hit of a ray. Its index is that of the ray in the list. 20 bytes.
 struct HitRecord {
     uint geometry;   // GeometryRecord index, or kMissGeometry
     uint primitive;  // triangle within the geometry
@@ -97,7 +98,7 @@ struct HitRecord {
     float coneWidth;  // width of the ray cone at the hit, metres
 };
 
-// The same in 12 bytes. A miss has 0xFFFFFFFF in its first word, which no hit can have.
+// The same hit in 12 bytes. A miss has 0xFFFFFFFF in its first word, which no hit can have.
 struct PackedHitRecord {
     uint geometry24_coneLog8;  // top 8 bits: 8 log2 of the cone's width in metres over 2^-20, at most 254; 0 for no
                                // width
@@ -114,11 +115,11 @@ struct ShadowRecord {
     vec3 light;
     uint sees;       // kShadow*
 };
-// What stops a shadow ray.
+// The surfaces that stop a shadow ray.
 GLINT_CONSTANT(kShadowOfLight, 0u);     // either side of every surface
 GLINT_CONSTANT(kShadowOfShared, 1u);   // what stops a ray of a lobe that finds the light by chance
 GLINT_CONSTANT(kShadowOfSharedWithin, 2u);  // the same within a volume
-// As kShadowOfLight. If the light has passed glass, it is multiplied by the float in the other bits.
+// The light is as for kShadowOfLight. If the light has passed glass, it is multiplied by the float in the other bits.
 GLINT_CONSTANT(kShadowPastGlass, 3u);
 GLINT_CONSTANT(kShadowKind, 3u);  // the bits of these numbers
 
@@ -143,12 +144,12 @@ struct SurfaceRecord {
 GLINT_CONSTANT(kSurfaceMiss, 0xFFFFFFFFu);
 GLINT_CONSTANT(kSurfaceUnknown, 0xFFFFFFFEu);
 
-// The positions of a geometry in the frame before, in the form that GeometryRecord::flags says.
+// The positions of a geometry in the previous frame, in the form of GeometryRecord::flags.
 struct PreviousVertices {
     GLINT_ADDRESS(Vec3) positions;
 };
 
-// What the first ray of a sample hit, for layers. 32 bytes.
+// The hit of the first ray of a sample, for layers. 32 bytes.
 struct RayHit {
     uint geometry;   // as in HitRecord; kScreenGeometry if the end was found in screen space
     uint primitive;  // kScreenGeometry: the number of the pixel whose surface it is
@@ -157,7 +158,7 @@ struct RayHit {
     float distance;  // from the primary surface along the way, metres
 };
 
-// What one bounce of a sample's path brings, for layers. 16 bytes.
+// The light of one bounce of a sample's path, for layers. 16 bytes.
 struct BounceLight {
     vec3 light;      // as the radiance of the sample, of which it is a part
     float distance;  // of the bounce's ray, metres; 0: none
@@ -217,7 +218,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BounceLightA
 
 GLINT_INTEROP_BEGIN
 
-// Whether a surface sends a ray of an effect, or why it doesn't. These are also the first counts of an effect.
+// The outcome of a surface for an effect: a ray, or the reason why it sends none. These are also the first counts of an
+// effect.
 GLINT_CONSTANT(kRaySent, 0u);
 GLINT_CONSTANT(kRayNoSurface, 1u);  // the pixel shows the sky
 GLINT_CONSTANT(kRayUnlit, 2u);
@@ -345,7 +347,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
     GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays
     GLINT_ADDRESS(Counter) counters;         // kCounterCount
-    // For rays of a host's own:
+    // The members for rays of a host's own:
     GLINT_ADDRESS(Surface) surfaces;           // the answers, if they are surfaces
     GLINT_ADDRESS(Instance) previousInstances;  // transforms of the frame before
     GLINT_ADDRESS(Uint) firstRecords;           // see kRecordsBy*
@@ -354,13 +356,13 @@ struct FrameConstants {
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
     uint lightTreeNodes;   // nodes of the tree
     uint lightsApart;  // leaves after them
-    // In packages with paths of several bounces:
+    // The members for packages with paths of several bounces:
     GLINT_ADDRESS(Target) nextListed;  // the list of the next bounce
     GLINT_ADDRESS(Path) paths;         // of every sample, in the order of the samples
     uint bounce;      // of the hits that are being shaded, from 1; 0 on primary surfaces
     float bounceWeight;  // factor of what the rays bring that hits of this bounce send
     uint lastBounce;  // hits of this bounce send no further ray
-    // In packages with emissive lights:
+    // The members for packages with emissive lights:
     GLINT_ADDRESS(Emitter) emitters;
     GLINT_ADDRESS(Uint) firstEmitters;  // of every geometry: the emitter of its first triangle, or kNoEmitter
     GLINT_ADDRESS(LobeRay) lobeRays;    // of every sample, in the order of the samples
@@ -372,7 +374,7 @@ struct FrameConstants {
     uint bandFirst;     // the number of its first pixel
     uint outsideBands;  // pixels of the frame that samples of a band have no memory for
 #if GLINT_SKY_LIGHT_MEMBERS
-    // In packages whose sky is a light:
+    // The members for packages whose sky is a light:
     GLINT_ADDRESS(SkyShare) skyShares;  // of every sample, in the order of the samples: the share of the sky's light
                                         // that its ray brings if it leaves the scene
     GLINT_ADDRESS(Uint) skyCounts;      // the distribution of the environment map (runtime/src/sky/sky_counts.h)
@@ -380,7 +382,8 @@ struct FrameConstants {
     uint skyRows;
 #endif
 #if GLINT_LAYER_MEMBERS
-    // In packages with layers (glint/layers.h). `previousInstances` are those of the frame before here, too.
+    // The members for packages with layers (glint/layers.h). `previousInstances` are those of the previous frame here,
+    // too.
     vec4 previousView[4];  // the camera of the frame before, rows: clip x and y without jitter, the distance along its
                            // axis, clip w
     GLINT_ADDRESS(PreviousVertices) previousVertices;  // of every geometry, if hasPreviousVertices
@@ -388,7 +391,7 @@ struct FrameConstants {
     GLINT_ADDRESS(RayHit) rayHits;  // of every sample, in the order of the samples
     GLINT_ADDRESS(BounceLight) bounceLight;  // of every sample and bounce that has layers
 #if GLINT_LAYER_WALKS
-    // In packages that also find lights with a size:
+    // The members for packages that also find area lights:
     GLINT_ADDRESS(BounceLight) walkedLight;  // of every sample, in the order of the samples: what its walk has found,
                                              // as the viewer sees it
 #endif
@@ -430,7 +433,7 @@ GLINT_CONSTANT(kFrameImageCount, 5u);
 GLINT_CONSTANT(kBindingEnvironment, 5u);  // sampler2D: the environment map
 GLINT_CONSTANT(kBindingLayers, 6u);       // the first of the package's layers, one image each
 
-// How the radiance of a sample was found.
+// The way in which the radiance of a sample was found.
 GLINT_CONSTANT(kPathNone, 0u);    // no ray
 GLINT_CONSTANT(kPathScreen, 1u);  // found in screen space
 GLINT_CONSTANT(kPathHit, 2u);     // a ray that hit

@@ -30,11 +30,11 @@ struct LightRecord {
 // LightNode::next of a leaf: the number of its light is in the other bits.
 GLINT_CONSTANT(kLightLeaf, 0x80000000u);
 
-// In packages with emissive lights: the number of a leaf's light with this bit is that of an emissive triangle.
+// With this bit, the number of a leaf's light is that of an emissive triangle, in packages with emissive lights.
 GLINT_CONSTANT(kLightEmitter, 0x40000000u);
 // No emissive triangle.
 GLINT_CONSTANT(kNoEmitter, 0xFFFFFFFFu);
-// In the place of an emissive triangle: the sky.
+// The sky, in place of an emissive triangle.
 GLINT_CONSTANT(kSkyEmitter, 0xFFFFFFFEu);
 
 // The counts of the distribution of an environment map add up to this number, because random numbers have so many values.
@@ -47,7 +47,7 @@ struct EmitterRecord {
     uint leaf;       // its node of the hierarchy, 0 if there is none; kNoEmitter if the triangle is dark
 };
 
-// How an effect or a path has chosen a ray, for what it finds on emissive triangles. 8 bytes.
+// The choice of a ray by an effect or a path, for the light of emissive triangles that it finds. 8 bytes.
 struct LobeRay {
     float density;  // by solid angle; 0 if no sample of a light could have taken its place; negative if samples bring
                     // all of the light, behind glass that shadow rays pass
@@ -60,7 +60,8 @@ GLINT_CONSTANT(kLightTreeDepth, 32u);
 // The largest value of a share in a node.
 GLINT_CONSTANT(kLightShares, 1023u);
 
-// A node of the hierarchy of lights: bounds of what is below it, and where in them the light comes from. 64 bytes.
+// A node of the hierarchy of lights: bounds of the lights below it, and the place within them from which the light
+// comes. 64 bytes.
 struct LightNode {
     vec3 lower;         // box of the positions
     float intensity;    // sum of the luminance, candela

@@ -1,4 +1,4 @@
-// What shading reads besides the attributes of a triangle and the values of its material.
+// The data that shading reads besides the attributes of a triangle and the values of its material.
 #ifndef GLINT_INTEROP_SURFACE_H
 #define GLINT_INTEROP_SURFACE_H
 

@@ -1,4 +1,4 @@
-// Which hits are shaded together, for layers.
+// Numbers the groups of hits that are shaded together, for layers.
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
@@ -7,7 +7,7 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
-// How many values the active threads of the subgroup have. All of them must call.
+// Returns how many distinct values the active threads of the subgroup have. All of them must call.
 uint distinctInSubgroup(uint value) {
     const uint kNone = 0xFFFFFFFFu;
     uint found = 0u;

@@ -1,8 +1,8 @@
-// How the samples of a picture become the values of layers.
+// Makes the values of layers from the samples of a picture.
 #include "hit/accumulate.glsl"
 #include "hit/bindings.glsl"
 
-// The mean with one value more.
+// Returns the mean with one more value.
 vec4 meanWith(vec4 last, vec4 value) {
     return last + (value - last) / float(GLINT_FRAME.averaged + 1u);
 }

@@ -1,9 +1,9 @@
-// Where points of the world were in the frame before, in the world and in its picture.
+// The places of points of the world in the previous frame, in the world and in its picture.
 #include "host/geometry.glsl"
 #include "hit/bindings.glsl"
 #include "hit/hit.glsl"
 
-// The geometry with the vertices that it had in the frame before.
+// Returns the geometry with its vertices of the previous frame.
 HostGeometry previousGeometry(HostGeometry geometry, uint number) {
 #if GLINT_LAYER_DEFORMS
     if (GLINT_FRAME.hasPreviousVertices != 0u) {
@@ -27,7 +27,7 @@ vec3[3] currentCorners(HostGeometry geometry, uint primitive) {
     return cornersIn(geometry, primitive, hostInstance(geometry).objectToWorld);
 }
 
-// The same in the frame before. `number` is that of the geometry.
+// Returns the same in the previous frame. `number` is that of the geometry.
 vec3[3] previousCorners(HostGeometry geometry, uint number, uint primitive) {
     return cornersIn(previousGeometry(geometry, number), primitive,
                      GLINT_FRAME.previousInstances.data[geometry.instanceIndex].objectToWorld);
@@ -48,7 +48,7 @@ float depthNow(vec3 point) {
     return dot(point - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
 }
 
-// The motion of a point of the world, or of a direction with w = 0, to where it was in the frame before: in pixels to
+// The motion of a point of the world, or of a direction with w = 0, to its place in the previous frame: in pixels to
 // the right and down, and in the third component the change of its depth. A point that the camera before had behind it
 // gets a motion that leads out of the picture.
 vec4 motionOf(vec4 now, vec4 before) {
@@ -62,7 +62,7 @@ vec4 motionOf(vec4 now, vec4 before) {
     return vec4(last - pixelNow(now), now.w > 0.0 ? view.z - depthNow(now.xyz) : 0.0, 0.0);
 }
 
-// The same for the sky, in a direction that the camera sees. Parallel rays always see the same of it.
+// Returns the same for the sky, in a direction that the camera sees. Parallel rays always see the same part of it.
 vec4 skyMotion(vec3 now, vec3 before) {
     return GLINT_FRAME.orthographic != 0u ? vec4(0.0) : motionOf(vec4(now, 0.0), vec4(before, 0.0));
 }

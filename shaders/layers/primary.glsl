@@ -1,4 +1,4 @@
-// What layers show of primary surfaces.
+// The layers of primary surfaces.
 #include "generated/layers.glsl"
 #include "hit/camera.glsl"
 #include "hit/hit.glsl"
@@ -8,7 +8,7 @@
 #include "layers/motion.glsl"
 #endif
 
-// An albedo in layers is at least this, so that light over the albedo keeps the little that dark surfaces send.
+// An albedo in layers is at least this, so that light over the albedo keeps the faint light of dark surfaces.
 const float kLeastAlbedo = 1.0 / 1024.0;
 
 // A primary surface. Of one that is unlit, `surface` has the emission alone.
@@ -109,7 +109,7 @@ uvec4 primaryLobes(PrimaryPoint at) {
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #endif
-// Ray generation shaders may lack subgroup operations, so that there it is the pixel's own features.
+// Ray generation shaders may lack subgroup operations, so they use the pixel's own features.
 uvec4 primaryBranches(PrimaryPoint at) {
     uint lobes = at.features.lobes & at.features.sometimesLobes;
     uint inputs = at.features.inputs & at.features.sometimesInputs;

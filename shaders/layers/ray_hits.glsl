@@ -1,9 +1,9 @@
-// What the first ray of a sample found, for layers. A walk, or a march over the screen, stores how far it came before
-// the ray that the list traces.
+// The hit of the first ray of a sample, for layers. A walk, or a march over the screen, stores the length of its way
+// before the ray that the list traces.
 #include "hit/bindings.glsl"
 #include "hit/samples.glsl"
 
-// Whether a hit that the list finds is that of a first ray.
+// Returns whether the list's hits are those of first rays.
 bool findsFirstHits() {
     return GLINT_FRAME.bounce <= 1u;
 }
@@ -28,7 +28,7 @@ void storeRayHit(uint target, uint geometry, uint primitive, vec2 barycentrics, 
     }
 }
 
-// The ray left the scene.
+// Stores that the ray left the scene.
 void storeRayMiss(uint target, vec3 direction) {
     uint place = samplePlace(target);
     storeBounceDistance(place, float(kDistanceOfMiss));

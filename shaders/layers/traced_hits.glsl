@@ -1,4 +1,4 @@
-// Stores what a ray of the list has hit, for layers.
+// Stores the hit of a ray of the list, for layers.
 #include "hit/trace.glsl"
 #include "layers/ray_hits.glsl"
 

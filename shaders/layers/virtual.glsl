@@ -1,4 +1,4 @@
-// What surfaces show by the rays of effects: how far away it is, and its motion.
+// The images that surfaces show by the rays of effects: their distance and their motion.
 #include "hit/camera.glsl"
 #include "hit/geometry.glsl"
 #include "hit/images.glsl"
@@ -14,7 +14,7 @@ vec4 rayDistance(uint target, uint path) {
     return vec4(travelled, 0.0, 0.0, 0.0);
 }
 
-// The shader ID of what a ray hit.
+// Returns the shader ID of a ray's hit.
 uvec4 rayShader(uint target, uint path) {
     if (path == kPathNone) {
         return uvec4(kLayerNoRay);
@@ -27,8 +27,8 @@ uvec4 rayShader(uint target, uint path) {
 
 #if GLINT_LAYER_HISTORY
 
-// A point of a triangle, now and in the frame before, and the frame of the triangle at both times: its first edge, a
-// normal, and what completes them.
+// A point of a triangle, now and in the previous frame, and the frame of the triangle at both times: its first edge, a
+// normal, and the vector that completes the frame.
 struct MovedPoint {
     vec3 now;
     vec3 before;
@@ -60,7 +60,7 @@ MovedPoint movedPointOf(ivec2 place) {
                                                               corners[2] - corners[0]));
 }
 
-// Turns a direction as the triangle was turned in the frame before.
+// Turns a direction back by the triangle's rotation since the previous frame.
 vec3 turnedBack(MovedPoint point, vec3 v) {
     return dot(v, point.axesNow[0]) * point.axesBefore[0] + dot(v, point.axesNow[1]) * point.axesBefore[1] +
            dot(v, point.axesNow[2]) * point.axesBefore[2];
@@ -70,7 +70,7 @@ vec3 mirroredAt(vec3 v, vec3 normal) {
     return v - 2.0 * dot(v, normal) * normal;
 }
 
-// The point that a ray found, with its place in the frame before.
+// The point that a ray found, with its place in the previous frame.
 MovedPoint foundPoint(RayHit found) {
     if (found.geometry == kScreenGeometry) {
         return movedPointOf(ivec2(found.primitive % GLINT_FRAME.width, found.primitive / GLINT_FRAME.width));
@@ -78,9 +78,9 @@ MovedPoint foundPoint(RayHit found) {
     return movedPoint(found.geometry, found.primitive, found.barycentrics);
 }
 
-// The motion of the image of what a ray found, behind a mirror at the primary surface. The mirror is the plane that
-// sends the view to the ray: of a flat mirror it is the surface itself, and the result is exact. It moves and turns as
-// the triangle does. Curved mirrors are taken for their tangent planes.
+// The motion of the image of a ray's hit, behind a mirror at the primary surface. The mirror is the plane that sends
+// the view to the ray: of a flat mirror it is the surface itself, and the result is exact. It moves and turns as the
+// triangle does. Curved mirrors are taken for their tangent planes.
 vec4 mirroredMotion(ivec2 place, RayHit found) {
     MovedPoint mirror = movedPointOf(place);
     vec3 seen = cameraRay(uvec2(place)).direction;
@@ -95,9 +95,10 @@ vec4 mirroredMotion(ivec2 place, RayHit found) {
     return motionOf(vec4(imageNow, 1.0), vec4(imageBefore, 1.0));
 }
 
-// The motion of what is seen through the primary surface. The view continues straight to where the point appears, and
-// the point's own motion moves this image. A ray that passes straight on, as through a thin wall, meets the point
-// itself, and the result is exact. That a moving or curved surface bends other rays in another way is left out.
+// The motion of the image that is seen through the primary surface. The view continues straight to the place where the
+// point appears, and the point's own motion moves this image. A ray that passes straight on, as through a thin wall,
+// meets the point itself, and the result is exact. The different bending of other rays by a moving or curved surface is
+// ignored.
 vec4 refractedMotion(ivec2 place, RayHit found) {
     CameraRay ray = cameraRay(uvec2(place));
     if (found.geometry == kMissGeometry) {

@@ -1,8 +1,8 @@
-// What the functions of Glint's library do for the features of one case.
+// The functions of Glint's library for the features of one case.
 #include "bsdf/sample.glsl"
 #include "hit/shade.glsl"
 
-// What a ray has hit.
+// The hit of a ray.
 struct GlintHit {
     uint geometry;      // a number of the host's; only the host's functions read it
     uint primitive;     // triangle within the geometry
@@ -24,7 +24,7 @@ struct GlintSurface {
     vec3 emission;         // radiance; all that an unlit surface sends
     float occlusion;       // share of ambient light, from the occlusion texture
     uint shaderId;         // the case; GlintGeometry has it, too
-    // The library's own.
+    // These members are the library's own.
     uint featureLobes;
     uint featureInputs;
     uint number;
@@ -126,7 +126,7 @@ float libraryDensity(GlintSurface given, Features features, vec3 wo, vec3 wi) {
     return bsdfPdf(surface.bsdf, features, toSurface(surface, wi));
 }
 
-// A Hit with what leaving the surface and lighting it need.
+// Returns a Hit with the members that are needed to leave the surface and to light it.
 Hit hitOf(GlintSurface given) {
     Hit hit;
     hit.position = given.position;
@@ -164,7 +164,7 @@ GlintMirror libraryMirror(GlintSurface given, Features features) {
     return result;
 }
 
-// The surface of a shader ID that the library does not have. Only its emission is seen.
+// Returns the surface of a shader ID that the library does not have. Only its emission is seen.
 GlintSurface unknownSurface(GlintHit given, HostGeometry geometry) {
     GlintSurface result;
     result.position = vec3(0.0);
@@ -198,11 +198,11 @@ GlintSample glintSample(const GlintSurface surface, const vec3 wo, const vec3 ra
 float glintDensity(const GlintSurface surface, const vec3 wo, const vec3 wi);
 
 // Returns the light that the surface sends to its view, as Glint's renderer shades hits: emission, the sky's light
-// (which no ray brings), and the light of one light, chosen by what it brings.
+// (which no ray brings), and the light of one light, chosen in proportion to its contribution.
 GlintRadiance glintRadiance(const GlintSurface surface);
 
 // Returns the mirror's ray of a surface, with which a host brings reflections of the scene instead of the sky's:
-// glintRadiance() - sky + weight times what the ray finds. It stands for a rough lobe, too, if only roughly;
+// glintRadiance() - sky + weight times the light that the ray finds. It stands for a rough lobe, too, if only roughly;
 // glintSample() is exact. Coats and sheen keep their sky.
 GlintMirror glintMirror(const GlintSurface surface);
 

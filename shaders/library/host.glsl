@@ -1,10 +1,10 @@
-// What Glint's library asks of the shader that includes it. The host writes the bodies of these functions; those that
-// the package's materials never need may be left out. Lengths are metres, directions are unit vectors of the world, and
-// colours are linear.
+// The functions that Glint's library needs from the shader that includes it. The host writes their bodies; those that
+// the package's materials never need may be left out. Lengths are metres, directions are unit vectors of the world,
+// and colours are linear.
 #ifndef GLINT_HOST
 #define GLINT_HOST
 
-// What the host knows of a geometry of an instance. The shader ID and the key of a primitive are in tables.bin.
+// The host's data about a geometry of an instance. The shader ID and the key of a primitive are in tables.bin.
 struct GlintGeometry {
     uint shaderId;       // the case that shades it
     uint material;       // the number of its record, from glintHostMaterials()
@@ -28,10 +28,10 @@ mat4x3 glintHostObjectToWorld(const uint geometry);
 // The number of the vertex at a corner. Triangle t has the corners 3t, 3t + 1 and 3t + 2.
 uint glintHostVertex(const uint geometry, const uint corner);
 
-// In the mesh's space. Counter-clockwise corners show the front.
+// Returns the position in the mesh's space. Counter-clockwise corners show the front.
 vec3 glintHostPosition(const uint geometry, const uint vertex);
 
-// The following attributes are asked for only if the key says that the geometry has them. Normal and tangent are unit
+// The following attributes are read only if the key says that the geometry has them. Normal and tangent are unit
 // vectors of the mesh's space; w = ±1 is the sign of the bitangent, which is w cross(normal, tangent). The coordinates
 // of set 0 or 1 are those of glTF. A colour is linear RGBA.
 vec3 glintHostNormal(const uint geometry, const uint vertex);
@@ -58,8 +58,8 @@ vec4 glintHostTexture(const uint textureIndex, const uint samplerIndex, const ve
 vec3 glintHostTextureFilter(const uint textureIndex, const uint samplerIndex);
 
 // The light at a point is the sum over the lights of its list. A host with many lights may return few: each stands for
-// those that it was chosen from, and its irradiance is divided by the probability of the choice. A light with a size
-// gives the sample of a point of it. `random` is uniform in [0, 1)³, and the same arguments give the same light.
+// those that it was chosen from, and its irradiance is divided by the probability of the choice. An area light gives
+// the sample of a point of it. `random` is uniform in [0, 1)³, and the same arguments give the same light.
 uint glintHostLightCount(const vec3 position);
 GlintLight glintHostLight(const uint index, const vec3 position, const vec3 random);
 

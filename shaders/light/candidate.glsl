@@ -1,5 +1,5 @@
-// What the light of a light keeps where its straight way meets a surface (--shadow-through). It neither bends nor
-// spreads, whatever the index and the roughness of the glass are: caustics are left out.
+// The part of a light's rays that remains where their straight way meets a surface (--shadow-through). The light
+// neither bends nor spreads, for any index and roughness of the glass: caustics are left out.
 #include "bsdf/features.glsl"
 #include "bsdf/fresnel.glsl"
 #include "hit/alpha.glsl"
@@ -8,7 +8,7 @@
 #include "host/geometry.glsl"
 #include "host/material.glsl"
 
-// What a traversal says about a candidate.
+// The data of a traversal about a candidate.
 struct PassageCandidate {
     vec3 origin;     // of the ray
     vec3 direction;  // of the ray, unit vector
@@ -30,8 +30,8 @@ bool passedGlass(LightPassage passage) {
 #endif
 
 // The light that arrives over a distance. A volume that is left but was never entered holds the surface, and one that
-// is entered but never left holds the light. A light that is infinitely far away is in none: such a volume is no closed
-// mesh, and absorbs nothing.
+// is entered but never left holds the light. A light that is infinitely far away is in no volume: such a volume is no
+// closed mesh, and absorbs nothing.
 vec3 lightAfter(LightPassage passage, float distance) {
     vec3 behind = distance < kFarDistance ? max(passage.open, vec3(0.0)) * distance : vec3(0.0);
     return GLINT_SHARE_OF(passage) * exp(-max(passage.depth + behind, vec3(0.0)));
@@ -52,7 +52,7 @@ vec4 pointColor(HostGeometry geometry, SurfacePoint point, PassageCandidate cand
     return color;
 }
 
-// The share that the surface covers: glTF 2.0, section 3.9.4. Of BLEND it is the mean of what rays choose at random.
+// The share that the surface covers: glTF 2.0, section 3.9.4. For BLEND it is the mean of the rays' random choices.
 float coverageOf(HostGeometry geometry, SurfacePoint point, Features features, float alpha) {
 #if GLINT_ALPHA_TESTED
     if ((geometry.flags & kGeometryAlphaTested) != 0u) {
@@ -69,8 +69,8 @@ float coverageOf(HostGeometry geometry, SurfacePoint point, Features features, f
     return 1.0;
 }
 
-// The share that the interface lets straight through: as surfaces do that are seen (hit/material.glsl), with the
-// mesh's own normal, and without coats and films. `cosine` is that between the normal and the ray.
+// The share that the interface lets straight through, computed as for visible surfaces (hit/material.glsl), but with
+// the mesh's own normal, and without coats and films. `cosine` is that between the normal and the ray.
 vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float cosine) {
     float transmission = GLINT_MATERIAL_TRANSMISSION_FACTOR(point);
     if (inputOfKey(features, GLINT_TRANSMISSION_TEXTURE)) {
@@ -103,7 +103,7 @@ vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float
     return color * ((1.0 - metallic) * transmission * schlickPassed(f0, f90, cosine));
 }
 
-// Returns whether the light ends at the candidate. If it goes on, `passage` loses what the candidate takes.
+// Returns whether the light ends at the candidate. If it goes on, `passage` loses the part that the candidate absorbs.
 bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
     HostGeometry geometry = hostGeometry(candidate.geometry);
     Features features = Features(GLINT_ALPHA_ALWAYS_LOBES, GLINT_ALPHA_ALWAYS_INPUTS, GLINT_ALPHA_SOMETIMES_LOBES,

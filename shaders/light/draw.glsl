@@ -1,4 +1,5 @@
-// The lights of a surface, each with the point of it that a ray sees: all that needs the hit alone and not its material.
+// The lights of a surface, each with the point of it that a ray sees. This part needs the hit alone and not its
+// material.
 #include "light/receiver.glsl"
 #include "light/shared.glsl"
 #include "light/sized.glsl"
@@ -15,7 +16,7 @@ const uint kDimensionHostLight = 1u;  // and the next two; three more for each f
 const uint kPairLightArea = 5u;
 const uint kPairLightChoice = 0x10000u;  // and one more for each further light
 
-// The same dimension, of the bounce that is shaded.
+// Returns the dimension for the bounce that is being shaded.
 uint shadingDimension(uint dimension) {
 #if GLINT_PATHS
     return dimensionOfBounce(dimension);
@@ -53,7 +54,7 @@ struct DrawnLight {
 #endif
 };
 
-// From its centre, or from a point of a light that has a size.
+// Draws the centre of a light, or a point of an area light.
 DrawnLight drawPunctual(Hit hit, HostLight light) {
     DrawnLight result;
     result.aim = hostSampleLight(light, hit.position);
@@ -102,7 +103,7 @@ DrawnLight drawLight(Hit hit, Features features, uint index) {
 const uint kLightsDrawnFirst = GLINT_LIGHT_SAMPLES + GLINT_SKY_LIGHT;
 DrawnLight lightsDrawnFirst[kLightsDrawnFirst];
 
-// The first of them. Those before it are few and cheap to draw, but any number.
+// Returns the first light that is drawn before the choice. Earlier ones are cheap to draw, but their number varies.
 uint firstDrawn() {
 #if GLINT_LIGHT_SAMPLES > 0
     return GLINT_FRAME.lightsApart;

@@ -98,7 +98,7 @@ vec3 sampleSeenTriangle(SeenTriangle seen, vec2 u) {
     // The place on the arc from a to c.
     precise float held = clamp(cosine, -1.0, 1.0);
     precise vec3 place = held * seen.a + sqrt(max(1.0 - held * held, 0.0)) * ac;
-    // And on the arc from b to there. 1 - cosine of the whole arc is half of the squared chord.
+    // This is the place on the arc from b to there. 1 - cosine of the whole arc is half of the squared chord.
     precise vec3 side = place - seen.b;
     precise float height = u.y * 0.5 * dot(side, side);
     precise vec3 direction = (1.0 - height) * seen.b +
@@ -122,12 +122,12 @@ vec2 barycentricsAlong(vec3 position, vec3 direction, EmitterTriangle triangle) 
     return vec2(first, clamp(y, 0.0, 1.0 - first));
 }
 
-// Uniform on a triangle: Heitz, "A Low-Distortion Map Between Triangle and Square" (2019).
+// Samples a triangle uniformly: Heitz, "A Low-Distortion Map Between Triangle and Square" (2019).
 vec2 sampleBarycentrics(vec2 u) {
     return u.x < u.y ? vec2(0.5 * u.x, u.y - 0.5 * u.x) : vec2(u.x - 0.5 * u.y, 0.5 * u.y);
 }
 
-// What the surface emits at its viewer.
+// The light that the surface emits towards its viewer.
 vec3 emissionOf(Hit hit, Features features) {
 #if GLINT_EMITTER_LAYERS
     return evaluateSurface(hit, features).emission;
@@ -183,8 +183,8 @@ SharedSample emitterLight(Hit hit, HostLight light, uint pair) {
     return drawn;
 }
 
-// The shadow ray of a sample, in place of its direction: from where rays leave the surface to where the triangle's
-// clearance ends.
+// The shadow ray of a sample, in place of its direction: from the start of rays that leave the surface to the end of
+// the triangle's clearance.
 LightSample emitterAim(Hit hit, SharedSample drawn) {
     precise vec3 away = drawn.end - rayOrigin(hit, drawn.direction);
     precise float squared = dot(away, away);
@@ -194,8 +194,8 @@ LightSample emitterAim(Hit hit, SharedSample drawn) {
     return LightSample(direction, sameSide ? distance : 0.0, vec3(0.0), kRaySent);
 }
 
-// The density, by solid angle, of all samples of emissive lights that a surface takes, in the direction of a hit. 0 if
-// the hit is on none.
+// The density, by solid angle, of all samples of emissive lights that a surface takes, in the direction of a hit. It is
+// 0 if the hit is on no such light.
 float emitterDensity(LightReceiver receiver, Hit hit) {
     uint first = GLINT_FRAME.firstEmitters.data[hit.geometry];
     if (first == kNoEmitter) {

@@ -1,4 +1,4 @@
-// What the light of a light has kept so far of its straight way to a surface.
+// The part of a light's rays that has remained so far on their straight way to a surface.
 
 // It does not depend on the order in which surfaces are met.
 struct LightPassage {

@@ -11,8 +11,8 @@ struct LightSample {
     uint gate;       // kRaySent, or why no light arrives: kRayRange, kRayCone
 };
 
-// The least squared distance to a light, in m². It is far below what a surface in any scene has from a light, and keeps
-// the irradiance on one that touches a light, and the importances of the hierarchy (kMaxIntensity), finite.
+// The least squared distance to a light, in m². It is far below the distance of any surface from a light, and keeps the
+// irradiance on one that touches a light, and the importances of the hierarchy (kMaxIntensity), finite.
 const float kMinSquaredDistance = 1e-20;
 
 LightSample sampleLight(LightRecord light, vec3 position) {
@@ -40,12 +40,12 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     return LightSample(direction, distance, light.intensity * attenuation, gate);
 }
 
-// Samples a point of a light that has a size, uniformly by the solid angle that it fills: a sphere, or a disk
-// infinitely far away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and Zimmerman,
-// "Monte Carlo Techniques for Direct Lighting Calculations" (1996). A sphere shines equally in all directions, so on a
-// surface that faces its centre its irradiance is that of a light without a size, π sine² times its radiance. The
-// sample's is the whole solid angle 2 π height times that radiance. From inside of the sphere nothing can block the
-// light, so the distance is 0.
+// Samples a point of an area light, uniformly by the solid angle that it fills: a sphere, or a disk infinitely far
+// away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and Zimmerman, "Monte Carlo
+// Techniques for Direct Lighting Calculations" (1996). A sphere shines equally in all directions, so on a surface that
+// faces its centre its irradiance is that of a light without a size, π sine² times its radiance. The sample's is the
+// whole solid angle 2 π height times that radiance. From inside of the sphere nothing can block the light, so the
+// distance is 0.
 LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
     LightSample result = centre;
     bool sphere = light.type != kLightDirectional;

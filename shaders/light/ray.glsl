@@ -1,4 +1,4 @@
-// Rays from a surface to a light: what of the light arrives.
+// Rays from a surface to a light, and the light that arrives.
 #include "light/candidate.glsl"
 #include "hit/trace.glsl"
 
@@ -8,8 +8,8 @@
 
 #elif !GLINT_SHADOW_GLASS && !GLINT_SHADOW_OPAQUE
 
-// Returns whether any light arrives; `light` then loses what it meets on its way: here nothing. Both sides of a surface
-// cast shadows.
+// Returns whether any light arrives; `light` then loses the part that surfaces on its way absorb: here nothing. Both
+// sides of a surface cast shadows.
 bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light) {
     return isVisible(origin, direction, distance);
 }
@@ -17,7 +17,7 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 #else
 
 #if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
-// Whether the light of the last ray to a light has passed glass.
+// True if the light of the last ray to a light has passed glass.
 bool lightPassedGlass = false;
 #define GLINT_NOTE_GLASS(passage) lightPassedGlass = passedGlass(passage);
 #else
@@ -81,8 +81,9 @@ bool lightArrives(vec3 origin, vec3 direction, float distance, inout vec3 light)
 #endif
 
 #if GLINT_TRACER == 1 || GLINT_RAY_GENERATION
-// The same for what `sees` other surfaces (kShadow*). Where shadow rays do not pass glass, rays of lobes bring the light
-// of emissive triangles that passes it. Where they do, these rays leave it out, so the sample counts whole.
+// Does the same for rays that see other surfaces: `sees` is one of kShadow*. If shadow rays do not pass glass, rays of
+// lobes bring the light of emissive triangles through it. If shadow rays pass glass, rays of lobes leave that light
+// out, so the sample counts whole.
 bool lightArrivesTo(uint sees, vec3 origin, vec3 direction, float distance, inout vec3 light) {
 #if GLINT_SHARED_LIGHTS
 #if GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE

@@ -1,8 +1,8 @@
 // Finds the lights of the hierarchy along a ray. Its nodes are in depth-first order: the first child of a node follows
-// it, and the second one waits until all below the first is done.
+// it, and the second one waits until all nodes below the first are done.
 #include "hit/bindings.glsl"
 
-// What the coordinates of boxes have lost to rounding, as a share of them.
+// The rounding error of the coordinates of boxes, as a share of them.
 const float kBoxRounding = 1.2e-7;
 // The least component of a direction, which keeps quotients finite.
 const float kLeastComponent = 1e-18;
@@ -16,7 +16,7 @@ struct LightSearch {
     uint places[kLightTreeDepth];
 };
 
-// The lights apart have no bounds. A tree of emissive triangles alone has none that the search is for.
+// The lights apart have no bounds. A tree of emissive triangles alone has no light for which the search looks.
 LightSearch searchLeaves(vec3 origin, vec3 direction, float end, bool looks) {
     LightSearch search;
     search.origin = origin;
@@ -30,7 +30,7 @@ LightSearch searchLeaves(vec3 origin, vec3 direction, float end, bool looks) {
     return search;
 }
 
-// Whether the ray meets the box of a node that shines on its origin.
+// Returns whether the ray meets the box of a node that shines on its origin.
 bool meetsNode(LightSearch search, LightNode node) {
     vec3 rounding = kBoxRounding * max(abs(node.lower), abs(node.upper));
     vec3 lower = node.lower - rounding - search.origin;

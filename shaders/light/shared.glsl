@@ -43,8 +43,8 @@ LightSample aimAtShared(Hit hit, HostLight light, SharedSample drawn) {
     return LightSample(drawn.direction, kFarDistance, vec3(0.0), kRaySent);
 }
 
-// Whether the shadow ray meets what those to other lights meet, instead of what a ray of a lobe meets: with
-// --shadow-through opaque or glass, that to the sky.
+// Returns whether the shadow ray meets the surfaces that rays to other lights meet, instead of those that a ray of a
+// lobe meets. That holds for the sky with --shadow-through opaque or glass.
 bool passesAsLight(uint emitter) {
 #if GLINT_SKY_LIGHT && (GLINT_SHADOW_GLASS || GLINT_SHADOW_OPAQUE)
     return emitter == kSkyEmitter;
@@ -53,7 +53,7 @@ bool passesAsLight(uint emitter) {
 #endif
 }
 
-// Leaves these shares of the lobes.
+// Keeps these shares of the lobes.
 void keepShares(SkyShares shares, inout Surface surface) {
     surface.bsdf.mirrored = shares.mirrored;
     surface.bsdf.layers.counted = shares.layers;

@@ -1,6 +1,7 @@
-// Punctual lights with a size that rays of lobes find, too. Samples of the light and these rays share its light by the
-// balance heuristic, as in light/shared.glsl. Whoever draws a direction of a lobe asks which lights it meets, and sends
-// a shadow ray there. So both see the same, and nothing of it waits in memory for the ray's own end.
+// Area lights among the punctual lights, which rays of lobes find, too. Samples of the light and these rays share its
+// light by the balance heuristic, as in light/shared.glsl. The code that draws a direction of a lobe also finds the
+// lights that it meets, and sends a shadow ray there. So both see the same surfaces, and no data waits in memory for
+// the end of the lobe's ray.
 #include "host/lights.glsl"
 
 #if GLINT_SIZED_LIGHTS
@@ -27,7 +28,7 @@ bool lobesFind(HostLight light) {
     return light.emitter == kNoEmitter && light.chance == 1.0 && GLINT_PUNCTUAL(light).size > 0.0;
 }
 
-// All lights are looked at: a search is their number.
+// The search visits all lights: it is their number.
 #define LightSearch uint
 #define GLINT_EACH_LIGHT(number, search) for (uint number = 0u; number < search; ++number)
 

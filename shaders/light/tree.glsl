@@ -9,11 +9,12 @@
 const float kMinLightFacing = 0.05;
 // The least squared distance to a point that stands for lights, as a share of their variance.
 const float kLightSpread = 0.25;
-// What the cosines of bounds may lose to rounding.
+// The rounding error that the cosines of bounds may have.
 const float kLightCosineSlack = 1e-3;
 // The distance between random numbers.
 const float kGrain = 1.0 / 16777216.0;
-// Where the distance has grown to this share of what is left to choose from, another random number is taken.
+// If the distance between random numbers has grown to this share of the rest of the line, another random number is
+// taken.
 const float kCoarseGrain = 1.0 / 4096.0;
 
 // max(a - b, 0) of angles as cosine and sine, from those of a and b in [0, pi].
@@ -33,7 +34,7 @@ struct LightReceiver {
     vec3 normal;  // unit vector, on the side from which light is scattered; 0 if light from both sides is
 };
 
-// A normal in 32 bits, by octahedralEncode(). Whoever chooses and whoever asks for the probability use the same one, in
+// A normal in 32 bits, by octahedralEncode(). The choice and the computation of its probability use the same normal, in
 // every shader.
 const uint kBothSides = 0x80008000u;  // no vector has these
 
@@ -58,9 +59,9 @@ vec3 sharesOf(uint packedShares) {
     return result;
 }
 
-// The mean of cos θ / d² over the lights of a node, from four points: a standard deviation from their mean along the two
-// axes on which they vary most. One point would bring far too little where the surface is close to some of them. `away`
-// is from that mean to the surface.
+// The mean of cos θ / d² over the lights of a node, from four points: a standard deviation from their mean along the
+// two axes on which they vary most. A single point would give far too little light to a surface close to some of them.
+// `away` is from that mean to the surface.
 float meanOfNode(vec3 away, vec3 deviation, vec3 normal) {
     bool flatX = deviation.x <= deviation.y && deviation.x <= deviation.z;
     bool flatY = !flatX && deviation.y <= deviation.z;
@@ -70,7 +71,7 @@ float meanOfNode(vec3 away, vec3 deviation, vec3 normal) {
     const vec4 kSecond = vec4(1.0, -1.0, 1.0, -1.0);
     precise vec4 squares = (dot(away, away) + dot(first, first) + dot(second, second)) -
                            2.0 * (dot(away, first) * kFirst + dot(away, second) * kSecond);
-    // Around each point are the lights that it stands for.
+    // The lights that a point stands for lie around it.
     precise float least = kLightSpread * dot(deviation, deviation);
     squares = max(squares, max(least, kMinSquaredDistance));
     precise vec4 inverse = inversesqrt(squares);
@@ -84,8 +85,8 @@ float meanOfNode(vec3 away, vec3 deviation, vec3 normal) {
     return mean;
 }
 
-// Whether all of a node's box is below a surface. `away` is from the middle of the box to the surface, and `radius` is
-// half of the box.
+// Returns whether all of a node's box is below a surface. `away` is from the middle of the box to the surface, and
+// `radius` is half of the box.
 bool isBelow(vec3 normal, vec3 away, vec3 radius, float squared) {
     precise float highest = dot(abs(normal), radius) - dot(normal, away);
     // (|away| + |radius|)² is no more than twice the sum of the squares.
@@ -111,7 +112,7 @@ float lightImportance(LightNode node, LightReceiver receiver) {
     }
     precise float radius2 = dot(radius, radius);
     float facing = 1.0;
-    // With points among them the lights shine everywhere.
+    // If the point is among the lights, they shine in all directions.
     if (node.cosAxes > -1.0 && squared > radius2) {
         // The least angle between the axis of some light and its direction to the point.
         precise float cosine = clamp(dot(node.axis, away) / sqrt(squared), -1.0, 1.0);
@@ -141,7 +142,7 @@ struct LightSubtree {
     float samples;  // the length of its part
 };
 
-// How many lights are below a node with so many nodes, itself among them.
+// Returns how many lights are below a node of so many nodes, which include the node itself.
 float lightsOfNodes(uint nodes) {
     return float((nodes + 1u) / 2u);
 }
@@ -155,8 +156,8 @@ LightSubtree wholeLightTree() {
 }
 
 // The samples of the first child, in proportion to the importance of both. A punctual light has at most one, because a
-// second one would see the same. Samples that this leaves over are those of other lights. So lights that are bright
-// enough for a sample of their own bring no noise. Samples of emissive triangles see different points of them.
+// second one would see the same. The remaining samples go to other lights. So lights that are bright enough for a
+// sample of their own bring no noise. Samples of emissive triangles see different points of them.
 float samplesOfFirst(LightSubtree tree, uint second, float share) {
     precise float samples = tree.samples * share;
 #if !GLINT_EMISSIVE_LIGHTS
@@ -214,8 +215,8 @@ uint lightOfTree(LightReceiver receiver, float place, vec2 more, out float chanc
     return next & ~kLightLeaf;
 }
 
-// How many samples of a surface lightOfTree() is expected to give to the light of a leaf. The first child of a node has
-// all nodes up to the second one below it, so the way to a leaf follows from its index.
+// Returns how many samples of a surface lightOfTree() is expected to give to the light of a leaf. The first child of a
+// node has all nodes up to the second one below it, so the way to a leaf follows from its index.
 float lightChance(LightReceiver receiver, uint leaf) {
     LightNodeArray nodes = GLINT_FRAME.lightNodes;
     LightSubtree tree = wholeLightTree();

@@ -1,4 +1,4 @@
-// Derives from the counts of the buckets where each begins, so that the order of buckets does not depend on timing, and
+// Derives from the counts of the buckets the begin of each, so that the order of buckets does not depend on timing, and
 // the indirect arguments for shading it.
 #include "hit/list.glsl"
 

@@ -29,7 +29,7 @@ float decodeWidth(uint code, float steps) {
 const float kHitWidthSteps = 64.0;
 const uint kMostHitWidthCode = 0x7FFu;
 
-// Barycentric coordinates in 24 bits keep what float has of numbers above a half.
+// Barycentric coordinates in 24 bits keep the precision that float has for numbers above a half.
 uint encodeBarycentric(float value) {
     precise float steps = value * 16777216.0;
     return uint(clamp(roundEven(steps), 0.0, 16777215.0));
@@ -41,7 +41,7 @@ float decodeBarycentric(uint code) {
 }
 
 #if GLINT_HITS_IN_SAMPLES
-// Returns what a record keeps of barycentric coordinates and of a cone's width. Strategies that keep no record round
+// Returns barycentric coordinates, or a cone's width, as a record keeps them. Strategies that keep no record round
 // their hits in the same way, so all pictures are the same.
 vec2 keptBarycentrics(vec2 barycentrics) {
     return vec2(decodeBarycentric(encodeBarycentric(barycentrics.x)),

@@ -1,5 +1,5 @@
-// The packed record of a sample (--sample-record packed): 24 bytes, in two arrays. The first one holds in turn the start
-// of the ray, what it hit, and the light that it brings:
+// The packed record of a sample (--sample-record packed): 24 bytes, in two arrays. The first one holds in turn the
+// start of the ray, its hit, and the light that it brings:
 //
 // | word | the ray | its hit, with GLINT_HITS_IN_SAMPLES | its light |
 // |---|---|---|---|
@@ -185,7 +185,7 @@ uint packedHitGeometry(uint place) {
     return geometry == kNoGeometry24 ? kMissGeometry : geometry;
 }
 
-// Returns a hit that waits for its light. Others are misses.
+// Returns a hit that waits for its light. Other records are returned as misses.
 HitRecord packedHit(uint place) {
     uvec4 start = GLINT_PACKED_STARTS.data[place];
     uint geometry = start.w >> 8;

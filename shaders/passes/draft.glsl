@@ -3,7 +3,7 @@
 #include "hit/primary.glsl"
 #include "hit/shade.glsl"
 
-// What a base reflects. Its BSDF loses the light that its microfacets scatter more than once.
+// The reflection of a base. Its BSDF loses the light that its microfacets scatter more than once.
 struct Draft {
     vec3 normal;
     vec3 diffuse;

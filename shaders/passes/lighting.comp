@@ -19,10 +19,10 @@ GLINT_PIXEL_WORKGROUP
 
 #if GLINT_SHARED_LIGHTS
 
-// A density of samples beside which no ray counts.
+// A density of samples so high that rays count for nothing.
 const float kWholeDensity = 1e30;
 
-// Leaves the lobes of which no ray of an effect brings the light of a sample, in parts. `density` is that of samples.
+// Leaves the lobes for which no ray of an effect brings the light of a sample, in parts. `density` is that of samples.
 void keepLobesOfLight(Features features, HostLight light, vec3 direction, float density, SkyShares sky,
                       inout Surface surface) {
     SkyShares shares = sky;
@@ -44,7 +44,7 @@ float densityOfPoints(HostLight light, LightSample centre, uint points) {
     return lobesFind(light) ? float(points) * lightPointDensity(light, centre) : 0.0;
 }
 
-// What the ray of an effect finds of the light: its point, with the light that it brings to the viewer.
+// Returns the point of the light that the ray of an effect meets, with the light that it brings to the viewer.
 LightSample foundPoint(HostLight light, LightSample centre, uint slot, float density) {
 #if GLINT_RAY_EFFECTS > 0
     FindingRay ray = findingRays[slot];
@@ -192,7 +192,7 @@ vec3 directLight(Hit hit, Surface surface, Features features) {
 
 #endif
 
-// The light that a lit surface scatters, without its emission. `sky` is what remains of the sky's light.
+// The light that a lit surface scatters, without its emission. `sky` holds the remaining shares of the sky's light.
 vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
 #if GLINT_EFFECT_SHADOW
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);

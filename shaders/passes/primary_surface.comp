@@ -1,5 +1,6 @@
 #version 460
-// A part of the lighting pass: the surfaces of primary hits. main() only calls what is compiled for that pass.
+// A part of the lighting pass: the surfaces of primary hits. main() only calls the function that is compiled for that
+// pass.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES)

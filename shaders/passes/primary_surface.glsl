@@ -1,7 +1,7 @@
-// What the material of a primary hit says about the surface. This function knows every feature of the scene, and is
-// compiled by itself (passes/primary_surface.comp), so that an edit of a material's GLSL leaves the rest of the lighting
-// pass as it is: there passes/primary_surface_apart.glsl stands in for this file. `lobes` and `inputs` are the key of the
-// geometry.
+// Returns the material's values of the surface of a primary hit. This function knows every feature of the scene, and is
+// compiled by itself (passes/primary_surface.comp), so that an edit of a material's GLSL leaves the rest of the
+// lighting pass as it is: there passes/primary_surface_apart.glsl stands in for this file. `lobes` and `inputs` are the
+// key of the geometry.
 #include "hit/material.glsl"
 
 Features featuresOfPrimary(uint lobes, uint inputs) {

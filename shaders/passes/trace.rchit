@@ -1,5 +1,5 @@
 #version 460
-// Stores what the ray hit; it is shaded elsewhere.
+// Stores the hit of the ray, which is shaded elsewhere.
 #extension GL_EXT_ray_tracing : require
 #include "hit/geometry_index.glsl"
 #include "hit/payload.glsl"

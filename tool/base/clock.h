@@ -1,4 +1,4 @@
-// The clock that measures what the host does.
+// The clock by which the host's work is measured.
 #pragma once
 
 #include <chrono>

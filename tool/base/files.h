@@ -23,7 +23,7 @@ struct FileCloser {
         std::fclose(file);
     }
 };
-// An open file, which closes itself; what closing says of a full disk is lost.
+// An open file, which closes itself; it ignores an error of closing, such as a full disk.
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
 // Returns the 64-bit XXH3 hash.

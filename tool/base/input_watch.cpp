@@ -45,7 +45,7 @@ std::optional<InputWatch::Look> InputWatch::lookAt(const std::string& path) {
                 S_ISDIR(status.st_mode)};
 }
 
-// Returns the names in a folder in their order, each with what one call to the system says of it.
+// Returns the names in a folder in their order, each with its state by one call to the system.
 std::string InputWatch::listingOf(const std::string& folder) {
     std::map<std::string, Look> entries;
     std::error_code error;

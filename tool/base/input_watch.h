@@ -30,13 +30,13 @@ public:
     void watch(std::span<const InputFile> inputs);
 
     // Returns the files whose contents changed since the last call. A file that was only touched has not
-    // changed, and one that is missing has only if it stays away for a while: editors replace files by
+    // changed. A missing file has changed only if it stays away for a while: editors replace files by
     // renaming others, or remove and write them. Waits until the files that changed have been at rest for
     // kRestMs, as programs write large files piece by piece, but at most kPatienceMs.
     std::vector<std::string> changed();
 
-    // Whether a file looks other than known. Folders do not count: what the program writes may change them.
-    // Any thread may ask while no other member runs.
+    // Returns whether a file looks other than known. Folders do not count: the program's own files may change
+    // them. Any thread may ask while no other member runs.
     bool looksChanged() const;
 
     // Takes the present contents of a file as known: the program itself has written it.
@@ -58,11 +58,11 @@ private:
     };
     struct File {
         std::optional<Look> look;  // no value: missing
-        // The hash covers the contents of a file, or the names and looks of a folder's files. A missing one
-        // has none.
+        // The hash covers the contents of a file, or the names and looks of a folder's files. A missing file
+        // has no hash.
         std::optional<std::uint64_t> hash;
-        // When the file system's clock has certainly moved on since the last change. A file that was looked
-        // at before then may have changed since without looking other than before.
+        // The time at which the file system's clock has certainly moved on since the last change. If a file
+        // was looked at earlier, it may have changed since and look the same.
         std::optional<std::int64_t> settles;
     };
 

@@ -14,7 +14,7 @@ public:
     Memo(const Memo&) = delete;
     Memo& operator=(const Memo&) = delete;
     virtual ~Memo() = default;
-    // `kind` says what sort of result it is. `key` holds everything that decides about the value.
+    // `kind` names the sort of result. `key` holds everything that the value depends on.
     virtual std::optional<std::string> find(std::string_view kind, std::string_view key) = 0;
     virtual void put(std::string_view kind, std::string_view key, std::string_view value) = 0;
 };

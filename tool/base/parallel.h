@@ -45,15 +45,15 @@ void runParallel(std::size_t count, int jobs, const Work& work) {
 }
 
 // Runs `work` on a thread that others interrupt more often, as do the threads that it starts (on Linux;
-// elsewhere it runs as usual). Returns its result, or throws what it throws. For work that is awaited less
-// than what others do at the same time.
+// elsewhere it runs as usual). Returns its result, or throws its exception. For work that is less urgent than
+// other work at the same time.
 template <typename Work>
 auto runBehind(const Work& work) {
     std::optional<decltype(work())> result;
     std::exception_ptr thrown;
     const auto run = [&] {
 #ifdef __linux__
-        // There a nice value belongs to a thread, and the threads that it starts inherit it. A thread may
+        // On Linux a nice value belongs to a thread, and the threads that it starts inherit it. A thread may
         // not take it back, so this needs one of its own.
         constexpr int kNice = 5;
         setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + kNice);

@@ -1,4 +1,4 @@
-// What lies between glm, with which the host calculates, and the arrays of scenes and public structures.
+// Conversions between glm, with which the host calculates, and the arrays of scenes and public structures.
 #pragma once
 
 #include <glm/geometric.hpp>

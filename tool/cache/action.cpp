@@ -32,7 +32,7 @@ void pack(Packer& packer, const std::vector<FileState>& files) {
     }
 }
 
-// Texts begin with their length, which is a number. What is unpacked takes several times as much memory.
+// Texts begin with their length, which is a number. An unpacked record takes several times as much memory.
 constexpr std::size_t kNumberBytes = sizeof(std::uint64_t);
 constexpr std::size_t kFileBytes = 4 * kNumberBytes;
 constexpr std::size_t kDiagnosticBytes = 5 * kNumberBytes;

@@ -1,4 +1,5 @@
-// A record of what a run read, printed and wrote, so that the next run can tell that it would do the same.
+// A record of the files that a run read and wrote and of its output, so that the next run can tell that it
+// would do the same.
 #pragma once
 
 #include <glint/result.h>

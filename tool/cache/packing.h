@@ -21,14 +21,13 @@ private:
     std::string bytes_;
 };
 
-// Unpacks what a Packer packed, in the same order. From the first mismatch on it returns nothing.
+// Unpacks the values of a Packer, in the same order. From the first mismatch on it returns nothing.
 class Unpacker {
 public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
 
     std::optional<std::uint64_t> number();
-    // A number of things that take at least `leastBytes` each, so that what is left of the bytes can hold
-    // them.
+    // A number of things that take at least `leastBytes` each, so that the remaining bytes can hold them.
     std::optional<std::uint64_t> count(std::size_t leastBytes);
     // Valid as long as the bytes.
     std::optional<std::string_view> text();

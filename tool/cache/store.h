@@ -37,7 +37,7 @@ public:
     // Replaces an existing value. The value can be lost at any time.
     void put(std::string_view kind, std::string_view key, std::string_view value) override;
     // If anything was put, removes the entries that were unused for longest until at most maxBytes are left.
-    // It also removes what killed writers left behind.
+    // It also removes the remains of killed writers.
     void trim();
     // Returns the first reason why something could not be stored.
     std::optional<Diagnostic> trouble() const;

@@ -1,4 +1,4 @@
-// Measures how far two images differ.
+// Measures the difference between two images.
 #pragma once
 
 #include "image/png.h"

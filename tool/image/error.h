@@ -1,4 +1,4 @@
-// Measures how far a picture is from a converged one, for glint bench.
+// Measures the error of a picture against a converged one, for glint bench.
 #pragma once
 
 #include <glint/image.h>
@@ -48,7 +48,7 @@ public:
     // two blocks.
     LinearImage standardError() const;
 
-    // Restores a stored mean; `error` is what standardError() returned.
+    // Restores a stored mean; `error` is the result of standardError().
     static MeanImage restore(const LinearImage& mean, const LinearImage& error, std::uint32_t blocks);
 
 private:

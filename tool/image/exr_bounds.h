@@ -8,8 +8,8 @@
 
 namespace glint::image {
 
-// Returns what does not fit. Returns an empty text if everything fits, or if the library would not read the
-// file any further.
+// Returns the first element that does not fit. Returns an empty text if everything fits, or if the library
+// would not read the file any further.
 std::string findExrExcess(std::span<const std::uint8_t> bytes);
 
 }  // namespace glint::image

@@ -15,7 +15,7 @@ Color fromOpponent(const Color& opponent);
 // Returns CIE L*a*b* of linear Rec. 709, with a* and b* times L*/100 (Hunt: colours look paler in the dark).
 Color toHuntLab(const Color& rgb);
 
-// Returns how different two colours of toHuntLab() are, from 0 to 1.
+// Returns the perceived difference of two colours of toHuntLab(), from 0 to 1.
 double colorDifference(const Color& a, const Color& b);
 
 }  // namespace glint::image::flip

@@ -8,7 +8,7 @@
 namespace glint::image {
 
 // Colours of categories: seven of those of Okabe and Ito, "Color Universal Design" (2008), then the same
-// paler, then the same darker. Black is left to what is no category.
+// paler, then the same darker. Black is left to pixels without a category.
 inline constexpr std::uint32_t kCategoryColors = 21;
 // Returns the colour of a number; numbers that are equal modulo kCategoryColors share one.
 Color8 categoryColor(std::uint32_t number);

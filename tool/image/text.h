@@ -21,8 +21,8 @@ std::uint32_t textWidth(std::string_view text);
 // Returns the text, or as much of its beginning as fits into `width` pixels at scale 1 with ".." behind it.
 std::string fittedText(std::string_view text, std::uint32_t width);
 
-// Draws a line with its upper left corner at (x, y), each point of the font `scale` pixels wide. What lies
-// outside of the picture is left out. The font is that of stb_easy_font.h.
+// Draws a line with its upper left corner at (x, y), each point of the font `scale` pixels wide. Parts
+// outside of the picture are left out. The font is that of stb_easy_font.h.
 void drawText(DisplayImage& image, std::uint32_t x, std::uint32_t y, std::string_view text, Color8 color,
               std::uint32_t scale);
 

@@ -14,7 +14,7 @@ constexpr double kMiddleGrey = 0.18;
 // Sunlight of 100,000 lux needs 17 stops. --exposure has the same limit.
 constexpr double kMaxStops = 32.0;
 // A pixel with a smaller share of the median luminance counts as black. A pixel 20 stops below the others
-// would change the log-average by something that no display shows.
+// would change the log-average by less than a display can show.
 constexpr double kBlackShare = 1e-6;
 
 // These are F90, Ks and Kd of the specification.
@@ -37,10 +37,10 @@ float srgbToLinear(float value) {
 }
 
 Rgb toneMapNeutral(const Rgb& color) {
-    // The specification asks for non-negative input.
+    // The specification requires non-negative input.
     Rgb mapped{std::max(color[0], 0.0F), std::max(color[1], 0.0F), std::max(color[2], 0.0F)};
 
-    // Subtracts what a dielectric reflects at normal incidence, and less of it in the dark.
+    // Subtracts the reflection of a dielectric at normal incidence, and less of it in the dark.
     const float smallest = std::min({mapped[0], mapped[1], mapped[2]});
     const float offset =
         smallest <= 2.0F * kFresnel ? smallest - smallest * smallest / (4.0F * kFresnel) : kFresnel;

@@ -31,7 +31,7 @@ Rgb toneMapNeutral(const Rgb& color);
 // 0 stops if no pixel is left.
 double automaticExposure(const LinearImage& image, std::span<const std::uint8_t> surfaces = {});
 
-// Returns what a display shows for a linear colour, in linear light within [0, 1]: the colour times
+// Returns the colour that a display shows for a linear one, in linear light within [0, 1]: the colour times
 // 2^exposure, tone mapped. NaN and infinity become magenta, so that they are visible.
 Rgb displayed(const Rgb& color, double exposure);
 // Applies displayed() to every pixel; alpha stays.

@@ -29,7 +29,7 @@ std::string valueText(const base::Json& value) {
     return value.is_null() ? "none" : value.is_string() ? value.get<std::string>() : value.dump();
 }
 
-// Returns the settings that decided how the package was made. Throws if the manifest lacks one.
+// Returns the settings with which the package was made. Throws if the manifest lacks one.
 std::vector<std::pair<std::string, std::string>> settingsOf(const base::Json& manifest) {
     std::vector<std::pair<std::string, std::string>> settings;
     for (const char* name : {"toolVersion", "strategies", "tracers", "merge", "maxShaders", "alpha"}) {

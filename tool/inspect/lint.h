@@ -1,4 +1,4 @@
-// Finds the SPIR-V modules that a path stands for, what is slow in them, and whether they exceed budgets.
+// Finds the SPIR-V modules that a path stands for, their slow code, and whether they exceed budgets.
 #pragma once
 
 #include "inspect/malioc.h"
@@ -52,7 +52,7 @@ struct LintReport {
 // Returns "file.spv: error: in main (word 214): message; hint [rule]".
 Diagnostic toDiagnostic(const compiler::LintFinding& finding, const std::string& where);
 
-// The most that a module may have of each; nothing: no limit.
+// The most that a module may have of each; without a value there is no limit.
 struct LintBudgets {
     std::optional<std::int64_t> instructions;
     std::optional<std::int64_t> textureFetches;

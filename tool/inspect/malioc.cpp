@@ -172,7 +172,7 @@ Result<MaliocReport> parseMalioc(std::string_view text) {
     report.workRegisters = integerOf(property(properties, "work_registers_used"));
     report.occupancy = integerOf(property(properties, "thread_occupancy"));
     report.spillBytes = integerOf(property(properties, "stack_spill_bytes"));
-    // This one is of the shader as a whole.
+    // This list belongs to the shader as a whole.
     for (const MaliocJson* const list : {&member(shader, "properties"), &properties}) {
         if (const MaliocJson& slow = property(*list, "has_slow_ray_traversal"); slow.is_boolean()) {
             report.slowRayTraversal = slow.get<bool>();

@@ -1,4 +1,4 @@
-// What a package holds: its modules with statistics, its materials, and what manifest.json says.
+// The contents of a package: its modules with statistics, its materials, and its manifest.json.
 #pragma once
 
 #include "materials/material_model.h"

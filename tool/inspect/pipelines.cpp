@@ -68,15 +68,15 @@ std::optional<double> scaled(std::optional<double> value, double factor) {
     return value ? std::optional(*value * factor) : std::nullopt;
 }
 
-constexpr double kLanes = 64.0;  // that PipelineFacts::cost is for
+constexpr double kLanes = 64.0;  // the lanes of PipelineFacts::cost
 
 double widthOf(const PipelineExecutable& executable) {
     return executable.subgroupSize > 0 ? executable.subgroupSize : kLanes;
 }
 
 // RADV (Mesa 25.0: src/amd/vulkan/radv_shader.c, src/amd/compiler/aco_statistics.cpp). "Subgroups per SIMD"
-// counts a subgroup of 64 lanes twice. "Inverse Throughput" is that of 64 lanes, whatever the subgroup; it is
-// "Latency" over the subgroups in flight where that is more.
+// counts a subgroup of 64 lanes twice. "Inverse Throughput" is that of 64 lanes, whatever the subgroup; or,
+// if that is more, "Latency" over the subgroups in flight.
 PipelineFacts radvFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a SIMD, from RDNA 2 on
     constexpr double kSmallestWidth = 32.0;
@@ -92,7 +92,7 @@ PipelineFacts radvFacts(const Statistics& named, double width) {
 }
 
 // turnip (Mesa 25.0: src/freedreno/vulkan/tu_shader.cc, src/freedreno/ir3/ir3.c). A register has four
-// components. An instruction takes a cycle; the other subgroups of a core hide what one waits for.
+// components. An instruction takes a cycle; the other subgroups of a core hide the waits of one.
 PipelineFacts turnipFacts(const Statistics& named, double width) {
     constexpr double kMostSubgroups = 16.0;  // of a core, Adreno 6xx and 7xx
     constexpr double kComponents = 4.0;
@@ -141,7 +141,7 @@ PipelineFacts anvFacts(const Statistics& named, double width) {
     return facts;
 }
 
-// Other drivers, such as NVIDIA's: by words that their names have.
+// Other drivers, such as NVIDIA's: finds statistics by words in their names.
 PipelineFacts otherFacts(const Statistics& named) {
     PipelineFacts facts;
     facts.registers = named.withWord({"register", "vgpr"});
@@ -449,7 +449,7 @@ constexpr std::pair<const char*, double compiler::ModuleCost::*> kModuleNumbers[
     {"scratchBytes", &compiler::ModuleCost::scratchBytes},
     {"codeBytes", &compiler::ModuleCost::codeBytes}};
 
-// Four digits after the point are more than the estimates are good for.
+// The estimates are not accurate beyond four digits after the point.
 double rounded(double value) {
     constexpr double kDigits = 1e4;
     return std::round(value * kDigits) / kDigits;
@@ -787,7 +787,7 @@ std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineB
     }
     for (const ReportedPipeline& pipeline : report.pipelines) {
         if (!pipeline.failure.empty()) {
-            continue;  // which is an error by itself
+            continue;  // a failed pipeline is an error by itself
         }
         PipelineFacts limits;
         for (std::size_t i = 0; i < budget.rules.size(); ++i) {

@@ -1,4 +1,4 @@
-// What a driver says of the pipelines of a package: reports, their differences, and budgets.
+// A driver's statistics of the pipelines of a package: reports, their differences, and budgets.
 //
 // Drivers name their statistics as they like, and count other things. A report keeps each statistic under its
 // driver's name, and adds facts that mean the same on every device.
@@ -24,7 +24,7 @@
 
 namespace glint::inspect {
 
-// A fact is absent if the driver does not report what it follows from.
+// A fact is absent if the driver does not report the statistics from which it follows.
 struct PipelineFacts {
     std::optional<double> registers;     // 32-bit registers that a lane holds at once, uniform ones left out
     std::optional<double> spills;        // of registers: to memory, or from uniform registers to others
@@ -47,7 +47,7 @@ std::span<const FactInfo> factTable();
 
 // Returns the facts about one executable.
 PipelineFacts factsOf(const PipelineExecutable& executable);
-// Returns those of all executables of a pipeline: the most registers, scratch memory and cost, the least
+// Returns the facts of all executables of a pipeline: the most registers, scratch memory and cost, the least
 // occupancy, and the sum of spills and code.
 PipelineFacts factsOf(std::span<const PipelineExecutable> executables);
 
@@ -87,7 +87,7 @@ struct PipelineReport {
     std::vector<ReportedPipeline> pipelines;
 };
 
-// Asks for what the package needs of a device.
+// Requests everything that the package needs of a device.
 void requirePackage(const Package& package, HeadlessOptions& options);
 
 // Makes every pipeline of the package, which reports call `name`. Has the errors of makePackagePipelines()
@@ -115,9 +115,9 @@ base::Json toJson(const PipelineFacts& facts);
 base::Json toJson(const PipelineStatistics& pipeline);
 std::string textOf(const PipelineStatistic& statistic);
 
-// Reads what toJson() wrote. Errors: those of readFile(), "pipeline-report" (not such a file).
+// Reads a file that toJson() wrote. Errors: those of readFile(), "pipeline-report" (not such a file).
 Result<PipelineReport> readPipelineReport(const std::filesystem::path& file);
-// The same, of a part of another file.
+// Reads such a report from a part of another file.
 PipelineReport readPipelineReport(base::JsonReader& reader, const base::Json& json, const std::string& place);
 
 // Returns the pipeline of another report that corresponds to this one: that of the same name and tracer, or

@@ -1,4 +1,4 @@
-// Collects what has a name in declarations: features, parameters, textures, attributes.
+// Collects everything that has a name in declarations: features, parameters, textures, attributes.
 #include "materials/model_builder.h"
 
 #include <algorithm>
@@ -165,7 +165,7 @@ void ModelBuilder::readDefault(const Members& members, Parameter& parameter) {
 }
 
 void ModelBuilder::addParameter(const File& file, const Members& members) {
-    // A parameter may be called as its feature is: "dispersion". The JSON stands on the left, because
+    // A parameter may have the name of its feature: "dispersion". The JSON stands on the left, because
     // nlohmann-json 3.11.3 (Debian 13) compares it with a string in that order only.
     std::string name = members.text("name");
     if (file.json["name"] != name) {

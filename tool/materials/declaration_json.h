@@ -1,4 +1,4 @@
-// Reads the JSON of declarations, and fails with the place of what is wrong.
+// Reads the JSON of declarations, and fails with the place of the fault.
 #pragma once
 
 #include "base/suggest.h"
@@ -32,7 +32,7 @@ struct DeclarationFault {
     throw DeclarationFault{makeError("declaration", where, std::move(message), std::move(hint))};
 }
 
-// One object of a declaration. Members that nothing may ask for are errors, so that a misspelt one is found.
+// One object of a declaration. Unknown members are errors, so that a misspelt one is found.
 class Members {
 public:
     Members(const DeclarationJson& json, std::string where, std::initializer_list<std::string_view> known)

@@ -1,4 +1,5 @@
-// What rays do in a picture: effects, as shaders/effects/*/*.json and the declarations of packs say.
+// Effects, that is, the uses of rays in a picture, as shaders/effects/*/*.json and the declarations of packs
+// define them.
 #pragma once
 
 #include <glint/effects.h>
@@ -12,17 +13,17 @@ namespace glint::materials {
 
 enum class Behaviour : std::uint8_t;
 
-// Which lit surfaces call for an effect.
+// The lit surfaces that call for an effect.
 struct EffectCall {
     bool byAll = false;     // every surface does; otherwise those with the behaviour
-    Behaviour behaviour{};  // what the surface may do with light
+    Behaviour behaviour{};  // the surface's behaviour towards light
     bool lights = false;    // only where some light shines
     std::string because{};  // of the surfaces that call for it, where all do: "is lit by the sky"
-    // Why none does; {limit} stands for the roughness limit.
+    // The reason if no surface does; {limit} stands for the roughness limit.
     std::string otherwise{};
 };
 
-// How alike the hits of neighbouring rays are (Round::coherence), on smooth surfaces and on others.
+// The similarity of neighbouring rays' hits (Round::coherence), on smooth surfaces and on others.
 struct EffectCoherence {
     double mirror = 0.1;
     double glossy = 0.1;
@@ -36,25 +37,25 @@ struct EffectDeclaration {
     double order = 0.0;
     bool isOfPack = false;
     EffectCall call;
-    // It refines this light, which pictures without it have too, so no scene calls for it by itself. Empty: a
-    // scene may.
+    // The light that the effect refines. Pictures without the effect have this light too, so no scene calls
+    // for it by itself. If empty, a scene may call for it.
     std::string refines{};
     EffectCoherence coherence{};
     std::vector<std::string> settings{};  // the settings that only change this effect
     std::string absent{};                 // why they are not worth trying without it
-    // Of the kind Rays: the sampled direction has a density, so that samples of emissive lights share the
-    // light of its lobes. `sample` then also has density…() and share…().
+    // The kind Rays: the sampled direction has a density, so that samples of emissive lights share the light
+    // of its lobes. `sample` then also has density…() and share…().
     bool sharesLights = false;
-    // Effects of the kind Rays have these two, for layers. `albedo` says which lobes bring the light:
-    // "diffuse", "specular" or "transmission"; all of them if it is empty. `shows` says which points surfaces
-    // show by it: "mirrored" or "refracted" ones; it is empty if they show only light.
+    // Effects of the kind Rays have these two members, for layers. `albedo` names the lobes that bring the
+    // light: "diffuse", "specular" or "transmission"; all of them if it is empty. `shows` names the points
+    // that surfaces show by it: "mirrored" or "refracted" ones; it is empty if they show only light.
     std::string albedo{};
     std::string shows{};
     // Names of files as an #include gives them, empty where there are none. Each has a function whose name
     // ends with function(). light: shaders/hit/ calls it. apply: changes the sky's shares. sample: makes a
-    // ray and its weight. compose: what the found light adds to the pixel; without it, the product with the
-    // weight. start: endsEarly(), before the ray joins the list. walk: a pass over the pixels before that.
-    // hit: changes the sky's shares at a hit.
+    // ray and its weight. compose: weights the found light for the pixel; without it, the light is multiplied
+    // by the weight. start: endsEarly(), before the ray joins the list. walk: a pass over the pixels before
+    // that. hit: changes the sky's shares at a hit.
     std::string light{};
     std::string apply{};
     std::string sample{};
@@ -72,9 +73,9 @@ struct EffectDeclaration {
     std::vector<const std::string*> files() const;
 };
 
-// Whether an effect may have the name: words of small letters and digits, joined by hyphens.
+// Returns whether an effect may have the name: words of small letters and digits, joined by hyphens.
 bool isEffectName(std::string_view name);
-// Returns what a package says of an effect with that number.
+// Returns the package's entry for an effect with that number.
 package::EffectInfo infoOf(const EffectDeclaration& effect, std::size_t number);
 // Returns the set of those of `effects` that `bits` has.
 package::EffectSet effectSetOf(const std::vector<EffectDeclaration>& effects, std::uint32_t bits);

@@ -183,7 +183,7 @@ void numberEffects(std::vector<EffectDeclaration>& effects) {
         if (effect.name == "auto" || effect.name == "all" || effect.name == "none") {
             failAt(where, fmt::format("--effects has another meaning for \"{}\"", effect.name));
         }
-        // The passes that light surfaces have one place for it.
+        // The passes that light surfaces have room for one such effect.
         if (effect.kind == EffectKind::Light && std::exchange(hasLight, true)) {
             failAt(effect.declaration + "#/kind",
                    "there can be one effect of the kind light; Glint has shadow");

@@ -5,9 +5,9 @@
 //   number      a + b, a - b, a * b, a / b, -a, 0.5, 1e-6, infinity, name, name.rgb
 //               min(a, b), max(a, b), abs(a), sqrt(a), ln(a), exp(a), sin(a), cos(a), select(condition, a, b)
 //
-// A name stands for what the declarations say, and so does a function that is not listed here: has(volume).
-// Numbers have one to four channels; operations are done for each channel, and one channel serves for all. A
-// comparison holds if it holds for every channel, except a != b, which is not (a == b).
+// The declarations define the names, and the functions that are not listed here: has(volume). Numbers have
+// one to four channels; operations are done for each channel, and one channel serves for all. A comparison
+// holds if it holds for every channel, except a != b, which is not (a == b).
 #pragma once
 
 #include "materials/interval.h"
@@ -22,7 +22,7 @@
 
 namespace glint::materials {
 
-// What a name, or a function with names for arguments, stands for.
+// The meaning of a name, or of a function with names for arguments.
 struct Symbol {
     int id = 0;
     bool isCondition = false;

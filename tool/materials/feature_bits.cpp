@@ -1,4 +1,4 @@
-// Numbers the features, and orders them by what their conditions ask for.
+// Numbers the features, and orders them by the features that their conditions need.
 #include "materials/model_builder.h"
 
 #include <algorithm>

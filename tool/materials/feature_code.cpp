@@ -46,7 +46,7 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
         failAt(members.at("layer"), "a layer needs a feature of its own: give the declaration \"neutral\"");
     }
     if (!code.layer.empty() && declaration.text("stage") != "layer") {
-        // Only lobes are asked for as layers are.
+        // Only features that are lobes can be enabled as layers.
         failAt(members.at("layer"), "needs a declaration whose \"stage\" is \"layer\"");
     }
     for (const std::string_view stage : {"coordinates", "opacity"}) {

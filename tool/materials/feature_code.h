@@ -1,4 +1,4 @@
-// Reads the member "glsl" of declarations: which GLSL runs for a feature, and when.
+// Reads the member "glsl" of declarations: the GLSL of a feature, and when it runs.
 #pragma once
 
 #include "materials/declaration_json.h"
@@ -19,7 +19,7 @@ struct DeclaredCode {
 // Reads "glsl" of the declaration in `file`, whose own feature is `feature` or -1. Throws DeclarationFault.
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature);
 
-// Puts the code into an order in which each comes after what it names, and by name otherwise. Throws
+// Orders the code so that each item comes after those that it names, and by name otherwise. Throws
 // DeclarationFault if a name is unknown, or if two wait for each other.
 std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code);
 

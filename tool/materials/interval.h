@@ -1,5 +1,5 @@
-// Intervals of numbers, and conditions on them. Bounds are what double arithmetic gives for the ends, so a
-// value that is known exactly stays exact.
+// Intervals of numbers, and conditions on them. Bounds are computed in double precision from the ends, so an
+// exact value stays exact.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct ValueInterval {
 inline constexpr ValueInterval kAnything{-kUnlimited, kUnlimited};
 inline constexpr ValueInterval kUnitInterval{0.0, 1.0};
 
-// What is known of a condition: it holds for all values, for none, or for some.
+// The certainty of a condition: it holds for all values, for none, or for some.
 enum class Certainty : std::uint8_t { False, True, Unknown };
 
 Certainty operator!(Certainty certainty);

@@ -1,4 +1,4 @@
-// Reads the expressions of declarations, and links what they name.
+// Reads the expressions of declarations, and links the names in them.
 #include "materials/model_builder.h"
 
 #include <algorithm>

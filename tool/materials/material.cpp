@@ -14,8 +14,8 @@ bool isMoved(const TextureInfo& info) {
     return info.moves || info.transform != TextureTransform{};
 }
 
-// Whether the directions of U and V differ from those of the UV set by more than single precision rounds. A
-// scale of 0 counts as one just above 0.
+// Returns whether the directions of U and V differ from those of the UV set by more than the rounding of
+// single precision. A scale of 0 counts as one just above 0.
 bool turnsFrame(const TextureInfo& info) {
     constexpr double kTolerance = 2.5e-7;
     const TransformRows rows = rowsOf(info.transform);

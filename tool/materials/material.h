@@ -1,5 +1,4 @@
-// The materials that planning reads. Which parameters and textures they have is declared
-// (materials/material_model.h).
+// The materials that planning reads. Their parameters and textures are declared (materials/material_model.h).
 #pragma once
 
 #include "materials/material_model.h"
@@ -39,19 +38,19 @@ TransformRows rowsOf(const TextureTransform& transform);
 
 inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// Where a number was found in an image. Level -1: nowhere.
+// The place of a number in an image. Level -1: nowhere.
 struct TexelPlace {
     int level = -1;
     int x = 0;
     int y = 0;
 };
 
-// What lookups of a texture can give, by channel, as shading reads them.
+// The values that lookups of a texture can give, by channel, as shading reads them.
 struct TextureContent {
-    // All numbers in [0, 1] where nobody has looked.
+    // The range of each channel. It is [0, 1] where the texels are unknown.
     std::array<ValueInterval, 4> of{kUnitInterval, kUnitInterval, kUnitInterval, kUnitInterval};
-    // The one number that all lookups give, where the texels are all the same; NaN where they are not. `of`
-    // has it, and is wider by what drivers round.
+    // The one number that all lookups give, if all texels are equal; NaN if they are not. `of` contains it,
+    // and is wider by the rounding of drivers.
     std::array<double, 4> constant{kNoNumber, kNoNumber, kNoNumber, kNoNumber};
     // Texels that have the least and the greatest number.
     std::array<TexelPlace, 4> leastAt{};
@@ -151,15 +150,15 @@ public:
     // Sets parameters of an extension, and that the file gives it.
     void give(std::string_view object);
     bool gives(std::string_view object) const;
-    // Whether a texture is colour, in sRGB; its alpha, where something reads that, is linear all the same.
+    // Returns whether a texture is colour, in sRGB; its alpha is linear in any case.
     bool isColor(int texture) const;
-    // What shading reads of it, in all places that the material reads.
+    // Returns the channels that shading reads of it, in all places that the material reads.
     TextureReads readsOf(int texture) const;
 
-    // Whether the material reads an object of its JSON. It does not read the base model that another one
-    // replaces.
+    // Returns whether the material reads an object of its JSON. It does not read the base model that another
+    // one replaces.
     bool reads(int object) const;
-    // Whether no light changes what the surface shows.
+    // Returns whether no light changes the look of the surface.
     bool isUnlit() const;
 
 private:
@@ -172,7 +171,7 @@ enum class ColorContent : std::uint8_t {
     Varying
 };
 
-// What a primitive can see of one of its material's textures.
+// The part of a material's texture that a primitive can see.
 struct SeenTexture {
     int slot = 0;  // index into MaterialModel::textures
     TextureContent content;
@@ -192,7 +191,8 @@ struct PrimitiveInputs {
     double expectedHits = 0.0;  // in proportion to those of other primitives; all are 0 if nothing is known
     // The file gives tangents, and they are those that shading would derive.
     bool derivesTangents = false;
-    // By ascending slot. What is not listed is known of the whole texture only (TextureInfo::content).
+    // The textures by ascending slot. A texture that is not listed has only the content of the whole
+    // (TextureInfo::content).
     std::vector<SeenTexture> seen{};
 
     bool hasTexCoords(int set) const {
@@ -218,19 +218,19 @@ PrimitiveInputs withEveryAttribute(PrimitiveInputs primitive);
 std::string missingAttribute(const Material& material, const PrimitiveInputs& primitive,
                              const Feature& feature);
 
-// The same for a texture or a lobe that the file asks for, and that would change something on a primitive
-// with every attribute. Empty if nothing is lost.
+// Returns the same for a texture or a lobe that the file requests, and that would change something on a
+// primitive with every attribute. Empty if nothing is lost.
 std::string lostInput(const Material& material, const PrimitiveInputs& primitive, const Feature& feature);
 
-// Returns what the primitive can see of the texture, whether or not it is readable.
+// Returns the content that the primitive can see of the texture, whether or not it is readable.
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture);
 
-// What is known of a material on a primitive. A parameter that a readable texture scales has the interval of
+// The facts about a material on a primitive. A parameter that a readable texture scales has the interval of
 // all products with numbers that the texture may hold. The objects that it refers to must outlive it.
 class MaterialFacts final : public Facts {
 public:
-    // Scale: by what the texture holds. Unknown: by any number in [0, 1], and texel() is any such number.
-    // Texels: the same, but texel() is known. Ignored: not at all.
+    // The use of textures. Scale: by their contents. Unknown: by any number in [0, 1], and texel() is any
+    // such number. Texels: as Unknown, but texel() is known. Ignored: not at all.
     enum class Textures : std::uint8_t { Scale, Unknown, Texels, Ignored };
 
     // `key` holds the features that are known to be in the key.
@@ -245,7 +245,7 @@ private:
     bool readsTexCoord(int set) const;
     bool hasTangents() const;
     bool isInKey(const Feature& feature) const;
-    // Whether a feature without a texture needs a frame, and no texture of the key gives it one.
+    // Returns whether a feature without a texture needs a frame, and no texture of the key gives it one.
     bool takesPlainFrame(const Feature& feature) const;
     const TextureInfo* plainFrameTexture() const;  // null: the first UV set
     bool turnsTangents() const;

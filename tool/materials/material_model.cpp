@@ -40,7 +40,7 @@ float Parameter::hold(double value) const {
         // Sine and cosine keep their digits if the angle is reduced in double precision.
         return static_cast<float>(std::remainder(value, 2.0 * std::numbers::pi));
     }
-    // What a float can't hold is infinite where that is allowed.
+    // A value beyond the range of floats is infinite where that is allowed.
     const bool overflows = std::isinf(high) && value >= std::numeric_limits<float>::max();
     return static_cast<float>(overflows ? kUnlimited : std::clamp(value, low, high));
 }

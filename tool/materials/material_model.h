@@ -1,6 +1,6 @@
-// What materials are made of: parameters, textures and features, as shaders/materials/*/*.json declare them.
-// The model is data. materials/declarations.h reads it; importing, planning, records and documents follow
-// from it.
+// The parts of materials: parameters, textures and features, as shaders/materials/*/*.json declare them. The
+// model is data. materials/declarations.h reads it; importing, planning, records and documents follow from
+// it.
 #pragma once
 
 #include "materials/effect_declaration.h"
@@ -34,7 +34,7 @@ constexpr FeatureMask bitMask(int bit) {
 
 // The stage at which a feature's GLSL runs.
 enum class Stage : std::uint8_t {
-    Attributes,   // what a vertex brings
+    Attributes,   // attributes of vertices
     Coordinates,  // UVs
     Base,         // a base model, without which no hit can do
     Surface,      // base colour, normal, roughness
@@ -77,8 +77,8 @@ struct Parameter {
     bool isAngle = false;          // in radians; reduced to one turn
     int aliasOf = -1;              // the parameter whose numbers it sets, or -1
     int scaledBy = -1;             // the texture that multiplies it by numbers in [0, 1], or -1
-    // The texture's channel that multiplies each of its own, if that is all that the texture does to it; -1:
-    // not known.
+    // The texture's channel that multiplies each channel of the parameter, if the texture has no other effect
+    // on it; -1: not known.
     std::array<int, 4> scaledByChannels{-1, -1, -1, -1};
     int feature = -1;  // Records have the parameter if a key has this feature; -1: always.
     bool inRecord = true;
@@ -99,7 +99,7 @@ struct DerivedField {
     int count = 1;                     // channels of the field
 };
 
-// What shading reads of a texture. Compressed formats are chosen, and levels made, by it.
+// The reads of a texture by shading. They decide about compressed formats and the making of levels.
 struct TextureReads {
     std::uint32_t channels = 15;  // bit 0: red, to bit 3: alpha
     bool isNormals = false;  // red and green are the x and y of unit vectors in tangent space, z is positive
@@ -204,13 +204,13 @@ struct FeatureCode {
     std::string emission{};
     std::string coordinates{};
     std::string opacity{};
-    bool coversEmission = false;  // the layer takes what it reflects from the emission, too
+    bool coversEmission = false;  // the layer's reflection also weakens the emission
     bool isTraced = false;        // rays may trace the layer's reflection
     bool isReciprocal = false;    // the layer claims that view and light may change places
     bool isOfPack = false;        // of a user's own
 };
 
-// What a material may do with light, by which effects are chosen.
+// The effects of a material on light, by which effects are chosen.
 enum class Behaviour : std::uint8_t { Reflects, Transmits, Scatters, Emits };
 
 struct BehaviourRule {
@@ -283,7 +283,7 @@ public:
     FeatureMask mask(std::string_view feature) const;
     // Returns the names of the features of `mask`, in the order of bits.
     std::vector<std::string_view> names(FeatureMask mask) const;
-    // Returns the base models, without which no hit can do.
+    // Returns the base models. Every hit needs one.
     FeatureMask baseModels() const;
     // Returns the features that have GLSL at the stage opacity.
     FeatureMask opacityFeatures() const;

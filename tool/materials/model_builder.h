@@ -45,7 +45,7 @@ inline constexpr NamedType kTypes[] = {{"float", "float", 1},
                                        {"color", "vec3", 3},
                                        {"vec4", "vec4", 4}};
 
-// Builds the model in two passes over the files: the first collects what has a name, the second reads the
+// Builds the model in two passes over the files: the first collects the names, the second reads the
 // expressions, which may use any of the names.
 class ModelBuilder {
 public:
@@ -120,10 +120,10 @@ private:
     // Lobes and inputs have words of their own. In each, bits follow the declared order, then the names.
     void assignBits();
     static bool isLobe(const Feature& feature);
-    // A feature is evaluated after those that its conditions ask for. What vertices bring comes last, because
-    // all textures and lobes may ask for it.
+    // A feature is evaluated after those that its conditions need. Vertex attributes come last, because all
+    // textures and lobes may need them.
     void orderByDependence();
-    // Unlit surfaces read a texture and have an opacity, so packs may change where and how much.
+    // Unlit surfaces read a texture and have an opacity, so packs may change both.
     void keepPlacesOfUnlit();
     bool asksForOpacity(const Feature& feature) const;
     const std::vector<int>& indices(std::size_t count);

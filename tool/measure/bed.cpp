@@ -21,8 +21,7 @@ namespace glint::measure {
 
 namespace {
 
-// Opens the device with as many of its optional features as possible: those that the default needs, and those
-// that the sweep could use.
+// Opens the device with as many of its optional features as possible, for the default and the sweep.
 Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, DeviceOptions& features) {
     const HeadlessOptions wanted = deviceOptions(render);
     HeadlessOptions options = wanted;
@@ -64,7 +63,7 @@ std::string decided(const compiler::Settings& settings, const Decides& decides) 
     return fmt::format("{}", fmt::join(compiler::wordsOf(configuration), " "));
 }
 
-// A pass of a case counts with those of the others.
+// The passes of all cases count together.
 std::string nameOfPass(const PassTiming& pass) {
     return pass.pass == Pass::ShadeCase ? std::string(kShadeCases) : pass.name;
 }
@@ -176,8 +175,8 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     return bed;
 }
 
-// A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
-// chosen for this scene.
+// A bench compares with one alpha policy and one strategy. Where a setting is `auto`, it is the choice for
+// this scene.
 Status BenchBed::settleChoices() {
     GLINT_TRY(const auto plan, choosePlan(base_, gltf::SceneList({&scene_, 1})));
     base_.alpha = plan.options.keys.alpha;

@@ -58,7 +58,7 @@ public:
         if (settings_.depth != "singles") {
             add(points, PointKind::Pair, pairs(report_.settings, report_.base, settings_.quick));
         }
-        // Beside each approximation's exact value alone, all of them together.
+        // Measures all exact values together, beside each one alone.
         if (compiler::Configuration exact = exactTogether(report_.settings, report_.base); exact.size() > 1) {
             add(points, PointKind::Exact, {std::move(exact)});
         }
@@ -89,7 +89,7 @@ private:
         return settings_.depth != "search" ? 0 : settings_.quick ? 1 : kSearches;
     }
 
-    // Makes the reference, learns about the scene's light from it, and then decides which settings there are.
+    // Makes the reference, learns about the scene's light from it, and then decides the settings to sweep.
     Status makeTruth(const compiler::PlanOptions& plan) {
         compiler::BenchFacts facts = factsOf(bed_.base(), bed_.scene(), plan);
         const std::uint32_t tracers = bed_.context().handles().tracers;
@@ -127,7 +127,7 @@ private:
         }
     }
 
-    // The filter's pictures, and one of many samples, which they are to be compared with.
+    // The filter's pictures, and one of many samples for comparison.
     void addFiltered(std::vector<BenchPoint>& points) const {
         for (const std::uint32_t frames : {1U, kFilteredFrames}) {
             BenchPoint point = makePoint(PointKind::Filtered, {});

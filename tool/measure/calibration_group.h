@@ -26,7 +26,7 @@ struct CalibrationScene {
     package::Effect effect{};
 };
 
-// The same, but only on the host.
+// The scenes and their package on the host, before the upload.
 struct CompiledGroup {
     std::vector<synthetic::CasesOptions> options;  // of each scene
     std::vector<gltf::Scene> scenes;

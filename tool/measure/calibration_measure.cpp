@@ -27,8 +27,9 @@ using Milliseconds = std::chrono::duration<double, std::milli>;
 // microseconds at worst, and a sample of 10⁶ rays takes about one millisecond.
 constexpr double kLeastMs = 10.0;
 constexpr std::uint32_t kMaxSamples = 16;
-// Relative to the larger of the pixel and 1, which is the white of the scenes' light. Strategies add the same
-// numbers in the same order, so every difference beyond rounding is a defect.
+// The limit of a visible difference, relative to the larger of the pixel and 1, which is the white of the
+// scenes' light. Strategies add the same numbers in the same order, so every difference beyond rounding is a
+// defect.
 constexpr double kVisible = 1e-3;
 
 constexpr std::uint32_t kTile = 8;

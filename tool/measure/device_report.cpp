@@ -93,7 +93,7 @@ public:
     }
 
 private:
-    // Reports carry no folder, so `name` says what the package is of.
+    // Reports contain no folder, so `name` identifies the package.
     Status addPipelines(const Package& package, const std::string& name) {
         observer_.progress("making the pipelines of " + name);
         inspect::Manifest manifest;
@@ -154,7 +154,7 @@ private:
         }
         std::vector<double> times;
         std::vector<double> hits;
-        // The first picture may include what the driver compiles late.
+        // The first picture may include compilation by the driver.
         for (std::uint32_t round = 0; round <= settings_.rounds; ++round) {
             GLINT_TRY(const auto exposure, mount->expose(settings_.seed + round));
             if (round > 0) {

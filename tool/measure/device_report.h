@@ -1,5 +1,5 @@
-// What `glint bench --device-report` tells of a device: its compiler's view of Glint's pipelines, and the
-// times of strategies. It has nothing of the person who makes it: no names of hosts, users or files.
+// The report of `glint bench --device-report` about a device: its compiler's statistics of Glint's pipelines,
+// and the times of strategies. It has no personal data: no names of hosts, users or files.
 #pragma once
 
 #include "base/json.h"

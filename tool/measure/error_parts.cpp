@@ -1,4 +1,4 @@
-// Which part of the default's error is which approximation.
+// Divides the default's error among its approximations.
 #include <glint/measure/report.h>
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace {
 // The two causes of an error, in a measure that adds up.
 struct Causes {
     double bias = 0.0;
-    double noise = 0.0;  // what any number of samples would take away
+    double noise = 0.0;  // the part that more samples remove
 };
 
 // Over N rounds of independent noise the error of the mean picture has 1 / N of the noise that the error of
-// one picture has, and all of the bias. FLIP is no square: there the noise is a lower bound. One round tells
-// nothing of noise.
+// one picture has, and all of the bias. FLIP is no square: there the noise is a lower bound. A single round
+// gives no estimate of noise.
 Causes causesOf(const BenchPoint& point, ErrorMetric metric) {
     const auto rounds = static_cast<double>(point.errors.size());
     Causes causes;

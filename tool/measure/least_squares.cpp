@@ -45,8 +45,8 @@ Normal makeNormal(std::span<const std::vector<double>> rows, std::span<const dou
 // Solves the subset's equations by Cholesky decomposition, for unknowns of unit columns in the order of
 // `subset`. Returns nothing if there is no unique solution, or if an unknown is negative.
 std::optional<std::vector<double>> solveSubset(const Normal& normal, std::span<const std::size_t> subset) {
-    // Bounds the squared length that is left of a column beside those before it. Below this, rounding would
-    // decide about its unknown.
+    // A bound of the squared length that remains of a column after projection onto those before it. Below
+    // this, rounding would decide about its unknown.
     constexpr double kLeastPivot = 1e-9;
     const std::size_t n = subset.size();
     std::vector<double> lower(n * n);

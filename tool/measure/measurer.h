@@ -28,9 +28,9 @@ struct Truth {
     double exposure = 0.0;  // stops
 };
 
-// Measures in batches that each have the default in every round. Ratios are relative to the default in the
-// same round, so a machine that slows down or a clock that drifts does not distort them. Before its rounds a
-// configuration renders once, so that its pipelines are ready. On a GPU it also renders for a few
+// Measures in batches, each of which has the default in every round. Ratios are relative to the default in
+// the same round, so a machine that slows down or a clock that drifts does not distort them. Before its
+// rounds a configuration renders once, so that its pipelines are ready. On a GPU it also renders for a few
 // milliseconds before each picture, so that clocks are up.
 class Measurer {
 public:

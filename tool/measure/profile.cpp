@@ -156,7 +156,7 @@ void takeHits(const Profile& profile, const Profile& expected, const materials::
              fmt::format("counts {} keys that the scene does not have: {}", gone.size(), someOf(gone)), ""});
     }
     if (hits == 0 && !expected.keys.empty()) {
-        // Auto has a better estimate than that nothing is hit.
+        // Auto has a better estimate than zero hits.
         const bool isAuto = choice.options.merge == compiler::MergePolicy::Auto;
         choice.options.hits.clear();
         choice.warnings.push_back(
@@ -167,7 +167,7 @@ void takeHits(const Profile& profile, const Profile& expected, const materials::
     }
 }
 
-// Decides what `--alpha auto` stands for, and says so where a scene has surfaces that are not opaque.
+// Chooses the policy of `--alpha auto`, and reports it if a scene has surfaces that are not opaque.
 void chooseAlpha(const compiler::Settings& settings, const gltf::SceneList& scenes, PlanChoice& choice) {
     const package::AlphaPolicy needed = compiler::neededAlphaPolicy(scenes.materials(), scenes.primitives());
     const package::AlphaPolicy chosen = settings.alpha.value_or(needed);

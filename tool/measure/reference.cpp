@@ -28,7 +28,7 @@ constexpr std::uint32_t kFewestBlocks = 4;
 // The seeds of blocks are far from those of rounds.
 constexpr std::uint32_t kFirstSeed = 0x51EED000U;
 
-// Returns everything that decides about the picture.
+// Returns everything that the picture depends on.
 Result<std::string> keyOf(BenchBed& bed, const compiler::Configuration& configuration) {
     const compiler::Settings& base = bed.base();
     compiler::Packer packer;
@@ -71,7 +71,7 @@ std::optional<LinearImage> unpack(std::optional<std::string_view> bytes, std::ui
     return image;
 }
 
-// What a cache keeps of a reference.
+// The cached part of a reference.
 struct Kept {
     image::MeanImage mean;
     std::vector<std::uint8_t> surfaces;
@@ -96,7 +96,7 @@ std::optional<Kept> findKept(compiler::CacheStore* store, const std::string& key
                 {surfaces->begin(), surfaces->end()}};
 }
 
-// Fills in the picture and how certain it is.
+// Fills in the picture and its uncertainty.
 void judge(const image::MeanImage& sum, std::span<const std::uint8_t> surfaces,
            const ReferenceOptions& options, Reference& reference) {
     reference.image = sum.mean();

@@ -14,8 +14,9 @@ namespace glint::measure {
 
 namespace {
 
-// Returns `--effects` for all that rays find: what the scene calls for, effects that refine the light of the
-// sky by rays, and those of packs that the user names. Effects that approximate what rays find are left out.
+// Returns `--effects` for everything that rays find: the effects that the scene calls for, those that refine
+// the light of the sky by rays, and those of packs that the user names. Effects that approximate the light of
+// rays are left out.
 std::string rayEffects(const compiler::EffectRequest& request) {
     std::string words = "auto";
     for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {

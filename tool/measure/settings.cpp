@@ -52,7 +52,7 @@ void insertValue(std::vector<std::string>& values, const std::string& value) {
 }
 
 // Returns why the setting changes nothing: the default lacks the effects that it belongs to. A higher limit
-// of roughness may call for reflections itself, and in a full reference it does.
+// of roughness may itself call for reflections, and does in a full reference.
 std::string withoutEffects(const compiler::Descriptor& row, compiler::BenchFacts facts) {
     if (row.name == kMaxRoughness && facts.fullTransport) {
         facts.effects = facts.effectsOfAnyRoughness;

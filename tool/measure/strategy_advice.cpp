@@ -44,7 +44,7 @@ std::vector<compiler::Round> roundsOf(const Package& package, const gltf::Scene&
     return frameRounds(scene.materials, primitives, roundCases(cases, hits), shape);
 }
 
-// Makes the pipelines of the package, and lets what the device's compiler says of them count.
+// Makes the pipelines of the package, and uses the device compiler's statistics of them.
 Status askDevice(const compiler::Settings& render, Context& context, const Package* package,
                  KnownCosts& costs, std::vector<Diagnostic>& warnings) {
     if (package == nullptr || !context.handles().pipelineStatistics) {
@@ -156,7 +156,7 @@ Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& render,
     const compiler::FrameShape shape = shapeOf(render, package->shape().effects.all);
     std::vector<std::string> available = runnableStrategies(tracers, render.renderer.tracer, package);
     if (available.empty()) {
-        // What the device lacks is reported when the package is used.
+        // Features that the device lacks are reported when the package is used.
         available = compiler::strategyNames(package->shape().strategies);
     }
     return adviseStrategy(costs, roundsOf(*package, scene, shape), available, shape.pixels);

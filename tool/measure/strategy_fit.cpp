@@ -130,8 +130,7 @@ double estimateOf(const Sample& sample, const compiler::StrategyCosts& costs) {
     return ms;
 }
 
-// Estimates of every point, by strategy. The constants are fitted without the point's group, if there are
-// other groups.
+// Estimates of every point, by strategy. The constants are fitted from the other groups, if there are any.
 using Estimates = std::map<const Sample*, std::map<std::string, double, std::less<>>>;
 
 Estimates estimateHeldOut(const std::vector<Sample>& samples, bool& held) {
@@ -192,7 +191,7 @@ Regret regretOf(const std::vector<Sample>& samples, const Estimates& estimates) 
         if (own == estimates.end() || own->second.size() < 2) {
             continue;
         }
-        // The loop follows the order in which a choice takes the first of equals.
+        // The loop follows the order in which a choice takes the first of several equal ones.
         std::string_view taken;
         std::string_view fastest;
         for (const std::string_view strategy : compiler::simplestFirst()) {

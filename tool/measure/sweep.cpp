@@ -31,7 +31,7 @@ constexpr Pair kPairs[] = {
     {"spp", "skip-below", false},
     // The rays of further effects bring more with each bounce.
     {"effects", "bounces", true},
-    // The number of shaders decides what each strategy costs.
+    // The cost of each strategy depends on the number of shaders.
     {"strategy", "merge", true},
     {"strategy", "hit-lobes", false},
     {"strategy", "binning", false},

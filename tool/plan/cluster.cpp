@@ -15,8 +15,8 @@ struct Group {
     KeySet set;
     double cost = 0.0;
     bool alive = true;
-    // `partner` is the later group with which merging costs least; `increase` is what that merge adds to the
-    // total cost.
+    // `partner` is the later group with which merging costs least; `increase` is the cost that this merge
+    // adds to the total.
     std::size_t partner = kNobody;
     double increase = 0.0;
 };

@@ -10,7 +10,7 @@ namespace glint::compiler {
 
 namespace {
 
-// Returns which part of a feature's code the hits without it run in vain, if the share p of their case's hits
+// Returns the part of a feature's code that hits without it run in vain, if the share p of their case's hits
 // have it.
 double idleShare(double p) {
     double noLane = 1.0 - std::clamp(p, 0.0, 1.0);

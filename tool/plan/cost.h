@@ -13,8 +13,9 @@
 //   branch(f)  how much a case grows beyond its features' own code when f becomes a branch. All of its hits
 //              pay for it in tests, selects and registers: kInputBranch, kLobeBranch
 //
-// On a GPU whose compiler was asked, an instruction takes m times as long in a case that branches, because
-// such shaders hold more registers. Its cost is then w * ( (m - 1) * own code + m * sum above ) + kCaseCost.
+// On a GPU with a table of its compiler's statistics, an instruction takes m times as long in a case that
+// branches, because such shaders hold more registers. Its cost is then w * ( (m - 1) * own code + m * sum
+// above ) + kCaseCost.
 //
 // Lit shading counts as such a feature too, which unlit keys lack. Instructions, fetches and branches are
 // measured (cost_constants.h, and "cost" in each declaration). The constants in this file are chosen.
@@ -46,8 +47,8 @@ struct WeightedKey {
     materials::FeatureMask mask = 0;
     double share = 0.0;
     const materials::MaterialModel* model = &materials::builtinMaterialModel();  // the same for all keys
-    // How much longer an instruction takes in a case that branches; the same for all keys, at least 1. Known
-    // of GPUs whose compilers were asked (plan/gpu_costs.h).
+    // The factor by which an instruction takes longer in a case that branches; the same for all keys, at
+    // least 1. It is known for GPUs with a table of their compiler's statistics (plan/gpu_costs.h).
     double branchFactor = 1.0;
 };
 

@@ -27,8 +27,8 @@ struct Surface {
     const materials::PrimitiveInputs* primitive = nullptr;
 };
 
-// Returns each material of the primitives once for each set of UV sets, and what its textures hold there,
-// that it is used with, in the order of materials.
+// Returns each material of the primitives, in the order of materials: once for each set of UV sets that it is
+// used with, and for each known content of its textures there.
 std::vector<Surface> surfacesOf(std::span<const materials::Material> materials,
                                 std::span<const materials::PrimitiveInputs> primitives) {
     using Seen = std::vector<std::pair<int, std::array<materials::ValueInterval, 4>>>;
@@ -95,7 +95,7 @@ public:
     }
 
     // Returns which textures keep the reflection rougher than `limit`, in words, or an empty text if it is
-    // rougher whatever they hold.
+    // rougher with any contents.
     std::string roughenedBy(double limit) const {
         for (const materials::BehaviourRule& rule : material_.model().behaviours) {
             if (rule.roughness && holds(rule) && rule.roughness->number(blind_).of[0].low <= limit &&
@@ -133,7 +133,7 @@ private:
     materials::KeyOptions options_{};
     materials::FeatureMask key_;
     materials::MaterialFacts facts_;
-    materials::MaterialFacts blind_;  // to what textures hold
+    materials::MaterialFacts blind_;  // ignores the contents of textures
     materials::MaterialFacts factors_;
 };
 
@@ -187,7 +187,7 @@ const materials::MaterialModel& modelOf(std::span<const materials::Material> mat
     return materials.empty() ? materials::builtinMaterialModel() : materials.front().model();
 }
 
-// Returns the bits of the effects that the user asks for.
+// Returns the bits of the effects that the user requests.
 std::uint32_t namedEffects(const EffectRequest& request, const materials::MaterialModel& model) {
     std::uint32_t named = request.named;
     for (const std::string& name : request.ofPacks) {
@@ -246,7 +246,7 @@ EffectPlan decideEffects(std::span<const materials::Material> materials,
         const package::EffectInfo info = infoOf(effect, i);
         Finding finding = find(effect, surfaces, lights, request);
         const bool named = (allNamed & info.effect) != 0;
-        // Every lit surface could use these effects, and no file asks for them.
+        // Every lit surface could use these effects, and no file requests them.
         const bool refines = !effect.refines.empty();
         EffectDecision decision{info.effect, effect.name,    named && request.named != package::kAllEffects,
                                 false,       finding.usable, std::move(finding.reason)};

@@ -1,5 +1,4 @@
-// Decides which effects a package has, from what the user asks for and what the scenes call for. Pure
-// functions.
+// Decides which effects a package has, from the user's request and the scenes' needs. Pure functions.
 #pragma once
 
 #include "materials/material.h"
@@ -15,7 +14,7 @@
 
 namespace glint::compiler {
 
-// What the user asks for.
+// The user's request.
 struct EffectRequest {
     bool automatic = false;   // chooses those that the scenes call for
     std::uint32_t named = 0;  // Effect bits: always chosen
@@ -26,7 +25,7 @@ struct EffectRequest {
     std::vector<std::string> ofPacks{};
 };
 
-// The facts about a scene that decide, apart from its materials.
+// The facts about a scene, apart from its materials, on which the decision depends.
 struct SceneLights {
     bool lit = false;  // Some light has an intensity above 0.
 };
@@ -49,7 +48,7 @@ struct EffectPlan {
 std::uint32_t builtinEffects(std::initializer_list<std::string_view> names);
 
 // Only the materials of `primitives` count. Requires every PrimitiveInputs::material to index `materials`.
-// The reasons name values, not extensions that are merely present. The effects are those of the materials'
+// The reasons name values rather than the presence of extensions. The effects are those of the materials'
 // model. The names of `request` must be among them.
 EffectPlan decideEffects(std::span<const materials::Material> materials,
                          std::span<const materials::PrimitiveInputs> primitives, const SceneLights& lights,
@@ -61,13 +60,14 @@ bool sendsRays(const materials::EffectDeclaration& effect, const materials::Mate
                const materials::PrimitiveInputs& primitive, float maxReflectionRoughness);
 
 // Returns whether triangles of this material on this primitive can be lights: they emit light, and no code of
-// a pack changes that light or where its texture is read.
+// a pack changes that light or the place at which its texture is read.
 bool isEmitter(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 
 // Returns whether light may pass straight through the surface.
 bool passesLight(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 
-// Returns the least roughness of anything that reflects, without what textures do; infinity if nothing does.
+// Returns the least roughness of anything that reflects, without the effects of textures; infinity if nothing
+// reflects.
 double leastRoughness(const materials::Material& material, const materials::PrimitiveInputs& primitive);
 
 }  // namespace glint::compiler

@@ -136,7 +136,7 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
             continue;
         }
         round.coherence /= senders;
-        // Rays that spread apart hit surfaces as different as the scene has.
+        // Rays that spread apart hit surfaces as different as those of the whole scene.
         round.scatter = 1.0 - round.coherence;
         round.rays = shape.pixels * kSurfaceShare * std::min(senders, 1.0);
         if (shape.batchEffects && !rounds.empty()) {

@@ -23,7 +23,7 @@ namespace glint::compiler {
 inline constexpr double kSurfaceShare = 0.8;
 inline constexpr double kRayHitShare = 0.7;
 
-// Declarations of effects say how alike the hits of neighbouring rays are (Round::coherence). The values are
+// Declarations of effects give the similarity of neighbouring rays' hits (Round::coherence). The values are
 // chosen between those of the calibration's coherent scenes (mirrors), near 1, and its incoherent scenes
 // (diffuse rays), near 0. Mirrors have 0.9, as neighbours hit one surface up to its border; glossy lobes,
 // some ten degrees wide, have 0.5; refraction has 0.7, as the surfaces in between bend and scatter the rays;
@@ -38,8 +38,8 @@ inline constexpr double kPathCoherence = 0.1;
 // The shaders of packages with paths also choose and weigh the next ray over all lobes of a hit. Instructions
 // of a case's SPIR-V over those in a package for one bounce (docs/performance.md says how it was measured).
 inline constexpr double kPathCode = 1.9;
-// The share of light that a bounce leaves. Russian roulette keeps a path with the probability of its
-// throughput: after three bounces that of all three, and of one after each bounce that follows
+// The share of light that remains after a bounce. Russian roulette keeps a path with the probability of its
+// throughput: once after three bounces, for all three, and then after each further bounce for that one
 // (docs/paths.md).
 inline constexpr double kPathAlbedo = 0.5;
 
@@ -74,9 +74,9 @@ std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
 std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
                                   const materials::MaterialModel& model = materials::builtinMaterialModel());
 
-// Returns one round for each effect that sends rays, in the order of the effects, or one round for all; then
-// one round for each further bounce of these.
-// `primitives` are those of one scene; their materials index `materials`.
+// Returns one round for each effect that sends rays, in the order of the effects, or one round for all
+// effects; then one round for each further bounce of these rounds. `primitives` are those of one scene; their
+// materials index `materials`.
 std::vector<Round> frameRounds(std::span<const materials::Material> materials,
                                std::span<const materials::PrimitiveInputs> primitives,
                                const std::vector<RoundCase>& cases, const FrameShape& shape);

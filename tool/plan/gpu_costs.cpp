@@ -19,7 +19,7 @@ const PackageCosts* findPackage(const GpuCosts& gpu, std::string_view merge, std
     return found == gpu.packages.end() ? nullptr : &*found;
 }
 
-// Returns the strategy that has a module for each case. The table has one.
+// Returns the strategy that has a module for each case. The table of strategies has one.
 std::string_view caseStrategy() {
     return std::ranges::find_if(package::strategyTable(), &package::StrategyInfo::dispatchesCases)->name;
 }
@@ -116,8 +116,8 @@ DeviceCosts withGpu(DeviceCosts measured, const GpuCosts& gpu) {
             continue;
         }
         const double own = constantOf(*row, CostTerm::Instructions);
-        // What the measured device took longer in this strategy's module than in those of cases is part of
-        // its constants, and gives way to what the compiler says.
+        // The measured device's constants include the extra time of this strategy's module over those of
+        // cases. The compiler's factor replaces that ratio.
         const double scale = own > 0.0 ? factor.factor * ofCases / own : factor.factor;
         for (const CostTerm term : kOfInstructions) {
             row->constants[static_cast<std::size_t>(term)] *= scale;

@@ -1,14 +1,14 @@
-// What the compiler of a GPU makes of Glint's modules, and the choices that follow. The numbers are static:
-// nothing runs, so they also come from GPUs that are not there. They describe code, not memory.
+// The code that the compiler of a GPU makes of Glint's modules, and the choices that follow. The numbers are
+// static: nothing runs, so they also come from GPUs that are not there. They describe code, not memory.
 //
-// The weight of a module is the SPIR-V that it has, instructions + kFetchCost * fetches. Shading waits for
-// memory and for its own results, and the other subgroups of a processor hide that. So an instruction costs
+// The weight of a module is that of its SPIR-V, instructions + kFetchCost * fetches. Shading waits for memory
+// and for its own results, and the other subgroups of a processor hide these waits. So an instruction costs
 //
 //     k = (1 + kFetchCost * spills / weight) / occupancy
 //
-// in a module; a spill counts as a fetch. Of k only ratios of modules of one GPU are used. The compiler's own
-// cycles would not do: most of them are those of the loop that traverses the scene, which compilers weigh as
-// they like, and a switch has one such loop for all of its cases.
+// in a module; a spill counts as a fetch. Only ratios of k between modules of one GPU are used. The
+// compiler's own cycles would be misleading. Most of them are those of the loop that traverses the scene,
+// which compilers weigh arbitrarily, and a switch has one such loop for all of its cases.
 #pragma once
 
 #include "plan/strategy_cost.h"
@@ -54,8 +54,8 @@ struct GpuCosts {
     std::string device;
     std::string driver;
     double subgroupSize = 32.0;
-    // The first one is what others are compared with: --merge none, --shadows inline, --precision 32. The
-    // others are of the same scene.
+    // Others are compared with the first package: --merge none, --shadows inline, --precision 32. The others
+    // are of the same scene.
     std::vector<PackageCosts> packages;
 };
 
@@ -65,8 +65,8 @@ const ModuleCost* findModule(const PackageCosts& package, std::string_view role)
 // Returns the role of the module that shades the hits of a strategy.
 std::string_view shadingRole(std::string_view strategy);
 
-// Returns how much longer an instruction takes in a strategy's shading module than in one of a case, for each
-// strategy that the table has; the factor of strategies with a module a case is 1.
+// Returns the factor by which an instruction takes longer in a strategy's shading module than in one of a
+// case, for each strategy that the table has; the factor of strategies with a module a case is 1.
 struct StrategyFactor {
     std::string strategy;
     double factor = 1.0;
@@ -75,12 +75,13 @@ struct StrategyFactor {
 std::vector<StrategyFactor> strategyFactors(const GpuCosts& gpu);
 
 // Returns the constants of a measured device as they should be on the GPU. Terms of instructions are those of
-// a strategy with a module a case, times the strategy's factor. Other terms stay, as nothing static says how
-// fast memory and traversal are.
+// a strategy with a module a case, times the strategy's factor. Other terms stay, because static numbers do
+// not show the speed of memory and traversal.
 DeviceCosts withGpu(DeviceCosts measured, const GpuCosts& gpu);
 
-// Returns how much longer an instruction takes in a case that branches on features than in one of a single
-// key; at least 1. It is that of --merge family where the table has it, else of --merge all, else 1.
+// Returns the factor by which an instruction takes longer in a case that branches on features than in one of
+// a single key; at least 1. It is the factor of --merge family if the table has it, else that of --merge all,
+// else 1.
 double branchFactor(const GpuCosts& gpu);
 
 // A choice among the values of a setting.
@@ -89,8 +90,8 @@ struct GpuChoice {
     std::string value;
     std::string why;  // a full sentence
 };
-// Returns what the compiler's numbers say about the settings that the table has several values of. A value
-// that costs memory or accuracy has to save at least kLeastGain.
+// Returns the choices that the compiler's numbers suggest for the settings of which the table has several
+// values. A value that costs memory or accuracy has to save at least kLeastGain.
 std::vector<GpuChoice> chooseSettings(const GpuCosts& gpu);
 inline constexpr double kLeastGain = 0.1;
 

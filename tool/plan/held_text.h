@@ -1,4 +1,4 @@
-// Says in words what textures hold, for the reasons that explain gives. Pure functions.
+// Describes the contents of textures in words, for the reasons of `glint explain`. Pure functions.
 #pragma once
 
 #include "materials/material.h"
@@ -13,9 +13,9 @@ namespace glint::compiler {
 std::string heldText(const materials::Material& material, const materials::PrimitiveInputs& primitive,
                      int texture, std::uint32_t channels);
 
-// Describes what is known of the textures on which a condition depends: those whose texels it names, and
-// those that scale its parameters, or have done so before they were folded. An empty text if nothing is known
-// of them.
+// Describes the known contents of the textures on which a condition depends: those whose texels it names, and
+// those that scale its parameters, or have done so before they were folded. Returns an empty text if nothing
+// is known of them.
 enum class HeldBy : std::uint8_t { All, Folded };
 std::string whatTexturesHold(const materials::Material& material, const materials::PrimitiveInputs& primitive,
                              const materials::Expression& when, HeldBy which);

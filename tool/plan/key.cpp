@@ -12,7 +12,7 @@ namespace {
 
 using Drops = std::vector<std::pair<std::string, std::string>>;
 
-// Whether a feature is in a key.
+// The presence of a feature in a key.
 struct Presence {
     bool present = false;
     // If not empty, the file asks for the feature, and this is the reason why the key lacks it.
@@ -20,9 +20,9 @@ struct Presence {
 };
 
 // Decides about the features of one key, in the model's order. When lobes are left out
-// (KeyOptions::keptLobes), a key may have fewer features, never more, because what hits need is part of what
-// primary surfaces need. So a declared reason may ask whether the key lacks a feature, but not whether it has
-// one, except for the base models, which are always kept.
+// (KeyOptions::keptLobes), a key may have fewer features, never more, because hits need a part of the
+// features that primary surfaces need. So a declared reason may ask whether the key lacks a feature, but not
+// whether it has one, except for the base models, which are always kept.
 class KeyMaker {
 public:
     KeyMaker(const materials::Material& material, const materials::PrimitiveInputs& primitive,
@@ -54,7 +54,7 @@ private:
         return (key_ & model_.features[static_cast<std::size_t>(feature)].mask()) != 0;
     }
 
-    // A texture that is not there is not asked for. A lobe is present by its values, whether or not the file
+    // A file requests only textures that it has. A lobe is present by its values, whether or not the file
     // gives its extension.
     Presence decide(const materials::Feature& feature) const {
         const materials::TextureInfo* const info =
@@ -101,8 +101,8 @@ private:
             return fmt::format("the key has no {}",
                                model_.features[static_cast<std::size_t>(feature.lobe)].name);
         }
-        // A texture that the primitive can't read counts as 1, which is no reason of its own. Only those
-        // count that would hold on a primitive with what this one lacks.
+        // A texture that the primitive can't read counts as 1, which is no reason of its own. Only reasons
+        // count that would hold on a primitive with the missing attribute.
         std::string missing = materials::missingAttribute(material_, primitive_, feature);
         std::optional<materials::PrimitiveInputs> whole;
         std::optional<materials::MaterialFacts> ofWhole;
@@ -119,7 +119,7 @@ private:
             if (reason.when.holds(blind_) == materials::Certainty::True) {
                 return because(reason, HeldBy::Folded);
             }
-            // A texture whose product is known has to be read all the same: it makes the product.
+            // A texture whose product is known has to be read anyway, because it makes the product.
             const materials::MaterialFacts& seen = feature.texture < 0 ? facts_ : texels_;
             if (reason.when.holds(seen) == materials::Certainty::True) {
                 return because(reason, HeldBy::All);
@@ -148,7 +148,7 @@ private:
     materials::FeatureMask key_ = 0;
     materials::MaterialFacts facts_;
     materials::MaterialFacts texels_;  // knows them, but not their products with parameters
-    materials::MaterialFacts blind_;   // to what textures hold
+    materials::MaterialFacts blind_;   // ignores the contents of textures
 };
 
 }  // namespace
@@ -156,7 +156,7 @@ private:
 materials::FeatureMask makeKey(const materials::Material& material,
                                const materials::PrimitiveInputs& primitive,
                                const materials::KeyOptions& options, Drops* dropped) {
-    // First drop what is neutral, and record the reasons. Then drop the lobes that hits leave out.
+    // First drop neutral features, and record the reasons. Then drop the lobes that hits leave out.
     const materials::MaterialModel& model = material.model();
     const materials::FeatureMask whole = KeyMaker(material, primitive, keepAllLobes(options)).make(dropped);
     const bool keepsAll = (options.keptLobes & materials::kLobeMask) == materials::kLobeMask;

@@ -35,7 +35,7 @@ std::uint32_t lightSamplesFor(const LightCounts& counts) {
     if (counts.emitters == 0) {
         return takesAll(counts.positions) ? 0 : fitted::kLightSamples;
     }
-    // With fewer samples, one light more than are apart from the triangles would make all of them cheap.
+    // With fewer samples, one further light that is apart from the triangles would make all of them cheap.
     return counts.areApart ? samplesOfEmitters(counts.emitters) : fitted::kLightSamples;
 }
 

@@ -210,7 +210,7 @@ Plan makePlan(std::span<const materials::Material> materials,
     FeatureSpread hits = spreadOf(hitMasks);
     FeatureSpread primary = spreadOf(plan.primaryMaskOfPrimitive);
     if (options.fallback) {
-        // Materials that were not there when the package was made may lack what these all have.
+        // Later materials may lack features that all of these have.
         hits = {0, hits.always | hits.sometimes};
         primary = {0, primary.always | primary.sometimes};
     }

@@ -1,4 +1,4 @@
-// Keys and cases: which permutations a scene has, and which of them share code. Pure functions.
+// Keys and cases: the permutations of a scene, and the ones that share code. Pure functions.
 #pragma once
 
 #include "plan/effects.h"
@@ -109,8 +109,8 @@ bool countsHits(const PlanOptions& options);
 Plan makePlan(std::span<const materials::Material> materials,
               std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options);
 
-// Returns the case of materials that no case of the plan is for. It has every feature of the plan as one that
-// a material may have, and no shader ID, keys or materials.
+// Returns the case of materials that have no case in the plan. It has every feature of the plan as one that a
+// material may have, and no shader ID, keys or materials.
 Case fallbackCase(const Plan& plan);
 
 // Returns the case of the draft of the lighting pass: the features of primary surfaces that it shows.

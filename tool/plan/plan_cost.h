@@ -22,7 +22,7 @@ struct BranchCost {
 struct KeyCost {
     int key = 0;               // index into Plan::keys
     CodeEstimate own;          // estimate of a shader of this key alone
-    double leavingAdds = 0.0;  // what the plan's cost grows by if the key gets a case of its own; below 0 it
+    double leavingAdds = 0.0;  // growth of the plan's cost if the key gets a case of its own; below 0 it
                                // shrinks
 };
 

@@ -39,7 +39,7 @@ bool ordersHits(std::string_view strategy) {
     return hasTerm(strategy, CostTerm::Buckets);
 }
 
-// Describes in numbers what the rays find.
+// Describes the rays' hits in numbers.
 std::string factsText(const FrameFacts& facts) {
     const std::string alike = facts.coherence >= 0.75  ? "mostly alike"
                               : facts.coherence > 0.25 ? "partly alike"
@@ -59,8 +59,8 @@ std::string factsText(const FrameFacts& facts) {
     return text + ".";
 }
 
-// Returns the best strategy of the other kind (ordering or not), which shows what ordering saves or would
-// save.
+// Returns the best strategy of the other kind (ordering or not), for a comparison of the time that ordering
+// saves or would save.
 const StrategyEstimate* rivalOf(const StrategyChoice& choice) {
     const StrategyEstimate* best = nullptr;
     for (const StrategyEstimate& other : choice.estimates) {

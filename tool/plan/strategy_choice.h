@@ -1,5 +1,5 @@
-// Chooses the strategy that is expected to be fastest, and says why. Used by --strategy auto and the advice
-// of `glint explain`.
+// Chooses the strategy that is expected to be fastest, and gives the reasons. Used by --strategy auto and the
+// advice of `glint explain`.
 #pragma once
 
 #include "plan/strategy_cost.h"
@@ -20,7 +20,7 @@ struct StrategyEstimate {
     bool available = false;  // can be chosen
 };
 
-// A summary of the rounds of a frame, for people. Averages are over hits unless a member says otherwise.
+// A summary of a frame's rounds, for people. Averages are over hits unless a member says otherwise.
 struct FrameFacts {
     double rays = 0.0;
     double laterRays = 0.0;  // of these, rays that hits send: the bounces after the first
@@ -57,7 +57,7 @@ struct StrategyChoice {
 std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, const DeviceCosts& device,
                                              std::span<const std::string> available);
 
-// A choice and the facts that it rests on.
+// A choice, and the facts on which it is based.
 struct StrategyAdvice {
     StrategyChoice choice;
     std::string device;   // the device whose constants were used

@@ -84,7 +84,7 @@ double instructionsRun(const Round& round, double lanes) {
     double sum = 0.0;
     for (const RoundCase& roundCase : round.cases) {
         const double chance = std::clamp(round.hitShare * roundCase.share, 0.0, 1.0);
-        // expm1 and log1p keep the digits that pow would round away for small chances.
+        // expm1 and log1p keep the digits that pow would lose for small chances.
         const double some = chance < 1.0 ? -std::expm1(lanes * std::log1p(-chance)) : 1.0;
         sum += some * weightOf(roundCase);
     }

@@ -1,7 +1,7 @@
 // The time that each strategy takes to shade the hits of a list of rays: the model behind --strategy auto.
 //
 // A round is one list of N rays, of which the share h hits something. Case i gets the share s(i) of the hits,
-// and its shader weighs c(i) = instructions + kFetchCost * fetches. A subgroup has W lanes, of which
+// and its shader weighs c(i) = instructions + kFetchCost * fetches. Of the W lanes of a subgroup,
 //
 //     g = 1 + (W - 1) * (1 - coherence)
 //
@@ -30,7 +30,7 @@
 //     misses        ps    N D sqrt(D / 1000), D = E(g) - E(1)      unsorted
 // clang-format on
 //
-// The last two terms stand for instruction caches, and are no more than a form that fits: on an H200 unsorted
+// The last two terms stand for instruction caches. Their form is a fit to measurements: on an H200 unsorted
 // shading of coherent hits grows with the root of the number of cases, and that of incoherent hits grows
 // faster than the code that subgroups run (docs/performance.md).
 //

@@ -1,4 +1,4 @@
-// Which meshes of a scene change shape.
+// Finds the meshes of a scene that change shape.
 #pragma once
 
 #include "gltf/scene.h"

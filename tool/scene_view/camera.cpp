@@ -258,7 +258,8 @@ CameraView framingCamera(const Bounds& bounds, double aspect) {
     view.up = base::toFloat3(up);
     view.halfHeight = static_cast<float>(kHalfHeight);
     view.halfWidth = static_cast<float>(kHalfHeight * aspect);
-    // Nothing is nearer than the box. The plane keeps off the box's face, which may be seen head-on.
+    // Nothing is nearer than the box. The plane keeps a distance from the box's face, which may be seen
+    // head-on.
     view.near = static_cast<float>(0.99 * (distance - nearest));
     return view;
 }

@@ -15,9 +15,8 @@ using Quaternion = glm::dquat;
 // appendix C.4). Opposite quaternions are the same rotation.
 Quaternion slerp(const Quaternion& from, const Quaternion& to, double amount);
 
-// Returns the values at `time` (seconds), sampler.width of them. Before the first keyframe they are those of
-// the first, and after the last those of the last. Numbers are interpolated one by one (glTF 2.0, appendix
-// C).
+// Returns the values at `time` (seconds), sampler.width of them. The first keyframe's values hold before it,
+// and the last keyframe's values after it. Numbers are interpolated one by one (glTF 2.0, appendix C).
 std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double time);
 
 // Returns the rotation at `time`, which has unit length. `sampler.width` is 4. Linear interpolation is

@@ -76,7 +76,7 @@ bool hasTriangles(const gltf::Primitive& primitive) {
     return primitive.indices.size() >= 3;
 }
 
-// For each mesh, whether a node that is shown at some time places it.
+// Returns for each mesh whether a node that is shown at some time places it.
 std::vector<bool> placedMeshes(const gltf::Scene& scene) {
     std::vector<bool> placed(scene.meshes.size(), false);
     for (const gltf::Node& node : scene.nodes) {
@@ -102,7 +102,7 @@ bool isSkinned(const gltf::Scene& scene, const gltf::Node& node) {
            });
 }
 
-// How often the node draws its mesh.
+// Returns how often the node draws its mesh.
 std::size_t placementsOf(const gltf::Scene& scene, const gltf::Node& node) {
     return node.instancing < 0 ? 1 : scene.instancings[static_cast<std::size_t>(node.instancing)].count;
 }
@@ -115,7 +115,7 @@ gltf::Matrix4 worldOf(const gltf::Scene& scene, const gltf::Node& node, std::siz
     return gltf::multiply(node.world, gltf::instanceTransform(instancing, placement));
 }
 
-// Places are rebased if they are this many times as far from 0 as they are apart. Nearer ones lose at most
+// Places are rebased if they are this many times as far from 0 as they are apart. Nearer places lose at most
 // 2^-17 of the scene's size to single precision, and keep the numbers that the file gives them.
 constexpr double kFar = 128.0;
 
@@ -204,8 +204,8 @@ Placed placedBox(const gltf::Matrix4& world, const Bounds& box) {
     return {base::transformed(world, middleOf(box)), largest(extent)};
 }
 
-// What the origin of a scene follows: what it draws, and the cameras of the file, which decide where there
-// are few things. Of many instances, some thousand are enough.
+// Returns the things that the origin of a scene follows: the drawn meshes, and the cameras of the file, which
+// decide in scenes of few things. Of many instances, some thousand are enough.
 std::vector<Placed> placedThings(const gltf::Scene& scene, const SceneViewData& data) {
     constexpr std::size_t kMostInstances = 4096;
     std::vector<Placed> things;
@@ -235,7 +235,7 @@ std::vector<Placed> placedThings(const gltf::Scene& scene, const SceneViewData& 
     return things;
 }
 
-// Returns the origin of a scene: 0, or a place among most of what the scene has if that is far from 0. A
+// Returns the origin of a scene: 0, or a place among most of the scene's things if they are far from 0. A
 // thing that lies elsewhere, such as a lamp left at 0, does not count. The place is rounded to a grid, so
 // that it stays the same while a scene moves a little.
 Place originOf(std::vector<Placed> things) {

@@ -1,4 +1,4 @@
-// Says why a camera sees nothing.
+// Finds the reasons why a camera sees nothing.
 #include "base/vectors.h"
 #include "scene/deformed.h"
 
@@ -18,8 +18,8 @@ namespace glint::scene_view {
 
 namespace {
 
-// Why a triangle is not in a picture. The later ones are nearer to being seen, and an instance has that of
-// its nearest triangle.
+// The reasons why a triangle is not in a picture. The later ones are nearer to being seen, and an instance
+// has that of its nearest triangle.
 enum class Unseen : std::uint8_t { Hidden, Flat, Behind, Near, Far, Outside, Turned, None };
 
 class Frustum {
@@ -74,8 +74,8 @@ private:
     glm::dvec3 right_;
 };
 
-// `sides` is 1 or -1 where the front of a triangle is seen only: in a mirrored instance it turns over. 0:
-// both sides are seen.
+// `sides` is 1 or -1 if only the front of a triangle is seen; a mirrored instance turns it over. 0: both
+// sides are seen.
 Unseen lookAt(const Frustum& frustum, const std::vector<glm::dvec3>& positions,
               const std::vector<std::uint32_t>& indices, double sides) {
     Unseen nearest = Unseen::Hidden;
@@ -135,7 +135,7 @@ private:
         return scene_.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
     }
 
-    // Takes the triangles' sides for unknown.
+    // Counts the triangles' sides as unknown.
     Unseen deformed(const gltf::Node& node, const gltf::Mesh& mesh, const InstanceView& placed) const {
         const std::vector<gltf::Matrix4> joints =
             placed.joints.empty() ? std::vector<gltf::Matrix4>()

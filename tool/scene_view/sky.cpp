@@ -153,8 +153,8 @@ std::vector<LitPatch> litPatches(const gltf::Scene& scene, const SceneViewData& 
             addPatches(corners, area, lights, kDivisions, patches);
             return;
         }
-        // This is systematic sampling: one triangle is chosen for each part of the area that the small ones
-        // have together.
+        // This is systematic sampling: one triangle is chosen for each part of the small triangles' total
+        // area.
         small += area;
         if (small > 0.5 * part) {
             addPatches(corners, part, lights, 0, patches);

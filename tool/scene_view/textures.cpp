@@ -20,14 +20,14 @@ namespace glint::scene_view {
 namespace {
 
 constexpr std::string_view kKind = "texture";
-// Counts up when the same file gives other blocks.
+// This number increases when the same file gives other blocks.
 constexpr std::uint64_t kPackerVersion = 2;
 
 std::string_view textOf(std::span<const std::uint8_t> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Everything that decides about the blocks of an image. Two hashes stand for the file's bytes.
+// Returns everything that the blocks of an image depend on. Two hashes stand for the file's bytes.
 std::string keyOf(const gltf::Image& image, const gltf::ImageUse& use, const gltf::FitOptions& options) {
     const bool hasAlpha = (use.channels & 8U) != 0;
     const auto format = targetFormat(use, hasAlpha, true, options.formats);
@@ -122,7 +122,7 @@ private:
         }
     }
 
-    // Whether the blocks of the image are worth keeping: packing takes far longer than reading them.
+    // Returns whether the blocks of the image are worth keeping: packing takes far longer than reading them.
     bool isKept(const gltf::Image& image) const {
         const gltf::Codec* const codec = gltf::findCodec(image.file);
         return options_.cache != nullptr && options_.fit.compress && gltf::hasBasisu() && codec != nullptr &&

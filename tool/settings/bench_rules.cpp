@@ -75,7 +75,8 @@ std::string idleSunAngle(const BenchFacts& facts, const Configuration& /*base*/)
     return facts.directionalLights ? "" : "the picture has no directional light";
 }
 
-// More samples than lights take every light, as a lower number does where there is one light.
+// A number of samples above the number of lights takes every light, and so does any number if there is one
+// light.
 std::string idleChoice(const BenchFacts& facts, const Configuration& base) {
     const std::string& own = base.find("lights")->second;
     return own == kAll ? "" : withoutChoice(own, facts, base);

@@ -1,5 +1,5 @@
-// When settings matter: rules for rows of the table of settings, whose members `idle`, `against` and
-// `triedFor` they are.
+// Rules for when settings matter. They are the members `idle`, `against` and `triedFor` of rows of the table
+// of settings.
 #pragma once
 
 #include "settings/table.h"
@@ -10,7 +10,7 @@
 
 namespace glint::compiler {
 
-// Why settings are not worth trying. Each returns a reason for all values, or nothing.
+// The reasons why settings are not worth trying. Each returns a reason for all values, or nothing.
 std::string withoutRays(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutPaths(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutOrder(std::string_view value, const BenchFacts& facts, const Configuration& base);
@@ -19,7 +19,7 @@ std::string withoutEmission(std::string_view value, const BenchFacts& facts, con
 std::string withoutSkyLight(std::string_view value, const BenchFacts& facts, const Configuration& base);
 std::string withoutSizedLights(std::string_view value, const BenchFacts& facts, const Configuration& base);
 
-// Why settings change nothing, for rows whose reasons are not those above.
+// The reasons why settings change nothing, for rows with other reasons than those above.
 std::string neverIdle(const BenchFacts& facts, const Configuration& base);
 std::string idleReflections(const BenchFacts& facts, const Configuration& base);
 std::string idleMarch(const BenchFacts& facts, const Configuration& base);

@@ -1,4 +1,4 @@
-// What a package is compiled with.
+// The settings with which a package is compiled.
 #pragma once
 
 #include "plan/effects.h"
@@ -18,7 +18,7 @@
 
 namespace glint::compiler {
 
-// How the level of a texture that hits read is chosen.
+// The choice of the level of a texture that hits read.
 enum class TextureLod : std::uint8_t {
     Cones,  // by the width of a ray cone
     Mip0    // always the finest level
@@ -31,7 +31,7 @@ constexpr std::span<const Named<TextureLod>> namesOf(TextureLod /*type*/) {
     return kTextureLodNames;
 }
 
-// Whether triangles that emit light are lights.
+// The choice whether triangles that emit light are lights.
 enum class EmissiveLights : std::uint8_t { Auto, Off, On };
 inline constexpr Named<EmissiveLights> kEmissiveLightsNames[] = {
     {EmissiveLights::Auto, "auto", "in packages for several bounces, with up to 262,144 such triangles"},
@@ -42,7 +42,7 @@ constexpr std::span<const Named<EmissiveLights>> namesOf(EmissiveLights /*type*/
     return kEmissiveLightsNames;
 }
 
-// Whether the sky is a light that surfaces sample.
+// The choice whether the sky is a light that surfaces sample.
 enum class SkyLight : std::uint8_t { Auto, Off, On };
 inline constexpr Named<SkyLight> kSkyLightNames[] = {
     {SkyLight::Auto, "auto", "in packages for several bounces with the effects shadow and indirect-diffuse"},
@@ -53,7 +53,7 @@ constexpr std::span<const Named<SkyLight>> namesOf(SkyLight /*type*/) {
     return kSkyLightNames;
 }
 
-// Whether rays of lobes find punctual lights that have a size.
+// The choice whether rays of lobes find area lights (LightView::size).
 enum class SizedLights : std::uint8_t { Auto, Off, On };
 inline constexpr Named<SizedLights> kSizedLightsNames[] = {
     {SizedLights::Auto, "auto",
@@ -82,36 +82,36 @@ struct CompileSettings {
     bool positionFetch = false;
     PlanOptions plan;
     EffectRequest effects{false, builtinEffects({"shadow", "reflection"})};
-    // The renderer adds a light to those of the scenes, which --effects auto takes into account.
+    // True if the renderer adds a light to those of the scenes. --effects auto takes that into account.
     bool addsLight = false;
-    // The renderer gives lights a size, which --sized-lights=auto takes into account.
+    // True if the renderer gives lights a size. --sized-lights=auto takes that into account.
     bool sizesLights = false;
-    // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
-    // lights (emit/lights.h).
+    // The number of lights that a surface chooses by a hierarchy; 0 takes all. Without a value, the number of
+    // lights decides (emit/lights.h).
     std::optional<std::uint32_t> lightSamples{};
-    EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
-    SkyLight skyLight = SkyLight::Auto;                    // so it does here
-    SizedLights sizedLights = SizedLights::Auto;           // and here
+    EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides the meaning of Auto
+    SkyLight skyLight = SkyLight::Auto;                    // here, too
+    SizedLights sizedLights = SizedLights::Auto;           // here, too
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
-    // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures). Packages with a
+    // True if planning reads the contents of textures (gltf::ImportOptions::trustTextures). Packages with a
     // fallback or a host do not, because their textures may change at run time.
     bool trustTextures = true;
     bool textureLevels = false;         // shaders note the finest level that they read of each texture
     std::vector<std::string> layers{};  // images beside the picture, as --layers names them
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
     int jobs = 0;  // threads; 0 means one for each core
-    // Gets how many modules and parts are done, and how many there are to do. It may be called by any thread,
-    // by one at a time.
+    // Gets how many modules and parts are done, and how many there are to do. Any thread may call it, one at
+    // a time.
     std::function<void(std::size_t done, std::size_t all)> progress{};
     bool emitHeader = true;     // glint_tables.h
     bool emitGlsl = false;      // writes the flattened sources, in glsl/
     bool emitLibrary = false;   // writes shading as functions in GLSL, in library/
     bool emitLinkable = false;  // writes the same functions as a SPIR-V module that can be linked, there
     bool debugInfo = false;     // keeps names in the SPIR-V
-    // A folder with files that stand in for those of shaders/host; empty: none (emit/host.h).
+    // A folder with files that replace those of shaders/host; empty: none (emit/host.h).
     std::string host{};
-    // How `strategies` was chosen, for the manifest. Empty if the user named the strategies.
+    // The choice that led to `strategies`, for the manifest. Empty if the user named the strategies.
     std::optional<StrategyAdvice> strategyChoice{};
     // The folder in which `glint compile-module` left the modules. If it is empty, modules are compiled here.
     std::filesystem::path modules{};

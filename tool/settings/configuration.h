@@ -12,7 +12,7 @@
 namespace glint::compiler {
 
 // Values by the name of their setting, which is the name of the command-line option without its dashes. The
-// configuration of a point of a bench holds only what differs from the default.
+// configuration of a point of a bench holds only the values that differ from the default.
 using Configuration = std::map<std::string, std::string, std::less<>>;
 
 // The facts about scene and device on which the values worth trying depend.
@@ -22,7 +22,7 @@ struct BenchFacts {
     bool emits = false;          // some triangles emit light
     bool lightsMayEmit = false;  // and packages with the default's effects can have them as lights
     bool skyMayLight = false;    // packages with the default's effects can have the sky as a light
-    bool sizedMayShow = false;   // rays of packages with the default's effects can find lights with a size
+    bool sizedMayShow = false;   // rays of packages with the default's effects can find area lights
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool placedLights = false;       // the picture has point or spot lights
@@ -37,9 +37,9 @@ struct BenchFacts {
     bool float16 = false;
     std::set<std::string, std::less<>> effects;  // effects of the default configuration, by name
     bool sendsRays = false;                      // one of them has rays whose hits are shaded
-    // The reference has all of light transport, whatever the default leaves out.
+    // True if the reference has all of light transport, even if the default leaves parts out.
     bool fullTransport = false;
-    // The value of --effects with which surfaces send rays wherever light comes from.
+    // The value of --effects with which surfaces send rays in all directions that light comes from.
     std::string rayEffects;
     // The effects that the default configuration would have with --max-roughness 1.
     std::set<std::string, std::less<>> effectsOfAnyRoughness;

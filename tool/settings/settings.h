@@ -1,5 +1,5 @@
-// Everything that decides about a package and about its pictures, as the values of compiler and runtime. Each
-// setting has a row in the table of settings/table.h, which gives its name, its text and its help.
+// All settings of a package and of its pictures, as the values of compiler and runtime. Each setting has a
+// row in the table of settings/table.h, which gives its name, its text and its help.
 #pragma once
 
 #include "settings/compile_settings.h"
@@ -16,7 +16,7 @@
 
 namespace glint::compiler {
 
-// Whether a picture gets a light that the scene lacks.
+// The choice whether a picture gets a light that the scene lacks.
 enum class Sun : std::uint8_t { Auto, On, Off };
 inline constexpr Named<Sun> kSunNames[] = {
     {Sun::Auto, "auto", "only if the scene has no light and there is no --environment"},
@@ -27,10 +27,10 @@ constexpr std::span<const Named<Sun>> namesOf(Sun /*type*/) {
     return kSunNames;
 }
 
-// Parts of `compile`, `renderer` and `frame` that depend on the scene or the device are filled in when these
+// Parts of `compile`, `renderer` and `frame` depend on the scene or the device and are filled in when those
 // are known: compileSettings(), rendererOptions() and frameOptions() of measure/render_settings.h do that.
 struct Settings {
-    Settings();  // what `glint render` does without options
+    Settings();  // the settings of `glint render` without options
 
     CompileSettings compile;
     RendererOptions renderer;
@@ -74,7 +74,8 @@ struct Settings {
 // The value of Settings::gpu that stands for the device that renders.
 inline constexpr std::string_view kThisDevice = "device";
 
-// Returns the lobes that hits keep with "base": the base models, and what is declared as part of the base.
+// Returns the lobes that hits keep with "base": the base models, and lobes that are declared as part of the
+// base.
 materials::FeatureMask baseLobes();
 
 // Parses the whole of `text` as a number within [min, max]. NaN is outside of every range.

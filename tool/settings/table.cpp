@@ -19,7 +19,7 @@ constexpr SettingBench approximates(std::string_view exact, std::string_view tri
     return {.use = BenchUse::Swept, .exact = exact, .tried = tried, .quick = quick, .against = against};
 }
 
-// An approximation of how light travels. The full reference alone has the exact value.
+// An approximation of light transport. Only the full reference has the exact value.
 constexpr SettingBench approximatesTransport(std::string_view exact, std::string_view tried = {},
                                              std::string_view quick = {}, Against against = nullptr) {
     SettingBench bench = approximates(exact, tried, quick, against);
@@ -217,7 +217,7 @@ constexpr Descriptor kRows[] = {
      .group = kShaders,
      .what = "how many lights a surface chooses by a hierarchy, besides directional ones",
      .values = kLights,
-     // All values have the same mean, and the reference needs the one that converges soonest.
+     // All values have the same mean. The reference uses the one that converges soonest.
      .bench = approximates("auto", "all 1 2 4 8 16 32 64", "all 1 8", withoutChoice),
      .document = "lights.md",
      .recorded = true,

@@ -1,6 +1,6 @@
 // The table of settings. The options of the command line with their help, their checks and their completion,
-// files of settings, what a bench sweeps, the settings in a manifest and the table in docs/cli.md follow from
-// it.
+// files of settings, the sweeps of a bench, the settings in a manifest and the table in docs/cli.md follow
+// from it.
 #pragma once
 
 #include "settings/configuration.h"
@@ -14,7 +14,7 @@
 
 namespace glint::compiler {
 
-// When a setting is decided.
+// The stage at which a setting is decided.
 enum class SettingStage : std::uint8_t {
     Package,   // when shaders are compiled: another value needs another package
     Choice,    // a package may have several values, from which a renderer chooses one
@@ -36,7 +36,7 @@ enum class ValueForm : std::uint8_t {
     List,    // words, separated by commas
     Whole,   // a number within the range, or one of the words
     Real,
-    Text,  // what `further` accepts
+    Text,  // text that `further` accepts
 };
 
 struct SettingWord {
@@ -53,9 +53,9 @@ struct SettingValues {
     std::vector<SettingWord> (*words)() = nullptr;  // null: none
     double min = 0.0;                               // the range of numbers
     double max = 0.0;
-    std::string_view automatic{};  // what the word "auto" stands for
+    std::string_view automatic{};  // the meaning of the word "auto"
     std::string_view type{};       // of the value, for help; empty: the words, N or X
-    // Values besides words and numbers, and what they are: "size such as 960x540".
+    // Text values besides words and numbers, and their description: "size such as 960x540".
     bool (*accepts)(std::string_view text) = nullptr;
     std::string_view further{};
 };
@@ -71,8 +71,8 @@ struct SettingBench {
     // The value in the reference. It is empty for the default's value, because the user asks for that value
     // or all values converge to the same picture. It is absent if the setting changes time alone.
     std::optional<std::string_view> exact{};
-    // The value matters for how much light is carried, not only for how exactly. A reference that shares the
-    // default's transport (BenchFacts::fullTransport) has the default's value.
+    // True if the value changes how much light is transported, not only how exactly. A reference that shares
+    // the default's transport (BenchFacts::fullTransport) has the default's value.
     bool isTransport = false;
     std::string_view tried{};  // values, separated by blanks; empty: all words
     std::string_view quick{};  // fewer values; empty: `tried`
@@ -98,7 +98,7 @@ struct Descriptor {
     std::string_view document{};  // says more: "reflections.md#ray-binning"
     bool recorded = false;        // a member of the manifest's `settings`
     // Returns why the setting changes nothing in pictures of the configuration `base`, or an empty text.
-    // Null: the reasons are that the effects that have it are absent, and those of bench.against for all
+    // Null: the reasons are the absence of all effects that have it, and those of bench.against for all
     // values.
     std::string (*idle)(const BenchFacts& facts, const Configuration& base) = nullptr;
 };
@@ -107,7 +107,7 @@ struct Descriptor {
 std::span<const Descriptor> settingsTable();
 // Returns the row that a bench sweeps; null for other names.
 const Descriptor* sweptSetting(std::string_view name);
-// Returns whether `glint compile` decides about the setting.
+// Returns whether `glint compile` has the setting.
 constexpr bool isCompiled(const Descriptor& row) {
     return row.stage == SettingStage::Package || row.stage == SettingStage::Choice;
 }
@@ -118,8 +118,8 @@ std::vector<SettingWord> wordsOf(const Descriptor& row);
 bool isSwitch(const Descriptor& row);
 // Returns the words that give the setting a value on a command line.
 std::vector<std::string> optionWords(const Descriptor& row, const std::string& value);
-// Returns why the setting of a row changes nothing: only effects that the default configuration lacks have
-// it. Returns an empty text if it may change something.
+// Returns why the setting of a row changes nothing: the default configuration lacks all effects that have it.
+// Returns an empty text if it may change something.
 std::string withoutEffect(const Descriptor& row, const BenchFacts& facts);
 // Returns why the setting of a row changes nothing in pictures of the configuration `base`, whatever its
 // value. Returns an empty text if it may change something.

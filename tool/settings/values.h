@@ -1,5 +1,5 @@
-// How the values of settings are read and written: by the type of the member that holds them, and by hand
-// where several members belong together.
+// Reads and writes the values of settings: by the type of the member that holds them, and by hand where
+// several members belong together.
 #pragma once
 
 #include "settings/layer_words.h"
@@ -270,7 +270,7 @@ inline void setHitLobes(Settings& settings, std::string_view text) {
     });
 }
 
-// Whether a declaration of a pack may have the name.
+// Returns whether a declaration of a pack may have the name.
 inline bool isFeatureName(std::string_view text) {
     const auto isLetterOrDigit = [](unsigned char c) { return std::isalnum(c) != 0; };
     return !text.empty() && std::islower(static_cast<unsigned char>(text.front())) != 0 &&
@@ -301,8 +301,8 @@ inline std::string textOf(const package::Bindings& bindings) {
     return fmt::format("{}", fmt::join(words, ","));
 }
 
-// Changes those that `text` names: "scene-set=1,push-offset=16". Returns false, and may have changed some, if
-// it is malformed.
+// Changes the bindings that `text` names: "scene-set=1,push-offset=16". Returns false, and may have changed
+// some, if it is malformed.
 inline bool parseBindings(std::string_view text, package::Bindings& bindings) {
     constexpr std::int64_t kMost = 1 << 20;
     bool valid = true;
@@ -394,7 +394,7 @@ inline std::vector<SettingWord> layerWords() {
     return words;
 }
 
-// "EFFECT.LAYER", where the effect may be one of a pack, or the word of a layer that may be lacking.
+// A word is "EFFECT.LAYER", where the effect may be one of a pack, or the word of an optional layer.
 inline bool isLayerWord(std::string_view text) {
     if (text.ends_with(kOptionalLayer)) {
         text.remove_suffix(1);

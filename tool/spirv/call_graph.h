@@ -1,4 +1,4 @@
-// Finds which function of a SPIR-V module calls which, and controls which of them may be inlined.
+// Finds the calls between functions of a SPIR-V module, and controls which functions may be inlined.
 #pragma once
 
 #include <cstdint>

@@ -99,7 +99,7 @@ Diagnostic makeGlslError(const ShaderSource& source, std::string_view log) {
                      std::string(trim(line.substr(length + 1))) + " (in " + source.name + ")", kHint);
 }
 
-// Returns what glslang makes of the source, without any optimisation.
+// Returns glslang's translation of the source, without any optimisation.
 Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
     if (!initializeGlslang()) {
         return makeError("glsl", source.name, "glslang can't be initialised");

@@ -24,7 +24,7 @@ struct ShaderSource {
 
 struct ShaderCompileOptions {
     bool debugInfo = false;  // keeps names
-    // Makes every operation on floats 16-bit, not only mediump ones. It is for measuring what that costs.
+    // Makes every operation on floats 16-bit, not only mediump ones. It is for measuring the cost.
     bool halvesAll = false;
 };
 
@@ -41,10 +41,10 @@ Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, c
                                                    const ShaderCompileOptions& options);
 
 // Compiles a part of a shader, which joinParts() makes whole: functions that others call, or the entry point
-// with calls of functions of others. `names` and bodies of what is imported are as for compileLinkable().
-// Where the functions of a part share variables with the rest of the shader (a global variable of GLSL), the
-// part cannot be compiled by itself; it is then an empty module: see isJoinable(). Errors are those of
-// compileShader(), and "spirv-linkage".
+// with calls of functions of others. `names` and the bodies of imported functions are as for
+// compileLinkable(). Where the functions of a part share variables with the rest of the shader (a global
+// variable of GLSL), the part cannot be compiled by itself; it is then an empty module: see isJoinable().
+// Errors are those of compileShader(), and "spirv-linkage".
 Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const LinkNames& names,
                                                const ShaderCompileOptions& options);
 bool isJoinable(std::span<const std::uint32_t> part);

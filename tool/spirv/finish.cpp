@@ -58,7 +58,7 @@ private:
 
     struct Query {
         ParsedInstruction instruction;
-        std::vector<std::uint32_t> path;  // what is repeated before it, in that order
+        std::vector<std::uint32_t> path;  // the instructions repeated before it, in that order
     };
 
     void read(const ParsedInstruction& instruction) {
@@ -74,7 +74,7 @@ private:
         }
     }
 
-    // Whether an instruction may be done again at a later place with the same result.
+    // Returns whether an instruction may be repeated at a later place with the same result.
     bool isRepeatable(std::uint32_t id) const {
         const ParsedInstruction* const definition = definitions_[id];
         if (id == 0 || definition == nullptr) {
@@ -98,7 +98,7 @@ private:
         }
     }
 
-    // Appends what makes `id`, its operands first.
+    // Appends the instructions that make `id`, its operands first.
     void addPath(std::uint32_t id, std::vector<std::uint32_t>& path) const {
         if (!isRepeatable(id) || std::ranges::find(path, id) != path.end()) {
             return;
@@ -126,7 +126,7 @@ private:
         }
     }
 
-    // The first repetition of what is removed takes its ID, with its name and its decorations.
+    // The first repetition of a removed instruction takes its ID, with its name and its decorations.
     std::uint32_t idFor(std::uint32_t id) {
         return unused_.contains(id) && taken_.insert(id).second ? id : bound_++;
     }

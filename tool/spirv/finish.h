@@ -1,5 +1,5 @@
-// What is done to a module after SPIRV-Tools has optimised it: ray queries and capabilities take the form
-// that the compilers of GPUs need.
+// The changes to a module after SPIRV-Tools has optimised it: ray queries and capabilities take the form that
+// the compilers of GPUs need.
 #pragma once
 
 #include <glint/result.h>
@@ -12,13 +12,13 @@ namespace glint::compiler {
 
 // Gives each OpRayQueryInitializeKHR its own access chain and load of the acceleration structure, directly
 // before it. SPIRV-Tools merges them (local and global value numbering find that they are equal), but Mesa's
-// driver of Adreno (25.0) makes invalid code of a structure that is loaded in one block and used in another,
-// and drivers of mobile GPUs recognise a query by a load beside it. Only structures and what they are read
-// from are loaded again: the address of a structure does not change within a dispatch.
+// driver of Adreno (25.0) makes invalid code for a structure that is loaded in one block and used in another,
+// and drivers of mobile GPUs recognise a query by a load beside it. Only structures and the pointers to them
+// are loaded again: the address of a structure does not change within a dispatch.
 //
-// Then removes the capabilities that nothing in the module needs. glslang declares those of all that the
-// source declares, also where no code is left that uses it, and a device that lacks one must refuse the
-// module.
+// Then removes the capabilities that nothing in the module needs. glslang declares the capabilities of
+// everything that the source declares, even if no remaining code uses it, and a device that lacks one must
+// refuse the module.
 //
 // `name` is for messages. Error "spirv-join" if `words` is no module.
 Status finishSpirv(std::vector<std::uint32_t>& words, const std::string& name);

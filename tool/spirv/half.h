@@ -1,4 +1,4 @@
-// Makes 16-bit float arithmetic of what a module marks with relaxed precision.
+// Turns arithmetic that a module marks with relaxed precision into 16-bit float arithmetic.
 #pragma once
 
 #include <cstdint>

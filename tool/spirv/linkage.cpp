@@ -26,7 +26,7 @@ struct Parts {
     Words definitions;
 };
 
-// What happens to a function.
+// The treatment of a function.
 enum class Fate { Defined, Declared, Removed };
 
 std::size_t lengthAt(std::span<const std::uint32_t> words, std::size_t at) {

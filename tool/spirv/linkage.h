@@ -18,9 +18,9 @@ struct LinkNames {
 };
 
 // Makes a library of a compiled shader whose names were kept: it removes the entry point with its function,
-// exports functions under their names, and turns those to import into declarations. Only functions that are
-// called are imported. `keepNames` keeps the other names too. Error "spirv-linkage" if an exported function
-// is not there.
+// exports functions under their names, and turns functions to import into declarations. Only functions that
+// are called are imported. `keepNames` keeps the other names too. Error "spirv-linkage" if an exported
+// function is not there.
 Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> words, const LinkNames& names,
                                                 const std::string& shader, bool keepNames);
 

@@ -23,7 +23,7 @@ struct LintFinding {
     std::string rule;  // stable name, for instance "query-proceeds"
     SpirvPlace place;
     std::string message;  // one sentence without a full stop
-    std::string hint;     // what to do
+    std::string hint;     // advice
 };
 
 // Returns "in main (shader.comp:12, word 214)", or an empty text for the module as a whole.

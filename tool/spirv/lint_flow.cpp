@@ -211,7 +211,7 @@ private:
         }
     }
 
-    // Whether an access chain has an index that is no constant.
+    // Returns whether an access chain has an index that is no constant.
     bool isIndexed(Operands chain) const {
         return std::ranges::any_of(chain.subspan(3), [this](std::uint32_t index) {
             return !constants_.contains(index) && !fixed_.contains(index);
@@ -347,7 +347,8 @@ private:
     std::unordered_set<std::uint32_t> fixed_;             // results of operations on specialisation constants
     std::unordered_set<std::uint32_t> indexed_;           // pointers with an index that is no constant
     std::uint32_t structureType_ = 0;
-    // By ID of a loaded acceleration structure: what it is loaded from, and the number of blocks until then.
+    // The pointer that each loaded acceleration structure comes from, by its ID, and the number of blocks
+    // until then.
     std::unordered_map<std::uint32_t, std::pair<std::uint32_t, std::size_t>> structures_;
     std::map<std::uint32_t, std::size_t> labels_;
     std::vector<std::pair<std::size_t, SpirvInstruction>> terminators_;

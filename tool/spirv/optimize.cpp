@@ -27,7 +27,8 @@ spvtools::MessageConsumer keepFirstError(std::string& message) {
     };
 }
 
-// Folds what literals decide, one function at a time. This is cheap, because it does not look into callees.
+// Folds code that depends on literals, one function at a time. This is cheap, because it does not look into
+// callees.
 void registerFolding(spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateSimplificationPass())
@@ -35,7 +36,7 @@ void registerFolding(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateBlockMergePass());
 }
 
-// Inlines one level of calls, and folds what that decides.
+// Inlines one level of calls, and folds the result.
 void registerLevel(spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass())
         .RegisterPass(spvtools::CreateMergeReturnPass())
@@ -177,7 +178,7 @@ Status makeHalves(std::vector<std::uint32_t>& words, const std::string& name, bo
     return status ? runPasses(words, name, share) : status;
 }
 
-// Inlines what may be inlined, and removes what is not needed.
+// Inlines all permitted calls, and removes unneeded code.
 Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name, bool keepNames,
                       bool halvesAll) {
     // Payloads have no offsets, and the stages of a pipeline must agree on their members, so members stay.

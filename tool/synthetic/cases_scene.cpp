@@ -71,7 +71,7 @@ void addSquare(gltf::Primitive& primitive, const CaseMaterial& attributes, const
 }
 
 gltf::Mesh makeFloor(const CaseMaterial& attributes, int material, double aspect) {
-    constexpr double kMargin = 1.01;  // how far beyond the picture's edge
+    constexpr double kMargin = 1.01;  // extent beyond the picture's edge
     const Extent extent = viewExtent(kCameraHeight, aspect);
     gltf::Mesh mesh{"floor", {makePrimitive(attributes, material, "/meshes/0/primitives/0")}};
     addSquare(mesh.primitives[0], attributes,
@@ -233,7 +233,7 @@ std::vector<std::uint32_t> makeSets() {
     return sets;
 }
 
-// Each case has its own colour, by the golden angle, so that a picture shows which case is where.
+// Each case has its own colour, by the golden angle, so that a picture shows the places of the cases.
 std::array<float, 4> colorOf(int index) {
     constexpr double kGoldenTurn = 0.6180339887498949;
     std::array<float, 4> color{0.0F, 0.0F, 0.0F, 1.0F};
@@ -308,7 +308,7 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     // because anisotropy would then have no effect.
     material["metallicFactor"] = mirror ? 1.0F - kFaint : kFaint;
     material["roughnessFactor"] = mirror ? 0.0F : 1.0F - kFaint;
-    // Whatever is there stays, and hardly shows.
+    // The other factors that are above 0 stay, and hardly show.
     for (const char* const name :
          {"clearcoatFactor", "anisotropyStrength", "iridescenceFactor", "transmissionFactor",
           "diffuseTransmissionFactor", "sheenColorFactor", "emissiveFactor"}) {
@@ -334,8 +334,8 @@ namespace {
 constexpr int kCoherentTiles = 32;
 constexpr int kIncoherentTiles = 64;
 
-// How far an incoherent ceiling reaches beyond the floor, in heights of the ceiling. Cosine-weighted rays
-// miss it with a chance of about 1 / (1 + 5²).
+// The distance by which an incoherent ceiling extends beyond the floor, in heights of the ceiling.
+// Cosine-weighted rays miss it with a chance of about 1 / (1 + 5²).
 constexpr double kReach = 5.0;
 
 // Returns every second bit of `code`, starting with the lowest.
@@ -423,7 +423,7 @@ Ceiling makeCeiling(const CasesOptions& options) {
     Ceiling ceiling;
     ceiling.tiles = coherent ? kCoherentTiles : kIncoherentTiles;
     if (coherent) {
-        // The mirror shows what a camera sees that is as far below the floor as the real one is above it.
+        // The mirror shows the view of a camera as far below the floor as the real one is above it.
         ceiling.extent = viewExtent(kCameraHeight + kCeilingHeight, options.aspect);
     } else {
         const Extent floor = viewExtent(kCameraHeight, options.aspect);

@@ -24,13 +24,13 @@ enum class Cost : std::uint8_t {
     Expensive  // clearcoat, anisotropy, iridescence, specular and about half of four further lobes
 };
 
-// Whether neighbouring rays hit the same case.
+// The similarity of neighbouring rays' hits.
 enum class Coherence : std::uint8_t {
     Coherent,   // rays from a mirror (the effect reflection); tiles of a case lie together
     Incoherent  // cosine-weighted rays (the effect indirect-diffuse); tiles in random order, many in reach
 };
 
-// How the ceiling is divided among the cases. Each case has at least one tile.
+// The division of the ceiling among the cases. Each case has at least one tile.
 enum class Shares : std::uint8_t {
     Uniform,
     Zipf  // in proportion to 1, 1/2, 1/3, …
@@ -76,7 +76,7 @@ inline constexpr double kCeilingHeight = 3.0;
 // The camera's vertical field of view, in radians.
 inline constexpr double kFieldOfView = 1.0;
 
-// What the camera sees at a distance, from the middle to the edge.
+// The half size of the camera's view at a distance, from the middle to the edge.
 struct Extent {
     double x = 0.0;
     double z = 0.0;

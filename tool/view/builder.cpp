@@ -133,7 +133,7 @@ void Builder::work() {
         progress_.clear();
         Slot& slot = slots_[order.picture];
         if (slot.order) {
-            continue;  // what it was asked for has changed
+            continue;  // the order has changed meanwhile
         }
         slot.busy = false;
         slot.early.reset();
@@ -173,7 +173,7 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
         say("reading " + order.scene);
         GLINT_TRY(const auto import, request_.importOptions(settings));
         GLINT_TRY(auto scene, importScene(order.scene, import));
-        // What pictures hold depends on their files alone.
+        // The contents of pictures depend on their files alone.
         if (!scene_ || !haveSameFiles(*scene_, scene)) {
             textures_.reset();
         }
@@ -197,8 +197,8 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
     return okStatus();
 }
 
-// Says how an edit of packs' GLSL alone is shown early. Everything else has to be as it was in the whole
-// package before.
+// Returns how an edit of packs' GLSL alone is shown early. Everything else has to be unchanged since the last
+// whole package.
 std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture, const Build& build) {
     const std::optional<Whole>& whole = wholes_[picture];
     const std::set<std::string>& changed = changed_[picture];
@@ -229,7 +229,7 @@ bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage&
     const std::lock_guard lock(mutex_);
     Slot& slot = slots_[picture];
     if (ends_ || slot.order || slot.canceled) {
-        return false;  // what it was asked for has changed
+        return false;  // the order has changed meanwhile
     }
     slot.early = std::move(shown);
     return true;

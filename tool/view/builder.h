@@ -25,15 +25,16 @@
 
 namespace glint::view {
 
-// What a picture is made from, apart from the device's copy.
+// The inputs of a picture, apart from the device's copy.
 struct Build {
-    compiler::Settings settings;  // with which it was made; the strategy is chosen
+    compiler::Settings settings;  // those of the build; the strategy is chosen
     std::shared_ptr<const gltf::Scene> scene;
     compiler::PlanOptions options;
     compiler::Plan plan;
     std::shared_ptr<const Package> package;
     std::shared_ptr<const scene_view::TextureSet> textures;
-    // By shader ID: SPIR-V instructions of the shader of that case alone; 0: it has none, or it is unknown.
+    // The length of each case's own shader in SPIR-V instructions, by shader ID; 0: it has none, or it is
+    // unknown.
     std::vector<std::uint32_t> instructions;
     std::vector<std::string> layers;      // names of those that its packages may have (PackageLayer::name)
     compiler::BenchFacts facts;           // of the scene, about settings that change nothing
@@ -49,8 +50,8 @@ struct Build {
 // The pictures that are built: the one that is always there, and the one that it is compared with.
 inline constexpr std::size_t kPictures = 2;
 
-// Whether two scenes were read from files with the same contents. Their materials may still be planned with
-// other packs.
+// Returns whether two scenes were read from files with the same contents. Their materials may still be
+// planned with other packs.
 bool haveSameFiles(const gltf::Scene& a, const gltf::Scene& b);
 
 struct BuildOrder {
@@ -62,17 +63,17 @@ struct BuildOrder {
 
 class Builder {
 public:
-    // What is given must outlive the builder.
+    // The arguments must outlive the builder.
     Builder(const Request& request, Context& context);
     // Waits for a build that is running.
     ~Builder();
     Builder(const Builder&) = delete;
     Builder& operator=(const Builder&) = delete;
 
-    // Begins a build. One that is running is finished first, but only the last order for a picture is kept
-    // for after that.
+    // Begins a build. A running build is finished first. Of the orders that wait, only the last one for each
+    // picture is kept.
     void start(BuildOrder order);
-    // Forgets what was ordered for a picture.
+    // Forgets the order for a picture.
     void cancel(std::size_t picture);
     // Returns the last build of a picture with an early package (emit/package/early.h) in the place of its
     // own, once, while another build for edited GLSL of packs is being made.
@@ -80,7 +81,7 @@ public:
     // Returns the finished build of a picture, once.
     std::optional<Result<Build>> poll(std::size_t picture);
     bool isBusy(std::size_t picture) const;
-    // Says what is being done.
+    // Returns the present activity.
     std::string progress() const;
     // Returns the warnings and notes since the last call.
     std::vector<Diagnostic> takeMessages();
@@ -98,14 +99,14 @@ private:
     const Request& request_;
     Context& context_;
     compiler::WarmModules warm_;
-    // The last scene and its textures, and what they were read with.
+    // The last scene and its textures, and the settings with which they were read.
     std::shared_ptr<const gltf::Scene> scene_;
     std::string sceneKey_;
     std::shared_ptr<const scene_view::TextureSet> textures_;
     std::string texturesKey_;
     std::uint32_t strategies_ = 0;  // bits
     std::string strategiesKey_;
-    // What a picture was last made from, for an early package of the next edit.
+    // The inputs of a picture's last whole build, for an early package of the next edit.
     struct Whole {
         compiler::CompiledPackage package;
         Build build;

@@ -11,8 +11,8 @@ namespace glint::view {
 
 class CameraControl {
 public:
-    // Begins with a camera of the scene, or one that frames it. `name` is what --camera calls it. `distance`
-    // is that of the point which it orbits, in metres.
+    // Begins with a camera of the scene, or one that frames it. `name` is its name for --camera. `distance`
+    // is that of the orbited point, in metres.
     void start(const CameraView& view, std::string name, double distance);
 
     // Turns around the target, by shares of the picture's height: half a turn for each.
@@ -31,13 +31,13 @@ public:
         return speed_;
     }
 
-    // Whether it has left the place where it started.
+    // Returns whether the camera has left the place where it started.
     bool moved() const {
         return moved_;
     }
     // The view for a picture of that width / height.
     CameraView view(double aspect) const;
-    // What --camera takes to show the same.
+    // Returns the value of --camera that shows the same.
     std::string name() const;
     // The camera that view() shows once it has moved.
     scene_view::PlacedCamera placed() const;

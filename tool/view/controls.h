@@ -1,4 +1,4 @@
-// Where the controls of the panels are, so that a script can find them as a person would: by their names.
+// The places of the panels' controls, so that a script can find them as a person would: by their names.
 #pragma once
 
 #include <array>

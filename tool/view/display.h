@@ -1,5 +1,5 @@
-// Prepares what the window shows: linear pictures of a renderer become an image with 8 bits that is encoded
-// for the display.
+// Prepares the image that the window shows: linear pictures of a renderer become an image with 8 bits that is
+// encoded for the display.
 #pragma once
 
 #include "image/png.h"
@@ -49,7 +49,7 @@ private:
     Status createPipeline();
     void prepare(VkCommandBuffer commands);
 
-    // Sets are used in turn, as those of frames in flight must not change.
+    // Sets are used in turn, because the sets of frames in flight must not change.
     static constexpr std::uint32_t kSets = 4;
     Context& context_;
     DeviceImage image_;

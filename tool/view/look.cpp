@@ -27,7 +27,7 @@ LayerParts partsOf(std::string_view name) {
     return {name.substr(0, dot), rest.substr(0, rest.find('.'))};
 }
 
-// Whether one of the layers is what the word of the setting stands for.
+// Returns whether the word of the setting stands for one of the layers.
 bool hasLayer(const std::vector<std::string>& names, std::string_view word) {
     return std::ranges::any_of(names, [&](const std::string& name) {
         const LayerParts parts = partsOf(name);
@@ -59,7 +59,7 @@ std::vector<std::string> wordsFor(const Look& look, const Build& build) {
                              : wordsFor(*measure::parseView(look.view), build);
 }
 
-// The effects whose rays a view may be about; the empty name if it is about none.
+// Returns the effects whose rays a view may be about; the empty name if it is about none.
 std::vector<std::string> sourcesOf(const measure::ViewInfo& view, const Build& build) {
     if (!measure::isOfRays(view)) {
         return {""};

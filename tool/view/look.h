@@ -1,4 +1,4 @@
-// What the window shows in place of the picture: a view or a layer. Both are pictures of tool/measure.
+// A view or a layer that the window shows in place of the picture. Both are pictures of tool/measure.
 #pragma once
 
 #include "image/exr.h"
@@ -11,7 +11,7 @@
 
 namespace glint::view {
 
-// One of the two, or none: the picture itself.
+// A view or a layer, or neither: the picture itself.
 struct Look {
     std::string view;   // as --view names it
     std::string layer;  // PackageLayer::name
@@ -41,7 +41,7 @@ Result<measure::View> makeLook(const Look& look, Picture& picture, double exposu
 
 // Returns the layer in a form that files hold. Errors: those of Renderer::readLayer().
 Result<image::ExrLayer> layerForFile(const Look& look, Picture& picture);
-// Returns the word of the setting `layers` for a layer: those of bounces come together.
+// Returns the word of the setting `layers` for a layer. The layers of all bounces have one word.
 std::string layerWord(const std::string& layer);
 
 }  // namespace glint::view

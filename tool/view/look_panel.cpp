@@ -16,7 +16,7 @@ namespace {
 using measure::ViewScale;
 using measure::ViewStatistics;
 
-constexpr std::size_t kMostCategories = 40;  // that the legend lists
+constexpr std::size_t kMostCategories = 40;  // the most that the legend lists
 
 ImU32 packed(const image::Color8& color) {
     return IM_COL32(color[0], color[1], color[2], 255);
@@ -27,7 +27,7 @@ double percentOf(std::uint64_t pixels, const measure::View& view) {
     return all > 0.0 ? 100.0 * static_cast<double>(pixels) / all : 0.0;
 }
 
-// What the numbers of vectors are shown as: a channel of a layer has no colour of its own.
+// Returns whether the look shows the channels of vectors, which have no colour of their own.
 bool showsChannels(const measure::View& view, const Look& look) {
     return look.view.empty() && view.choice.info->scale != ViewScale::Categories &&
            package::findLayer(view.choice.info->name)->channels.size() > 1;

@@ -10,7 +10,7 @@
 namespace glint::view {
 
 // Draws the list of looks and the legend of the one that is shown; `shown` is null until it is made. `note`
-// says why it is not shown. Returns the look that was clicked.
+// is the reason why it is not shown. Returns the look that was clicked.
 std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look& chosen,
                               const measure::View* shown, const std::string& note);
 

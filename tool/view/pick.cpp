@@ -41,7 +41,7 @@ void addRays(Picture& picture, std::size_t pixel, std::vector<Field>& fields) {
     }
 }
 
-// What the case costs by the model, and how long its code is.
+// Adds the case's cost by the model, and the length of its code.
 void addCost(const Picture& picture, std::uint32_t shaderId, std::vector<Field>& fields) {
     const compiler::PlanCost cost = costPlan(picture.build().plan, picture.build().options);
     const auto found =

@@ -1,4 +1,4 @@
-// What the window tells about a pixel.
+// The window's report about a pixel.
 #pragma once
 
 #include "view/picture.h"
@@ -17,8 +17,9 @@ struct Pick {
     int material = -1;  // index into Scene::materials; -1: the sky
 };
 
-// Says what the pixel of the last sample sees: material, key, case and the reasons for them, bucket, rays,
-// cost. Waits for the device. Errors are those of Renderer::readPlace() and Renderer::readOutput().
+// Describes the surface that the pixel sees in the last sample: material, key, case and the reasons for them,
+// bucket, rays, cost. Waits for the device. Errors are those of Renderer::readPlace() and
+// Renderer::readOutput().
 Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x, std::uint32_t y,
                        double exposure);
 

@@ -24,7 +24,7 @@ Change changeBetween(const compiler::Settings& before, const compiler::Settings&
         if ((row.commands & compiler::kOfRender) == 0 || row.values.text(before) == row.values.text(after)) {
             continue;
         }
-        // What `glint compile` also takes has a part in the package.
+        // Settings that `glint compile` also takes change the package.
         const bool isBuilt = compiler::isCompiled(row) || (row.commands & compiler::kOfCompile) != 0 ||
                              row.stage == compiler::SettingStage::Scene;
         const bool isMade = row.stage == compiler::SettingStage::Renderer;
@@ -36,7 +36,7 @@ Change changeBetween(const compiler::Settings& before, const compiler::Settings&
 
 namespace {
 
-// Whether both are uploaded in the same way.
+// Returns whether both are uploaded in the same way.
 bool uploadsAlike(const compiler::Settings& a, const compiler::Settings& b) {
     return std::ranges::all_of(compiler::settingsTable(), [&](const compiler::Descriptor& row) {
         return row.stage != compiler::SettingStage::Scene || row.values.text(a) == row.values.text(b);
@@ -84,9 +84,9 @@ SceneSource Picture::sourceOf(const Build& build) {
     return {build.settings, build.scene, build.package, build.textures};
 }
 
-// Whether the scene on the device can go on with the build's package.
+// Returns whether the scene on the device can go on with the build's package.
 bool Picture::isSameScene(const Build& build) const {
-    // A scene that moves has its materials from the scene that it was read with.
+    // A scene that moves has its materials from the scene with which it was read.
     return isReady() &&
            (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
            build.textures == build_.textures && uploadsAlike(build.settings, build_.settings);
@@ -116,7 +116,7 @@ Status Picture::adopt(LoadedScene loaded, const RendererOptions& options, std::u
     GLINT_TRY_DO(made.loaded.commands.submit(context_));
     made.uploadedIn = frame;
     if (isReady()) {
-        // The frame may not be there yet that follows its upload.
+        // The frame that follows its upload may not exist yet.
         retired_.push_back({frame, std::move(device_)});
     }
     device_ = std::move(made);

@@ -18,7 +18,7 @@
 
 namespace glint::view {
 
-// What a change of a setting asks for. A later one includes those before it.
+// The kind of rebuild that a change of a setting needs. A later one includes those before it.
 enum class Change : std::uint8_t {
     None,
     Frame,     // the picture starts anew
@@ -26,10 +26,10 @@ enum class Change : std::uint8_t {
     Build,     // another package, or another upload of the scene
 };
 
-// Returns what has to be made when settings change. It follows from the table of settings.
+// Returns the kind of rebuild that a change of settings needs. It follows from the table of settings.
 Change changeBetween(const compiler::Settings& before, const compiler::Settings& after);
 
-// Which moment of an animation a picture shows.
+// The moment of an animation that a picture shows.
 struct Moment {
     std::vector<std::size_t> animations;  // indices into Scene::animations
     double seconds = 0.0;
@@ -45,11 +45,11 @@ public:
     // whether it has. The build can be installed when the thread is done.
     bool load(const Build& build);
     bool isLoading() const;
-    // Whether it has begun, and install() was not called since.
+    // Returns whether load() has begun, and install() was not called since.
     bool hasLoaded() const {
         return loading_.valid();
     }
-    // Forgets it. Waits for the thread.
+    // Forgets the load. Waits for the thread.
     void cancelLoad() {
         loading_ = {};
     }
@@ -57,10 +57,10 @@ public:
     // must be idle unless load() has begun. `frame` is the number of the next frame, which is submitted after
     // the upload. An error leaves the picture as it was, except that an environment may be another one.
     // `width` and `height` are in pixels. Errors are those of the runtime and of reading environment maps,
-    // and "half-precision" and "position-fetch" where the device lacks what the build needs.
+    // and "half-precision" and "position-fetch" if the device lacks a feature that the build needs.
     Status install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
                    std::vector<Diagnostic>& notes);
-    // Shows an early package, until install() takes the whole one or takeBackEarly() that before the edit.
+    // Shows an early package, until install() takes the whole one or takeBackEarly() the one before the edit.
     // Returns false if it can't be shown.
     bool showEarly(const Build& early);
     Status takeBackEarly();
@@ -84,11 +84,11 @@ public:
     std::uint32_t samples() const {
         return samples_;
     }
-    // Also if it can't be drawn as its settings ask for.
+    // Also true if the picture can't be drawn as its settings request.
     bool isComplete() const {
         return (samples_ >= settings_.samples && !poseIsNew_ && missingLevels() == 0) || fails_;
     }
-    // How many textures have levels that no frame has got yet.
+    // Returns how many textures have levels that no frame has yet.
     std::uint32_t missingLevels() const;
     // Returns once after each upload whether the device has all levels of the textures.
     bool takeAllLevels(std::uint64_t completed);
@@ -160,13 +160,13 @@ private:
     Device device_;
     std::uint64_t levelsIn_ = 0;  // frame that has got the last levels of textures
     bool levelsAreNew_ = false;   // takeAllLevels() has not told yet
-    // Those before, while frames may use them.
+    // Earlier scenes, while frames may use them.
     struct RetiredDevice {
         std::uint64_t frame = 0;
         Device device;
     };
     std::vector<RetiredDevice> retired_;
-    // By load(). Its destructor waits for the thread.
+    // The result of load(). Its destructor waits for the thread.
     std::future<Result<LoadedScene>> loading_;
     RendererOptions options_;
     FrameOptions lastFrame_;  // as recorded last

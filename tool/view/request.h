@@ -1,4 +1,4 @@
-// What the window is asked to show, and what it needs of the command that opens it.
+// The request to show a window, and the functions that it needs of the command that opens it.
 #pragma once
 
 #include "cache/module_cache.h"
@@ -43,7 +43,7 @@ struct Request {
     // Returns the warnings of `glint compile` about effects.
     std::function<std::vector<Diagnostic>(const gltf::SceneList&, const compiler::CompileSettings&)>
         effectWarnings;
-    // Returns what `glint explain` says of a material, an index into Scene::materials.
+    // Returns the explanation of `glint explain` for a material, an index into Scene::materials.
     std::function<std::vector<Field>(const gltf::Scene&, const compiler::PlanOptions&, const compiler::Plan&,
                                      int)>
         explain;

@@ -42,7 +42,7 @@ private:
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
 };
 
-// What a scene is made from.
+// The inputs of a scene.
 struct SceneSource {
     compiler::Settings settings;
     std::shared_ptr<const gltf::Scene> scene;
@@ -59,8 +59,8 @@ struct LoadedScene {
     double milliseconds = 0.0;  // of wall clock, until the upload was recorded
 };
 
-// Makes a scene with the coarse levels of its textures, of which GpuScene::textureStream() brings the others.
-// `posed` is null, or the source's scene in its present pose if it moves.
+// Makes a scene with the coarse levels of its textures; GpuScene::textureStream() brings the others. `posed`
+// is null, or the source's scene in its present pose if it moves.
 Result<LoadedScene> loadScene(Context& context, SceneSource source, const gltf::Scene* posed);
 
 }  // namespace glint::view

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kMostMs = 180'000.0;  // for a part of a step
 constexpr std::uint64_t kTaken = 1;    // frames after which the window has taken in an event
-constexpr std::uint64_t kSettle = 3;   // frames after which what it changes is shown
+constexpr std::uint64_t kSettle = 3;   // frames after which the effect of input is shown
 
 Diagnostic scriptError(const std::string& file, int line, const std::string& message) {
     return makeError("window-script", fmt::format("{}:{}", file, line), message, "correct the script");
@@ -133,7 +133,7 @@ void Script::typeText(const std::string& text) {
 
 // Turns the wheel until the control can be seen.
 void Script::reveal(const std::string& control) {
-    // Lists and what is scrolled need some frames before they stay where they are.
+    // Lists and scrolled panels need some frames before they stay in place.
     auto last = std::make_shared<std::uint64_t>(0);
     act([this, control, last]() -> Result<bool> {
         *last = *last == 0 ? host_.frames() : *last;
@@ -193,7 +193,7 @@ Status Script::parse(const std::string& text) {
         if (words.empty()) {
             continue;
         }
-        // What follows the second word, with its blanks.
+        // The text after the second word, with its blanks.
         std::string rest;
         if (words.size() > 2) {
             const std::size_t second = line.find(words[1], line.find(words[0]) + words[0].size());

@@ -18,7 +18,7 @@ struct GLFWwindow;
 
 namespace glint::view {
 
-// What a script asks of the window itself. Everything else is input.
+// The queries of a script to the window itself. Everything else is input.
 struct ScriptHost {
     GLFWwindow* window = nullptr;
     const Controls* controls = nullptr;
@@ -32,7 +32,7 @@ struct ScriptHost {
 
 class Script {
 public:
-    // Reads the steps of a file. A line has a word and what it needs; # begins a comment.
+    // Reads the steps of a file. A line has a word and its arguments; # begins a comment.
     //   wait complete            until nothing is made any more and all samples are there
     //   wait failed              until an error is shown
     //   wait frames N            until N frames were drawn
@@ -89,8 +89,8 @@ private:
         Act act;
     };
     std::deque<Step> steps_;
-    int line_ = 0;   // that is being parsed
-    int shown_ = 0;  // that runs
+    int line_ = 0;   // the line that is being parsed
+    int shown_ = 0;  // the line that runs
     std::vector<std::string> lines_;
     std::int64_t began_ = 0;
 };

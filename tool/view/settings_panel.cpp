@@ -87,11 +87,11 @@ double parsedNumber(const std::string& text) {
     return value;
 }
 
-// What a slider spans; ranges may reach much farther than values that make sense.
+// The widest range of a slider; ranges may extend much farther than useful values.
 constexpr double kWideRange = 4096.0;
 
-// Draws a slider for a number. Returns its text while it moves. `present` is the setting's, and `text` what
-// is shown.
+// Draws a slider for a number. Returns its text while it moves. `present` is the setting's text, and `text`
+// the shown one.
 std::optional<std::string> drawNumber(const char* label, const Descriptor& row, const std::string& present,
                                       const std::string& text) {
     const double value = parsedNumber(text);

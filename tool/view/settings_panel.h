@@ -1,5 +1,5 @@
-// The controls of settings. They are made from the table of settings: a setting that is added there is here,
-// too.
+// The controls of settings. They are made from the table of settings, so a setting that is added there
+// appears here.
 #pragma once
 
 #include "settings/table.h"
@@ -12,7 +12,7 @@ namespace glint::view {
 
 class SettingsPanel {
 public:
-    // Draws a control for each setting of `glint render` and changes `settings`. `facts` says which of them
+    // Draws a control for each setting of `glint render` and changes `settings`. `facts` tells which of them
     // change nothing in this scene. Returns whether any has changed.
     bool draw(Controls& controls, compiler::Settings& settings, const compiler::BenchFacts& facts);
 
@@ -20,7 +20,7 @@ private:
     bool drawRow(Controls& controls, const compiler::Descriptor& row, compiler::Settings& settings,
                  const compiler::BenchFacts& facts);
 
-    // What is being typed or dragged, by setting, until it is finished.
+    // Text that is being typed or dragged, by setting, until it is finished.
     std::map<std::string, std::string, std::less<>> drafts_;
     std::string filter_;
     std::string complaint_;  // about the last text that was typed

@@ -12,12 +12,12 @@ namespace glint::view {
 struct ShotOptions {
     std::string scene;
     std::string output;
-    std::string camera;     // what --camera takes; empty: the default
+    std::string camera;     // the value of --camera; empty: the default
     double exposure = 0.0;  // stops
     std::string time;       // seconds; empty: the rest pose
-    std::string animation;  // with `time`: what --animation takes
-    std::string view{};     // what --view takes; empty: the picture itself
-    std::string layers{};   // what --layers takes, with an `output` that holds layers; empty: none
+    std::string animation;  // with `time`: the value of --animation
+    std::string view{};     // the value of --view; empty: the picture itself
+    std::string layers{};   // the value of --layers, with an `output` that holds layers; empty: none
 };
 
 // Returns the words, from "glint" on. `settings` has the size of the picture and the number of its samples.

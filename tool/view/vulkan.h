@@ -1,4 +1,4 @@
-// Small owners of what the window makes on the device, and its errors. The window links the Vulkan loader, as
+// Small owners of the window's objects on the device, and its errors. The window links the Vulkan loader, as
 // Dear ImGui's backend does.
 #pragma once
 

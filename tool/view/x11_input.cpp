@@ -6,7 +6,7 @@
 #include <X11/extensions/XTest.h>
 #include <cmath>
 
-// As glfw3native.h declares them. That header needs those of further X extensions.
+// These are declarations of glfw3native.h, which itself needs the headers of further X extensions.
 extern "C" Display* glfwGetX11Display(void);
 extern "C" Window glfwGetX11Window(GLFWwindow* window);
 

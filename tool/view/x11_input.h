@@ -17,17 +17,17 @@ class X11Input {
 public:
     explicit X11Input(GLFWwindow* window);
 
-    // Whether the server takes input from programs.
+    // Returns whether the server takes input from programs.
     bool isAvailable() const;
-    // In pixels of the window.
+    // Moves the mouse to a pixel of the window.
     void move(double x, double y) const;
     // 1 left, 2 middle, 3 right, 4 wheel up, 5 wheel down.
     void button(unsigned number, bool down) const;
-    // By the name that X has for the key. Presses Shift too, where the character needs it. Returns false if
-    // the keyboard has no such key.
+    // Presses a key by its X name. Presses Shift too, where the character needs it. Returns false if the
+    // keyboard has no such key.
     bool key(const std::string& name, bool down) const;
 
-    // What a window manager does, where there is none; returns false where there is one.
+    // Does the work of a window manager where there is none; returns false where there is one.
     bool setMinimised(bool minimised) const;
 
     struct Pixels {

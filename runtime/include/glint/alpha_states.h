@@ -1,8 +1,8 @@
-// Which triangles, and which parts of them, an alpha test lets no ray through, or every ray: proved by
-// intervals over all texels that a lookup can reach, not sampled.
+// Proves which triangles, and which parts of them, an alpha test lets no ray or every ray through. The proof
+// is by intervals over all texels that a lookup can reach; it takes no samples.
 //
-// What is proved about is the alpha test of hit/alpha.glsl: alpha = factor * texture(uv).a * vertex alpha, in
-// 32 bits, at mip 0, and the surface is there where alpha >= cutoff.
+// The proof is about the alpha test of hit/alpha.glsl: alpha = factor * texture(uv).a * vertex alpha, in 32
+// bits, at mip 0. The surface is there where alpha >= cutoff.
 #pragma once
 
 #include <glint/opacity_micromap.h>
@@ -15,7 +15,7 @@
 
 namespace glint::opacity {
 
-// What is assumed about a device's arithmetic. All bounds are widened by it.
+// The errors that a device's arithmetic may have. All bounds are widened by it.
 struct ErrorModel {
     // The error of a coordinate in texels. Vulkan asks for at least 4 bits below a texel
     // (subTexelPrecisionBits).
@@ -23,7 +23,7 @@ struct ErrorModel {
     // The error of a coordinate before it is scaled to texels, relative to the largest number that it is
     // computed from.
     double coordinate = 32.0 * 0x1p-24;
-    // By how much barycentrics may lie outside of their triangle.
+    // The distance by which barycentrics may lie outside of their triangle.
     double outside = 0x1p-20;
     // The distance, in barycentrics, between the point that is tested and the one that chose the
     // micro-triangle.
@@ -55,7 +55,7 @@ struct AlphaLookup {
     const AlphaTexels* texels = nullptr;
     Wrap wrapU = Wrap::Repeat;
     Wrap wrapV = Wrap::Repeat;
-    bool linear = true;  // whether any of the sampler's filters is
+    bool linear = true;  // one of the sampler's filters is linear
     // The coordinates that are looked up are dot(rowU, (u, v, 1)) and dot(rowV, (u, v, 1)).
     std::array<float, 3> rowU{1, 0, 0};
     std::array<float, 3> rowV{0, 1, 0};

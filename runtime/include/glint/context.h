@@ -23,22 +23,22 @@ struct DeviceHandles {
     VkQueue queue = VK_NULL_HANDLE;  // graphics, compute and transfer
     std::uint32_t queueFamily = 0;
     PFN_vkGetInstanceProcAddr getInstanceProcAddr = nullptr;  // null: the system's loader
-    bool debugUtils = false;  // whether the instance has VK_EXT_debug_utils: passes then get labels
-    // Whether VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Without it Glint runs
+    bool debugUtils = false;  // the instance has VK_EXT_debug_utils: passes then get labels
+    // True if VkPhysicalDeviceFeatures::samplerAnisotropy is enabled on the device. Without it Glint runs
     // too, but textures are blurrier at grazing angles.
     bool samplerAnisotropy = false;
-    // Whether VK_KHR_ray_tracing_position_fetch is enabled on the device. Some packages need it.
+    // True if VK_KHR_ray_tracing_position_fetch is enabled on the device. Some packages need it.
     bool positionFetch = false;
-    // Whether VkPhysicalDeviceVulkan12Features::shaderFloat16 is enabled on the device. Some packages need
+    // True if VkPhysicalDeviceVulkan12Features::shaderFloat16 is enabled on the device. Some packages need
     // it.
     bool shaderFloat16 = false;
-    // Whether VK_KHR_pipeline_executable_properties and its feature are enabled on the device. Renderers can
+    // True if VK_KHR_pipeline_executable_properties and its feature are enabled on the device. Renderers can
     // then report the driver's statistics of their pipelines.
     bool pipelineStatistics = false;
-    // Whether VK_EXT_opacity_micromap and its feature `micromap` are enabled on the device. Scenes then get
+    // True if VK_EXT_opacity_micromap and its feature `micromap` are enabled on the device. Scenes then get
     // micromaps for the triangles that need an alpha test (docs/alpha.md).
     bool opacityMicromaps = false;
-    // Whether VK_KHR_shader_clock and its feature shaderSubgroupClock are enabled on the device. Packages
+    // True if VK_KHR_shader_clock and its feature shaderSubgroupClock are enabled on the device. Packages
     // with the layer "clocks" need it.
     bool shaderClock = false;
     // The package::Tracer bits whose extensions and features are enabled on the device. They are the bits
@@ -55,11 +55,11 @@ struct HeadlessOptions {
     // The package::Tracer bits to enable. Those that the device lacks are left out; it must support at least
     // one.
     std::uint32_t tracers = package::kAllTracers;
-    // Enables VK_KHR_ray_tracing_position_fetch, which some packages need. Error "device-features" if the
-    // device lacks it.
+    // Enables VK_KHR_ray_tracing_position_fetch, which some packages need. If the device lacks it, the error
+    // is "device-features".
     bool positionFetch = false;
-    // Enables 16-bit float arithmetic, which some packages need. Error "device-features" if the device lacks
-    // it.
+    // Enables 16-bit float arithmetic, which some packages need. If the device lacks it, the error is
+    // "device-features".
     bool shaderFloat16 = false;
     // Enables VK_KHR_pipeline_executable_properties if the device supports it;
     // DeviceHandles::pipelineStatistics then says whether it does.
@@ -67,12 +67,13 @@ struct HeadlessOptions {
     // Enables VK_EXT_opacity_micromap if the device supports it; DeviceHandles::opacityMicromaps then says
     // whether it does.
     bool opacityMicromaps = true;
-    // Further extensions to enable, for programs that show pictures in windows. Devices without those of
-    // devices are not chosen; Vulkan's error for a missing extension of the instance is returned.
+    // Further extensions to enable, for programs that show pictures in windows. A device that lacks one of
+    // the device extensions is not chosen; Vulkan's error for a missing extension of the instance is
+    // returned.
     std::vector<std::string> instanceExtensions{};
     std::vector<std::string> deviceExtensions{};
-    // Enables VK_KHR_shader_clock, which packages with the layer "clocks" need. Error "device-features" if
-    // the device lacks it.
+    // Enables VK_KHR_shader_clock, which packages with the layer "clocks" need. If the device lacks it, the
+    // error is "device-features".
     bool shaderClock = false;
 };
 

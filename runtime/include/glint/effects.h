@@ -1,4 +1,4 @@
-// The effects of packages, that is, what rays add to a picture. Each is declared by a folder of
+// The effects of packages, that is, the uses of rays in a picture. Each is declared by a folder of
 // shaders/effects or of a pack (docs/effects.md); a package says which it has.
 #pragma once
 
@@ -21,7 +21,7 @@ enum class EffectKind : std::uint32_t {
     Rays = 2,     // sends rays from primary surfaces whose hits the package shades
 };
 
-// What the renderer does for an effect beyond its kind, as bits of a set.
+// The work that the renderer does for an effect beyond its kind, as bits of a set.
 enum EffectAbility : std::uint32_t {
     kEffectStartsOnScreen = 1,  // its rays may find their end in the picture: it keeps positions of pixels
     kEffectWalks = 2,           // a pass of its own follows its rays before the list takes them
@@ -36,14 +36,14 @@ struct EffectInfo {
     std::string_view name{};      // on the command line, in the manifest and of passes
 };
 
-// The effects of a package as sets of bits, by what is done for them.
+// The effects of a package as sets of bits, grouped by the renderer's work.
 struct EffectSet {
     std::uint32_t all = 0;
-    // Those of each kind.
+    // The effects of each kind.
     std::uint32_t lights = 0;
     std::uint32_t surfaces = 0;
     std::uint32_t rays = 0;
-    // Those of each ability.
+    // The effects of each ability.
     std::uint32_t screenStarts = 0;
     std::uint32_t walks = 0;
 
@@ -55,7 +55,7 @@ struct EffectSet {
         screenStarts |= (info.abilities & kEffectStartsOnScreen) != 0 ? info.effect : 0U;
         walks |= (info.abilities & kEffectWalks) != 0 ? info.effect : 0U;
     }
-    // Whether a pass other than those that shade hits traces rays.
+    // Returns whether a pass other than those that shade hits traces rays.
     constexpr bool tracesAtSurfaces() const {
         return (lights | surfaces) != 0;
     }

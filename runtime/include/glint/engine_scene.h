@@ -17,12 +17,12 @@
 
 namespace glint {
 
-// One geometry of one instance, which a hit can be on. Addresses are device addresses in the formats that the
+// One geometry of one instance, which a ray can hit. Addresses are device addresses in the formats that the
 // package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
 // position and a normal, four a tangent and a colour, two a UV. The address of an attribute may be 0 only if
 // the package's key of this primitive lacks the attribute.
 struct EngineGeometryView {
-    std::uint32_t mesh = 0;  // which primitive of the package's scene has this geometry's material and key
+    std::uint32_t mesh = 0;       // mesh of the package's scene that gives material and key
     std::uint32_t primitive = 0;  // within the mesh
     std::uint32_t instance = 0;   // index into EngineSceneView::instances
     VkDeviceAddress indices = 0;
@@ -33,8 +33,8 @@ struct EngineGeometryView {
     VkDeviceAddress texCoords1 = 0;
     VkDeviceAddress colors = 0;
     VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
-    // Bits for functions of a host's own (`glint compile --host`), such as the format of its vertices. They
-    // are the upper half of GeometryRecord::flags.
+    // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices. They are
+    // the upper half of GeometryRecord::flags.
     std::uint16_t hostFlags = 0;
 };
 
@@ -51,8 +51,8 @@ struct EngineSamplerView {
     float maxAnisotropy = 1.0F;  // of its filter; 1 without
 };
 
-// How a hit leads to a geometry. The number of a geometry's place in EngineSceneView::geometries is the
-// number of the instance's first geometry plus the index of the geometry in its BLAS.
+// The rule by which the shaders find the geometry of a hit. A geometry's index in EngineSceneView::geometries
+// is the number of the instance's first geometry plus the index of the geometry in its BLAS.
 enum class RecordsBy : std::uint32_t {
     CustomIndex = 0,       // instanceCustomIndex is the number of the instance's first geometry
     CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is that number
@@ -74,8 +74,8 @@ struct EngineSceneView {
     std::span<const std::uint32_t> hitRecords{};
 };
 
-// What Glint's shaders need to know of such a scene: a record for each geometry, instance, material and
-// light. The Context must outlive it; the host keeps what it points to alive.
+// The tables that Glint's shaders read of such a scene: a record for each geometry, instance, material and
+// light. The Context must outlive it; the host keeps the objects that it points to alive.
 class EngineScene {
 public:
     // Makes the records, and records their upload. Nothing waits for the device. The requirements of

@@ -48,7 +48,7 @@ public:
         std::uint32_t height = 0;
         std::uint32_t levels = 0;          // levels of roughness, the map itself included
         std::uint64_t negativePixels = 0;  // pixels with a channel below 0
-        // Whether texels have 16 bits a channel because this device can't filter 32-bit images.
+        // True if texels have 16 bits a channel because this device can't filter 32-bit images.
         bool halfFloat = false;
         bool sampled = false;   // as EnvironmentOptions::sampled
         double filterMs = 0.0;  // host time

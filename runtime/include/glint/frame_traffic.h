@@ -1,7 +1,7 @@
-// The bytes that the passes of a frame move: what they read and write of the frame's own images, samples and
-// lists. Every other pass reads from memory what the one before wrote to it, so these bytes are what a device
-// with little bandwidth has to carry for each pixel. Vertices, textures, acceleration structures and the few
-// bytes of counters and buckets are not in them, and caches and tiles on the chip may save part of them.
+// The bytes that the passes of a frame move: their reads and writes of the frame's own images, samples and
+// lists. Every other pass reads from memory the results of an earlier one, so a device with little bandwidth
+// has to carry these bytes for each pixel. Vertices, textures, acceleration structures and the few bytes of
+// counters and buckets are not in them, and caches and tiles on the chip may save part of them.
 #pragma once
 
 #include <glint/layers.h>
@@ -64,7 +64,7 @@ struct TrafficShape {
     bool marchesScreen = false;
     bool binsRays = false;
     std::vector<package::LayerEntry> layers{};
-    bool layerRays = false;  // they need what rays hit
+    bool layerRays = false;  // they need the hits of rays
     std::uint32_t layerBounces = 0;
     bool layerWalks = false;  // they need the lights that walks find
 };
@@ -83,7 +83,7 @@ struct TrafficRow {
 // Pure. A pass with several units has several rows. Rows without bytes are left out.
 std::vector<TrafficRow> trafficRows(const TrafficShape& shape);
 
-// How many of each unit a frame had.
+// The number of each unit in a frame.
 struct TrafficCounts {
     double of[std::size(kTrafficUnitNames)] = {};
 

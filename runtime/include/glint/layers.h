@@ -1,7 +1,7 @@
 // The layers of a frame: images beside the picture, such as depth, motion, albedo and the light of each
 // effect, for denoisers, compositing and debug views. docs/layers.md describes each of them.
 //
-// layerTable() is their only declaration. The words of --layers, what a package generates, the images of a
+// layerTable() is their only declaration. The words of --layers, the code of a package, the images of a
 // renderer, the bytes of --stats and the channels of OpenEXR files follow from its rows.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace glint::package {
 
-// How an image of a layer stores its values.
+// The storage format of a layer's values.
 enum class LayerFormat : std::uint32_t {
     Float1,   // one 32-bit float
     Float4,   // four
@@ -33,38 +33,38 @@ struct LayerFormatInfo {
 };
 const LayerFormatInfo& infoOf(LayerFormat format);
 
-// What a layer describes, and so how many images of it a package may have.
+// The subject of a layer, which decides how many images of it a package may have.
 enum class LayerSubject : std::uint32_t {
     Surface,  // the primary surface: one image
     Light,    // light that leaves the primary surface: an image for the direct light and for each effect with
               // rays
-    Ray,      // what a ray of an effect found: an image for each effect with rays
-    Bounce,   // what a bounce of its paths brings: an image for each such effect and bounce, where there are
+    Ray,      // the end of an effect's ray: an image for each effect with rays
+    Bounce,   // light of a bounce of its paths: an image for each such effect and bounce, where there are
               // several
-    Work,     // what all passes did for the pixel: one image
+    Work,     // the work of all passes for the pixel: one image
 };
 
-// Further bounces than these share the last one's layers.
+// Bounces beyond this number share the layers of the last one.
 inline constexpr std::uint32_t kMostLayerBounces = 4;
 
-// Which pass writes a layer.
+// The pass that writes a layer.
 enum class LayerPass : std::uint32_t {
     Lighting,
     Compose,
-    Several,  // lighting begins it, and the passes that do what it counts add to it
+    Several,  // lighting begins it, and the passes whose work it counts add to it
 };
 
-// How the samples of a picture become one value.
+// The combination of a picture's samples into one value.
 enum class LayerMean : std::uint32_t {
     First,  // the layer is that of the picture's first sample
     Mean,   // it is the mean over the samples, as the picture is
     Sum,    // it is the sum over the samples
 };
 
-// What a layer needs of the renderer beside its image, as bits of a set.
+// The needs of a layer beside its image, as bits of a set.
 enum LayerDemand : std::uint32_t {
-    kLayerHistory = 1,  // camera, transforms and deformed vertices of the frame before
-    kLayerRays = 2,     // what the rays of effects hit
+    kLayerHistory = 1,  // camera, transforms and deformed vertices of the previous frame
+    kLayerRays = 2,     // the hits of effects' rays
     kLayerClock = 4,    // shaders read a clock: DeviceHandles::shaderClock
     kLayerQueries = 8,  // rays are traced by ray queries alone
 };
@@ -79,16 +79,17 @@ struct LayerInfo {
     LayerFormat format{};
     std::string_view channels;  // of OpenEXR, one letter each: "XYZ". Further components of the format are 0
     LayerMean mean{};
-    // Its value is computed from its own last value, too, where a picture is a mean.
+    // The layer's value is computed from its own last value, too, where a picture is a mean.
     bool continues = false;
-    // It is a place: relative to SceneView::origin in the image, and in the world where the host reads it
-    // (Renderer::readLayer()).
+    // The layer is a place: relative to SceneView::origin in the image, and in the world where the host reads
+    // it (Renderer::readLayer()).
     bool isPlace = false;
-    // It is for people who look for a problem. Words for several layers at once leave it out.
+    // The layer is for people who look for a problem. Words for several layers at once leave it out.
     bool isDiagnostic = false;
     // Another layer of the same subject that it is computed from; empty if there is none.
     std::string_view from{};
-    // What the GLSL calls: a function of shaders/layers/, and the value of a pixel without a surface.
+    // The expressions that the GLSL uses: a function of shaders/layers/, and the value of a pixel without a
+    // surface.
     std::string_view function{};
     std::string_view absent{};
     // With LayerPass::Several: the macro by which passes add to it (subject Work), or store the value of a
@@ -103,7 +104,7 @@ inline constexpr std::uint32_t kRayEndedOnScreen = 0xFFFFFFFD;
 // The layer "non-finite" counts infinite samples in this unit, and those that are not a number in ones.
 inline constexpr std::uint32_t kInfiniteSample = 0x10000;
 
-// Whether sources of light have such layers, rather than the pixel.
+// Returns whether the layer exists for each source of light, rather than once for the pixel.
 bool hasSources(const LayerInfo& info);
 
 // All rows, in the order in which --help lists them.
@@ -137,17 +138,18 @@ struct PackageLayer {
 // Returns the name of a layer, whose source of light has the name `source`.
 std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce);
 
-// The pass that writes the layer: lighting what surfaces are and their direct light, several those with a
-// tally, compose the rest.
+// Returns the pass that writes the layer. Lighting writes surfaces and their direct light, several passes
+// write a layer with a tally, and compose writes the rest.
 LayerPass passOf(const LayerEntry& entry);
-// LayerDemand bits of all of them.
+// Returns the LayerDemand bits of all of them.
 std::uint32_t demandsOf(std::span<const PackageLayer> layers);
-// How many bounces have layers of their own; 0 if none has.
+// Returns the number of bounces that have layers of their own; 0 if none has.
 std::uint32_t layerBounces(std::span<const PackageLayer> layers);
-// Whether some layer holds light that the walk of an effect may find. `walks` are the effects that have one.
+// Returns whether some layer holds light that the walk of an effect may find. `walks` are the effects that
+// have one.
 bool showWalkedLight(std::span<const PackageLayer> layers, std::uint32_t walks);
 bool showsWalkedLight(const LayerEntry& entry, std::uint32_t walks);
-// The size of a pixel of all images, bytes.
+// Returns the size of a pixel of all images, in bytes.
 std::uint32_t bytesOf(std::span<const PackageLayer> layers);
 
 }  // namespace glint::package

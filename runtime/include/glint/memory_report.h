@@ -6,7 +6,7 @@
 
 namespace glint {
 
-// Which side reads and writes a resource's memory.
+// The side that reads and writes a resource's memory.
 enum class MemoryUse : std::uint32_t {
     Device,    // read and written by the device
     Upload,    // written by the host, coherent

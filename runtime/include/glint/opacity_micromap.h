@@ -97,7 +97,7 @@ struct TriangleStates {
 // `twoStates` is set, which makes unknown states those that they lean to, and is no longer exact.
 MicromapArray packMicromaps(std::span<const TriangleStates> triangles, bool twoStates = false);
 
-// How many triangles have the records of a level and format. A bottom level asks for that
+// Returns how many triangles have the records of each level and format. A BLAS asks for that
 // (VkAccelerationStructureTrianglesOpacityMicromapEXT::pUsageCounts). Requires valid indices.
 std::vector<MicromapUsage> usagesOf(const MicromapArray& array);
 
@@ -111,7 +111,7 @@ constexpr std::uint64_t bytesOfStates(std::uint32_t level, std::uint32_t format)
 // Requires an array that faultIn() finds no fault in.
 State stateAt(const MicromapArray& array, std::size_t triangle, std::uint32_t place, std::uint32_t level);
 
-// Returns what is wrong with an array from elsewhere, as a phrase, or nothing: records outside of the data,
+// Returns the fault of an array from elsewhere, as a phrase, or no value: records outside of the data,
 // overlapping ones, levels above `maxLevel`, unknown formats, indices without a record, usages that do not
 // count the records.
 std::optional<const char*> faultIn(const MicromapArray& array, std::uint32_t maxLevel);

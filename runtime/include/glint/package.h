@@ -62,36 +62,37 @@ public:
     Package& operator=(Package&&) noexcept;
     ~Package();
 
-    // Whether the package has the modules of a strategy.
+    // Returns whether the package has the modules of a strategy.
     bool supports(package::Strategy strategy) const;
-    // Whether masked geometry must be built non-opaque, so that rays run alpha tests.
+    // Returns whether masked geometry must be built non-opaque, so that rays run alpha tests.
     bool alphaTested() const;
-    // What rays do with the alpha of materials.
+    // Returns how rays treat the alpha of materials.
     package::AlphaPolicy alpha() const;
-    // How the light of punctual lights passes through alpha and glass. It is Alpha where the scenes call for
-    // nothing else.
+    // Returns how the light of punctual lights passes through alpha and glass. It is Alpha unless the scenes
+    // need another mode.
     package::ShadowThrough shadowThrough() const;
     // Returns the strategies, the tracers, the placement of shadow rays and whatever else decides which
     // modules the package has.
     package::PackageShape shape() const;
     package::HitRecordFormat hitRecord() const;
     package::SampleRecordFormat sampleRecord() const;
-    // Whether the record of a sample also holds what its ray hit, so that there are no records of hits.
+    // Returns whether the record of a sample also holds the hit of its ray, so that there are no records of
+    // hits.
     bool hitsInSamples() const;
-    // Whether misses read an environment map rather than a gradient.
+    // Returns whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
-    // Whether shaders record which levels of textures they read (FrameCounters::textureLevels).
+    // Returns whether shaders record which levels of textures they read (FrameCounters::textureLevels).
     bool textureLevels() const;
-    // Whether shaders rely on what the textures of the scenes hold, so that no other image may take their
-    // place.
+    // Returns whether shaders rely on the contents of the scenes' textures, so that no other image may
+    // replace them.
     bool trustTextures() const;
-    // Whether shaders read the positions of hit triangles from acceleration structures. The device then needs
-    // DeviceHandles::positionFetch.
+    // Returns whether shaders read the positions of hit triangles from acceleration structures. The device
+    // then needs DeviceHandles::positionFetch.
     bool positionFetch() const;
-    // Whether the package draws frames, for Renderer, or has the steps that RaySteps records.
+    // Returns whether the package draws frames, for Renderer, or has the steps that RaySteps records.
     package::Passes passes() const;
     package::HitAnswer answer() const;
-    // Where shaders find the host's descriptors and push constants.
+    // Returns where shaders find the host's descriptors and push constants.
     const package::Bindings& bindings() const;
     // With ShadingPrecision::Half shaders also compute in 16-bit float. The device then needs
     // DeviceHandles::shaderFloat16.
@@ -99,15 +100,15 @@ public:
     // Returns how many lights a surface chooses by a hierarchy, which GpuScene then builds; 0 if it takes
     // all.
     std::uint32_t lightSamples() const;
-    // Whether surfaces sample the sky as a light. An environment map then needs EnvironmentOptions::sampled.
+    // Returns whether surfaces sample the sky as a light. An environment map then needs
+    // EnvironmentOptions::sampled.
     bool skyLight() const;
-    // Whether rays of lobes find punctual lights that have a size (LightView::size), as samples of these
-    // lights do.
+    // Returns whether rays of lobes find area lights (LightView::size), as samples of these lights do.
     bool sizedLights() const;
-    // Returns where records of materials say what they emit, or null in packages without emissive lights.
+    // Returns where records of materials keep their emission, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
-    // Returns what says where alpha is in records, or null for packages that do not test it, or by code that
-    // is not Glint's own.
+    // Returns where records of materials keep alpha. It is null for packages that do not test alpha, and for
+    // those that test it by code that is not Glint's own.
     const package::OpacityEntry* opacity() const;
     // Returns the names of features of materials, in the order of bits, for messages about keys. Bits without
     // a name are left out.

@@ -20,41 +20,41 @@ inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
 
-// How rays are traced, as bits of a set. Strategies with a pipeline of their own always use the ray tracing
-// pipeline, whichever tracers the package has for the others.
+// The ways to trace rays, as bits of a set. Strategies with a pipeline of their own always use the ray
+// tracing pipeline, whichever tracers the package has for the others.
 enum Tracer : std::uint32_t {
     kTracerRayQuery = 1,
     kTracerRayPipeline = 2,  // ray generation shaders: for devices without ray queries
     kAllTracers = 3,
 };
 
-// Which pass traces the shadow rays of hits.
+// The pass that traces the shadow rays of hits.
 enum class ShadowPlacement : std::uint32_t {
     Inline = 0,    // by the shader that shades the hit
     Deferred = 1,  // by a pass of their own, from a list
 };
 
-// What rays do with the alpha of a material.
+// The treatment of a material's alpha by rays.
 enum class AlphaPolicy : std::uint32_t {
     Opaque = 0,      // nothing: whatever they hit is opaque
     Tested = 1,      // alphaMode MASK is tested, and BLEND is opaque
     Stochastic = 2,  // as above, but a ray stops at BLEND with the probability alpha
 };
 
-// How the light of punctual lights passes through alpha and glass.
+// The ways in which the light of punctual lights passes through alpha and glass.
 enum class ShadowThrough : std::uint32_t {
-    Alpha = 0,   // what AlphaPolicy gives all rays; glass blocks it
+    Alpha = 0,   // as AlphaPolicy treats all rays; glass blocks it
     Opaque = 1,  // glass and alphaMode BLEND block it
     Glass = 2,   // a share of each colour
 };
 
-// How a hit is stored between passes.
+// The storage format of a hit between passes.
 enum class HitRecordFormat : std::uint32_t {
     Full = 0,    // 20 bytes, gpu::HitRecord
     Packed = 1,  // 12 bytes, gpu::PackedHitRecord
 };
 
-// How the samples of effects are stored between passes.
+// The storage format of effects' samples between passes.
 enum class SampleRecordFormat : std::uint32_t {
     Full = 0,    // 48 bytes, gpu::SampleStart, SampleAim and SampleWeight
     Packed = 1,  // 24 bytes, gpu::SampleStart and gpu::uvec2
@@ -64,19 +64,19 @@ enum class SampleRecordFormat : std::uint32_t {
 // earlier.
 inline constexpr std::uint32_t kMaxBounces = 64;
 
-// Which passes a package has.
+// The passes that a package has.
 enum class Passes : std::uint32_t {
     Frame = 0,  // a whole frame: the raster pass, lighting, effects, and the hits of their rays
     Steps = 1,  // the passes that trace, order and shade a host's own rays (RaySteps)
 };
 
-// What RaySteps returns for a host's ray.
+// The answer that RaySteps returns for a host's ray.
 enum class HitAnswer : std::uint32_t {
     Radiance = 0,  // the light that comes back along the ray
     Surface = 1,   // gpu::SurfaceRecord: the surface that it hit, for a host that lights it
 };
 
-// Where shaders find a host's bindings. Renderer accepts only the defaults.
+// Where shaders find a host's bindings. Renderer accepts the defaults only.
 struct Bindings {
     std::uint32_t sceneSet = 0;        // descriptor set of the next three
     std::uint32_t tlas = 0;            // accelerationStructureEXT
@@ -86,20 +86,20 @@ struct Bindings {
     std::uint32_t environment = 5;     // sampler2D, in packages that read an environment map
     std::uint32_t pushOffset = 0;      // of gpu::PushConstants in the range of push constants, bytes
 
-    // As `tlas`: there is no descriptor; RayBatch::tlas has the structure's device address.
+    // The value of `tlas` without a descriptor: RayBatch::tlas has the structure's device address.
     static constexpr std::uint32_t kByAddress = 0xFFFFFFFF;
 
     friend bool operator==(const Bindings&, const Bindings&) = default;
 };
 
-// How many bits shading computes with.
+// The precision of shading.
 enum class ShadingPrecision : std::uint32_t {
     Single = 0,  // everything in 32-bit float
     Half = 1,    // 16-bit float where that is exact enough; the device needs shaderFloat16
 };
 
-// How hits are counted into buckets and copied in the order of the buckets. Each method gives each hit one
-// slot. Which one is fastest depends on the device and on the number of buckets.
+// The methods of counting hits into buckets and copying them in the order of the buckets. Each method gives
+// each hit one slot. Which one is fastest depends on the device and on the number of buckets.
 enum class Ordering : std::uint32_t {
     GlobalAtomics = 0,  // one atomic for each hit
     WaveLoop = 1,       // an atomic for each distinct bucket in a subgroup, found one after the other
@@ -133,7 +133,7 @@ struct PackageHeader {
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
     std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
     ShadingPrecision precision;
-    // A record of a material ends with its gpu::TextureRecords, and the runtime knows nothing else of it.
+    // A record of a material ends with its gpu::TextureRecords, and the runtime knows no other part of it.
     std::uint32_t materialTextureOffset;  // bytes
     std::uint32_t materialTextureCount;
     Passes passes;
@@ -145,7 +145,7 @@ struct PackageHeader {
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
     std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
-    std::uint32_t trustTextures;  // 1: shaders rely on what the textures of the scenes hold
+    std::uint32_t trustTextures;  // 1: shaders rely on the contents of the scenes' textures
     std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
     std::uint32_t early;          // 1: shows an edit; its other modules are those before it
     SampleRecordFormat sampleRecord;
@@ -181,8 +181,8 @@ struct StringRef {
     std::uint32_t length;
 };
 
-// The purpose of a SPIR-V module. The values are stable.
-// What a module is for. Each strategy has roles of its own, which follow these (package_modules.h).
+// The purpose of a SPIR-V module. The values are stable. Each strategy has roles of its own, which follow
+// these (package_modules.h).
 enum class ModuleRole : std::uint32_t {
     None = 0,
     GBufferVertex = 1,
@@ -281,7 +281,7 @@ struct EffectEntry {
     std::uint32_t pad;
 };
 
-// What the runtime has to know of a material's record to bound the light that its triangles emit.
+// The facts about a material's record by which the runtime bounds the light that its triangles emit.
 struct EmissionEntry {
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
@@ -292,15 +292,15 @@ struct EmissionEntry {
     std::uint32_t textureInput;
     std::uint32_t texCoord0Input;
     std::uint32_t texCoord1Input;
-    // Features, inputs in the high half and lobes in the low one. Shaders that compute what a triangle emits
-    // ask for no others than `read`. They take those of `always` for granted, and decide about those of
-    // `sometimes` by the key.
+    // Features, inputs in the high half and lobes in the low one. Shaders that compute the emission of a
+    // triangle use the features of `read` only. They take those of `always` for granted, and decide about
+    // those of `sometimes` by the key.
     std::uint64_t read;
     std::uint64_t always;
     std::uint64_t sometimes;
 };
 
-// What the runtime has to know of a material's record to prove where its alpha test lets rays through.
+// The facts about a material's record by which the runtime proves where its alpha test lets rays through.
 struct OpacityEntry {
     static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
@@ -314,7 +314,7 @@ struct OpacityEntry {
     std::uint32_t texCoord1Input;
     std::uint32_t transformInput;
     std::uint32_t vertexColorInput;
-    // Features whose code changes UVs or opacity. Nothing is known of the alpha of keys that have one.
+    // Features whose code changes UVs or opacity. The alpha of a key that has one is unknown.
     std::uint64_t code;
 };
 

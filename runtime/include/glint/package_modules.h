@@ -47,7 +47,7 @@ struct ModuleKey {
 
 enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk };
 
-// Which packages have a role.
+// The packages that have a role.
 enum class Purpose : std::uint8_t {
     Picture,   // packages that draw a frame
     Hits,      // packages that shade hits: for a host, or with an effect that sends rays
@@ -70,12 +70,12 @@ struct RoleInfo {
     Purpose purpose = Purpose::Hits;
     Repeated repeated = Repeated::Once;
 
-    // Only roles of strategies have these, as the strategy declares them.
+    // Only roles of strategies have these members; the strategy declares them.
     const StrategyModule* declared = nullptr;
     Over over = Over::Nothing;  // of the fallback of Buckets: Misses; other fallbacks have no pass
     ModuleRole fallback{};      // the role of its fallback
 
-    // Whether its code chooses among cases.
+    // Returns whether its code chooses among cases.
     bool hasSwitch() const {
         return declared != nullptr && declared->cases == CaseCode::Switch;
     }
@@ -204,14 +204,15 @@ ModuleRole roleNamed(std::string_view name);
 // pipeline; the others use the package's tracers.
 std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers);
 
-// Whether hits send rays further.
+// Returns whether hits send rays further.
 bool hasPaths(const PackageShape& shape);
 
 // Returns every module of a package, in the order of role, index, tracer.
 std::vector<ModuleKey> requiredModules(const PackageShape& shape);
 
-// Returns what a module demands of a device beyond Vulkan 1.3, as the capabilities of its SPIR-V say: names
-// of features, and of subgroup operations (VK_SUBGROUP_FEATURE_…), each once and sorted. `words` is a module.
+// Returns the features that a module demands of a device beyond Vulkan 1.3, from the capabilities of its
+// SPIR-V: names of features, and of subgroup operations (VK_SUBGROUP_FEATURE_…), each once and sorted.
+// `words` is a module.
 std::vector<std::string> featuresOf(std::span<const std::uint32_t> words);
 
 }  // namespace glint::package

@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// What Renderer::replacePackage() keeps, and what it makes.
+// The pipelines and buffers that Renderer::replacePackage() keeps, and those that it makes.
 struct PackageReplacement {
     // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
     std::uint32_t pipelinesKept = 0;

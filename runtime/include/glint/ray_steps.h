@@ -55,16 +55,16 @@ static_assert(sizeof(EngineSurface) == 112);
 
 struct RayStepsOptions {
     package::Strategy strategy = package::kDefaultStrategy;
-    // As in RendererOptions.
+    // The same option as in RendererOptions.
     std::optional<package::Tracer> tracer{};
     std::optional<package::Ordering> ordering{};
     bool checkOrder = false;
     std::uint32_t pipelineThreads = 0;
     bool backgroundPipelines = false;  // as in RendererOptions; begin() uses what was made by then
     std::uint32_t maxRays = 0;         // in a batch, at least 1
-    // The layout of the host's pipelines. Its sets have what Package::bindings() names, visible to compute
-    // shaders, or to the stages of ray tracing pipelines if they trace. Its range of push constants has
-    // RaySteps::kPushBytes bytes at Bindings::pushOffset for `pushStages`. It must outlive the RaySteps.
+    // The layout of the host's pipelines. Its sets have the bindings of Package::bindings(), visible to
+    // compute shaders, or to the stages of ray tracing pipelines if they trace. Its range of push constants
+    // has RaySteps::kPushBytes bytes at Bindings::pushOffset for `pushStages`. It must outlive the RaySteps.
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkShaderStageFlags pushStages = VK_SHADER_STAGE_COMPUTE_BIT;  // of the range that overlaps those bytes
 };

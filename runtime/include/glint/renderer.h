@@ -30,13 +30,13 @@ namespace glint {
 class SceneEditor;
 class TextureStream;
 
-// What the last GpuScene::update() did. Times are device times in milliseconds; without timestamps on the
+// The work of the last GpuScene::update(). Times are device times in milliseconds; without timestamps on the
 // queue they are 0.
 struct MotionStatistics {
     enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
     std::uint32_t deformed = 0;  // instances whose vertices were computed again
-    std::uint32_t refits = 0;    // bottom levels that were refitted
-    std::uint32_t rebuilds = 0;  // bottom levels that were built anew
+    std::uint32_t refits = 0;    // BLASes that were refitted
+    std::uint32_t rebuilds = 0;  // BLASes that were built anew
     TopLevel topLevel = TopLevel::Kept;
     double deformMs = 0.0;
     double blasMs = 0.0;
@@ -71,10 +71,10 @@ public:
     // are full. This is for tools, tests, and programs that may stand still while they load.
     static Result<std::unique_ptr<GpuScene>> upload(Context& context, const Package& package,
                                                     const SceneView& scene);
-    // Says that the device has completed all commands of frames up to `frame`, and frees what only those
-    // used. It calls complete() of the editor and the texture stream, too.
+    // Says that the device has completed all commands of frames up to `frame`, and frees the resources that
+    // only those used. It calls complete() of the editor and the texture stream, too.
     void complete(std::uint64_t frame);
-    // Whether complete() was called for the frame of the upload.
+    // Returns whether complete() was called for the frame of the upload.
     bool isUploaded() const;
     // Records the replacement of the BLASes by their compacted copies, and a build of the TLAS, if the upload
     // is complete and this was not done before; otherwise it records nothing. Returns whether it has.
@@ -93,14 +93,15 @@ public:
         std::uint32_t blasCount = 0;
         std::uint64_t blasBytes = 0;  // of the present ones: compacted after recordCompaction()
         std::uint64_t blasUncompactedBytes = 0;
-        // How many 16-bit images are stored with 8 bits, because this device can't filter or blit
+        // The number of 16-bit images that are stored with 8 bits, because this device can't filter or blit
         // R16G16B16A16_UNORM.
         std::uint32_t narrowedTextures = 0;
-        // Triangles of meshes whose alpha rays would test, and those that no ray tests (SceneView::opacity).
+        // Triangles of meshes whose alpha rays would test, and those of them that are proved, so that no ray
+        // tests them (SceneView::opacity).
         std::uint64_t maskedTriangles = 0;
         std::uint64_t provedOpaque = 0;
         std::uint64_t provedTransparent = 0;
-        // Micromaps of the others, on devices that have them.
+        // Micromaps of the triangles that are still tested, on devices that have micromaps.
         std::uint32_t micromaps = 0;
         std::uint64_t micromapBytes = 0;
         double opacityMs = 0.0;    // wall clock of proving them
@@ -113,7 +114,7 @@ public:
     // package::Bindings has by default, and its layout. They are for hosts that record RaySteps.
     VkDescriptorSet descriptorSet() const;
     VkDescriptorSetLayout descriptorSetLayout() const;
-    // Lists buffers and images by what they hold. allocatedBytes() is the memory that was allocated for them.
+    // Lists buffers and images by their contents. allocatedBytes() is the memory that was allocated for them.
     std::vector<MemoryItem> memory() const;
     std::uint64_t allocatedBytes() const;
 
@@ -148,7 +149,7 @@ public:
     // Records an update, submits it and waits for the device. This is for tools and tests.
     Status updateAndWait(const MotionView& motion);
 
-    // Returns what the last update did. The caller must have waited until the device completed it. Error
+    // Returns the work of the last update. The caller must have waited until the device completed it. Error
     // "frame-not-recorded" if there was no update, and those of reading device times.
     Result<MotionStatistics> motion() const;
 
@@ -239,7 +240,7 @@ struct FrameCounters {
     EffectCounters of(package::Effect effect) const;
 };
 
-// How a pixel got the light of an effect.
+// The source of a pixel's light from an effect.
 enum class PixelPath : std::uint8_t {
     NoSurface,
     NoRay,   // rough, unlit, or its sample would bring no light
@@ -255,7 +256,7 @@ struct PipelineProgress {
     std::uint32_t adopted = 0;  // those that recordings use
     // The first error. Its passes keep the fallback, or the draft.
     std::optional<Diagnostic> error{};
-    // Whether the next recording may be a draft (RendererOptions::draft), and how many were.
+    // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so far.
     bool draft = false;
     std::uint64_t drafts = 0;
 };
@@ -320,10 +321,10 @@ public:
 
     // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
     // recordings there were: the number of the last one. finished() says that the device has completed all
-    // recordings up to a number. It destroys what only those used, and reads how deep their paths were, so
-    // that later recordings with more than 8 bounces leave out those that few paths reach. It never waits. A
-    // program that replaces packages or has many bounces should call it once for each frame; render() and
-    // renderSamples() do so themselves.
+    // recordings up to a number. It destroys the resources that only those used, and reads the depth of their
+    // paths, so that later recordings with more than 8 bounces leave out those that few paths reach. It never
+    // waits. A program that replaces packages or has many bounces should call it once for each frame;
+    // render() and renderSamples() do so themselves.
     std::uint64_t recordings() const;
     void finished(std::uint64_t recording);
 
@@ -346,7 +347,7 @@ public:
     // renderer. Shaders of a recording write them last, so commands that read them need a dependency on its
     // shader writes, and are to complete before those of the next recording, or be ordered before them on the
     // same queue. The values are those of the picture so far, as LayerInfo::mean says; a draft
-    // (RendererOptions::draft) leaves them as they are. Motion leads to the frame before: the picture that
+    // (RendererOptions::draft) leaves them as they are. Motion leads to the previous frame: the picture that
     // this renderer began before this one.
     std::vector<LayerImage> layers() const;
     // Reads a layer of the last recording back and waits for the device. Errors: "layer-missing" if the
@@ -382,7 +383,8 @@ public:
     // Reads output() back. Waits for the device.
     Result<LinearImage> readOutput();
 
-    // What the renderer uses, also where RendererOptions left the choice to it.
+    // Returns the tracer and the ordering that the renderer uses, also where RendererOptions left the choice
+    // to it.
     package::Tracer tracer() const;
     package::Ordering ordering() const;
     // The number of pipelines, images and buffers, for tests and reports.
@@ -397,21 +399,21 @@ public:
     // Lists each image and buffer of the footprint.
     std::vector<MemoryItem> memory() const;
 
-    // How the pipelines were made.
+    // A report of how the pipelines were made.
     struct PipelineMaking {
         std::uint32_t threads = 0;
         double milliseconds = 0.0;  // wall clock, shader binding tables included
-        // How many of the pipelines the driver found in the Context's cache. No value if the driver does not
-        // say.
+        // The number of pipelines that the driver found in the Context's cache. It has no value if the driver
+        // does not report it.
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;
-    // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then. These
-    // say how far they are, and wait until the last is made, also of a package that waits to take its place.
-    // Without it nothing is wanted.
+    // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then.
+    // pipelineProgress() says how many are made. The other function waits until the last one is made, also of
+    // a package that waits to replace this one. Without that option no pipeline is missing.
     PipelineProgress pipelineProgress() const;
     void waitForPipelines();
-    // Returns what the driver reports about each pipeline. Errors: "pipeline-statistics" without
+    // Returns the driver's report about each pipeline. Errors: "pipeline-statistics" without
     // RendererOptions::pipelineStatistics, "vulkan-call".
     Result<std::vector<PipelineStatistics>> pipelineStatistics() const;
 

@@ -1,4 +1,4 @@
-// What a renderer and each of its frames are asked for.
+// The options of a renderer and of each of its frames.
 #pragma once
 
 #include <glint/effects.h>
@@ -15,7 +15,7 @@
 
 namespace glint {
 
-// How many bits a picture has for each channel.
+// The precision of a picture's channels.
 enum class PictureFormat : std::uint32_t { Full = 0, Half = 1 };
 inline constexpr Named<PictureFormat> kPictureFormatNames[] = {
     {PictureFormat::Full, "full", "32-bit floats"},
@@ -42,20 +42,20 @@ struct RendererOptions {
     // Lets frames add their sample to the mean of earlier ones (FrameOptions::sampleIndex). It takes two
     // images more, 32 bytes a pixel. A program whose frames are all samples of their own does without.
     bool accumulate = true;
-    // With Half, the picture takes 8 bytes a pixel instead of 16: 11 significant bits, and light above 65504
-    // becomes that. Frames that accumulate, that march in screen space, or that have layers of 32-bit vectors
-    // keep 32 bits. Renderer::outputFormat() says which one it is.
+    // With Half, the picture takes 8 bytes a pixel instead of 16: the values have 11 significant bits and are
+    // at most 65504. Frames that accumulate, that march in screen space, or that have layers of 32-bit
+    // vectors keep 32 bits. Renderer::outputFormat() says which one it is.
     PictureFormat picture = PictureFormat::Full;
     // Lets frames look for the ends of rays in screen space (FrameOptions::screenSteps). It takes an image
-    // more in packages with such effects, 16 bytes a pixel, and frames in one band.
+    // more of 16 bytes a pixel in packages with such effects, and keeps frames in one band.
     bool screenMarch = false;
     // Lights the frame in that many bands of rows, one after the other. Samples, rays and hits then take
-    // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses: one
-    // on discrete GPUs, which bands cost time; elsewhere bands of at most kPixelsOfBand pixels, but no more
-    // of them than keep the passes of a frame few.
+    // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses the
+    // number: one band on discrete GPUs, where bands cost time; elsewhere bands of at most kPixelsOfBand
+    // pixels, up to a number that keeps the passes of a frame few.
     std::uint32_t bands = 0;
-    // The most bounces of a path in this renderer's frames: 1 to what the package was compiled for
-    // (PackageShape::maxBounces). With 1, the hits of the effects' rays send no further rays.
+    // The most bounces of a path in this renderer's frames, from 1 to the number that the package was
+    // compiled for (PackageShape::maxBounces). With 1, the hits of the effects' rays send no further rays.
     std::uint32_t bounces = 1;
     // The number of threads that make pipelines, the calling one included. 0 means as many as the machine
     // runs at once.
@@ -76,7 +76,7 @@ struct RendererOptions {
     bool pipelineStatistics = false;
 };
 
-// The most pixels of a band if RendererOptions::bands is 0, but for discrete GPUs.
+// The most pixels of a band if RendererOptions::bands is 0. Discrete GPUs have no such limit.
 inline constexpr std::uint32_t kPixelsOfBand = 1U << 19;
 
 // The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the direction,
@@ -101,7 +101,7 @@ struct SkyView {
 
 class Environment;
 
-// Which times Renderer::timings() returns for a frame.
+// The times that Renderer::timings() returns for a frame.
 enum class Timing : std::uint32_t {
     // "frame" is the time of the whole frame. "hits" is the time of a round of rays, from the finished list
     // of rays to the shaded hits.
@@ -126,8 +126,7 @@ struct FrameOptions {
     // A ray of an effect is not sent if the luminance of its sample's weight is below this. Its light is
     // lost. 0 sends every ray.
     float faintWeight = 0.0F;
-    // The number of rays that a primary surface sends, in each sample, to each light that has a size: 1 to
-    // 4096.
+    // The number of rays that a primary surface sends, in each sample, to each area light: 1 to 4096.
     std::uint32_t shadowSamples = 1;
     // Ambient occlusion: the number of rays a sample (1 to 4096), their length in metres (infinite means no
     // limit), and whether an occluder counts less the farther it is. That weight falls linearly to 0 at the
@@ -144,11 +143,11 @@ struct FrameOptions {
     // exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();
     Binning binning = Binning::None;
-    // The bounces of a path: up to RendererOptions::bounces. 0 means that many.
+    // The bounces of a path, up to RendererOptions::bounces. 0 means that maximum.
     std::uint32_t bounces = 0;
     // Records every bounce of a frame with more than 8. Without it a frame records those that many paths of
-    // the frames before have reached, and further ones by chance, with a weight that keeps the mean. What it
-    // shows of rare long paths then depends on those frames. Renderer::finished() says which frames the
+    // the frames before have reached, and further ones by chance, with a weight that keeps the mean. The
+    // light of rare long paths then depends on those frames. Renderer::finished() says which frames the
     // device has completed.
     bool recordAllBounces = false;
     // The number of steps of the march in screen space that precedes a ray. 0 means no march. Others need

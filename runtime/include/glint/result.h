@@ -11,13 +11,13 @@ namespace glint {
 
 enum class Severity { Note, Warning, Error };
 
-// One message to the user. It says what is wrong, where, and what to do about it.
+// One message to the user. It names the fault, its place and a remedy.
 struct Diagnostic {
     Severity severity = Severity::Error;
     std::string id;       // stable kebab-case name of the kind of message, for instance "accessor-range"
     std::string where;    // file, file#/json/pointer or file:line; empty when there is no place
     std::string message;  // one sentence, no final full stop
-    std::string hint;     // what the user can do; may be empty
+    std::string hint;     // advice for the user; may be empty
 };
 
 // Formats as "scene.gltf#/materials/3: error: message; hint [id]".

@@ -17,8 +17,9 @@
 
 namespace glint {
 
-// Names something in a scene. A handle stays valid until what it names is removed. Its index may then be used
-// again, with another generation, so an old handle names nothing. The initial value names nothing.
+// Names something in a scene. A handle stays valid until the thing that it names is removed. Its index may
+// then be used again, with another generation, so an old handle names nothing. The initial value names
+// nothing.
 template <typename Kind>
 struct SceneHandle {
     std::uint32_t index = 0;
@@ -43,7 +44,7 @@ inline constexpr AttributeMask kAttributeTangents = 2;
 inline constexpr AttributeMask kAttributeTexCoords0 = 4;
 inline constexpr AttributeMask kAttributeTexCoords1 = 8;
 inline constexpr AttributeMask kAttributeColors = 16;  // colours that are not all (1, 1, 1, 1)
-// From this bit on: the attributes of Package::attributes(), in their order.
+// The bits from this one on stand for the attributes of Package::attributes(), in their order.
 inline constexpr std::uint32_t kDeclaredAttributesShift = 8;
 
 // Returns the attributes that the primitive has, as far as `package` knows them. Reads all colours.
@@ -54,7 +55,7 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
 struct MaterialKey {
     AttributeMask attributes = 0;
     std::uint64_t features = 0;       // the key, with all lobes
-    std::uint64_t hitFeatures = 0;    // what hits keep of it; the same unless the package has --hit-lobes
+    std::uint64_t hitFeatures = 0;    // those that hits keep; the same unless the package has --hit-lobes
     std::uint32_t geometryFlags = 0;  // kGeometry* of shaders/interop/scene.h
 };
 
@@ -118,12 +119,12 @@ struct PlacedMesh {
 // scene.
 //
 // Each function checks its arguments and takes effect in host memory at once, or returns an error and changes
-// nothing. Spans are read in the call and not kept. record() then records what the device has to do for all
+// nothing. Spans are read in the call and not kept. record() then records the work of the device for all
 // edits since the last record(). Nothing waits for the device. The functions may not be called from several
 // threads at the same time, nor during Renderer::record().
 //
 // Errors of all functions: "scene-edit-handle" (a handle names nothing), "scene-edit-used" (something else
-// still uses what is to be removed), "scene-edit-value" (a number is not finite, or an index out of range),
+// still uses the thing to be removed), "scene-edit-value" (a number is not finite, or an index out of range),
 // and those of memory and Vulkan's calls. Errors of those that give a primitive a material: "scene-edit-key"
 // (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the package has no
 // code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the package has the
@@ -135,8 +136,9 @@ public:
     SceneEditor(const SceneEditor&) = delete;
     SceneEditor& operator=(const SceneEditor&) = delete;
 
-    // What was uploaded, by its numbers in the package's scene (textures, materials, meshes) and in SceneView
-    // (instances, lights). A number that was not uploaded, or was removed, gives a handle that names nothing.
+    // These return the handle of an uploaded thing by its number in the package's scene (textures, materials,
+    // meshes) or in SceneView (instances, lights). A number that was not uploaded, or was removed, gives a
+    // handle that names nothing.
     TextureHandle texture(std::uint32_t number) const;
     MaterialHandle material(std::uint32_t number) const;
     MeshHandle mesh(std::uint32_t number) const;
@@ -198,14 +200,15 @@ public:
     // the last call. Memory that is no longer needed is freed by complete(). On an error nothing is recorded,
     // and the edits wait for the next call. Errors: "scene-edit-frame", "tlas-limit".
     Status record(VkCommandBuffer commands, std::uint64_t frame);
-    // Says that the device has completed all commands of frames up to `frame`, and frees what they alone
-    // used. Command buffers of these frames may not be submitted again.
+    // Says that the device has completed all commands of frames up to `frame`, and frees the resources that
+    // they alone used. Command buffers of these frames may not be submitted again.
     void complete(std::uint64_t frame);
-    // Lets the next record() shrink the buffers of records and the TLAS to what they hold, but not below
+    // Lets the next record() shrink the buffers of records and the TLAS to their contents, but not below
     // their size at the upload. Without it they only grow.
     void trim();
 
-    // How many bytes wait for complete(): staging, scratch, and what was removed or replaced.
+    // Returns how many bytes wait for complete(): staging, scratch, and everything that was removed or
+    // replaced.
     std::uint64_t retiredBytes() const;
 
     struct State;  // for the runtime's own sources and their tests

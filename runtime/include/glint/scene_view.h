@@ -43,7 +43,7 @@ struct PrimitiveView {
     std::span<const std::array<float, 2>> texCoords1;
     std::span<const std::array<float, 4>> colors;  // linear RGBA
     std::span<const std::uint32_t> indices;        // three indices for each triangle
-    // Those that the package does not read (Package::attributes()) are ignored.
+    // Attributes that the package does not read (Package::attributes()) are ignored.
     std::span<const AttributeView> attributes{};
     std::span<const MorphTargetView> targets{};
     // Joints and weights of a primitive that follows a skin, vertex by vertex. Every vertex has the same
@@ -80,7 +80,7 @@ struct ImageView {
     // size of the one before, rounded down. Upload makes the remaining levels of a full pyramid from the last
     // one. It makes none for block formats: a texture then has these levels alone.
     std::uint32_t levels = 1;
-    // What shaders read as red, green, blue and alpha.
+    // The channels that shaders read as red, green, blue and alpha.
     TexelChannels channels = kChannelsAsStored;
     // The first level in RGBA of 8 bits. Only images in a block format need it, and only if triangles that
     // are lights (--emissive-lights) have it as their emission.
@@ -132,7 +132,7 @@ constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/
     return kTraversalOrderNames;
 }
 
-// How the vertices of a scene are stored on the device.
+// The storage form of a scene's vertices on the device.
 enum class VertexForm : std::uint32_t {
     Compact,
     Full,
@@ -169,7 +169,7 @@ struct SceneView {
     std::span<const ImageView> images;          // indexed by the package's TextureEntry::image
     std::span<const LightView> lights;
     std::uint32_t packageScene = 0;  // index of the scene in the package
-    // Whether GpuScene::update() will move the scene. The resources for it are only made if so.
+    // True if GpuScene::update() will move the scene. The resources for it are only made if so.
     bool moves = false;
     // Materials whose values differ from the package's, by ascending number. If the scene moves,
     // GpuScene::update() may change these materials and no others.
@@ -179,23 +179,24 @@ struct SceneView {
     // the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
     // Proved triangles are tested by no ray: opaque ones are in opaque geometry, transparent ones in none
-    // (docs/alpha.md). Scenes that can be edited are tested, because their materials may change at any time.
+    // (docs/alpha.md). Rays test all triangles of scenes that can be edited, because their materials may
+    // change at any time.
     OpacityUse opacity = OpacityUse::Proved;
-    // Whether GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
+    // True if GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
     bool editable = false;
-    // How many textures and samplers an editable scene may have at a time, those of the upload included. The
-    // pipelines of its renderers are made for these numbers, so they can't grow. A texture takes a descriptor
-    // in each version of the scene's descriptor set.
+    // The number of textures and samplers that an editable scene may have at a time, those of the upload
+    // included. The pipelines of its renderers are made for these numbers, so they can't grow. A texture
+    // takes a descriptor in each version of the scene's descriptor set.
     std::uint32_t textureRoom = 1024;
     std::uint32_t samplerRoom = 64;
-    // Whether upload takes only the levels of at most `firstTexels` texels a side of images that have a full
-    // pyramid, and GpuScene::textureStream() brings the others while frames are drawn. The texels of `images`
-    // must then stay in memory until it has brought them or the scene is destroyed. This also holds for
-    // images that SceneEditor gets.
+    // If true, the upload takes only the levels of at most `firstTexels` texels a side of images that have a
+    // full pyramid, and GpuScene::textureStream() brings the others while frames are drawn. The texels of
+    // `images` must then stay in memory until it has brought them or the scene is destroyed. This also holds
+    // for images that SceneEditor gets.
     bool streamsTextures = false;
     std::uint32_t firstTexels = 64;
-    // The place in the world, in metres, where the scene's own coordinates are 0. It should be close to what
-    // is seen.
+    // The place in the world, in metres, where the scene's own coordinates are 0. It should be close to the
+    // visible things.
     std::array<double, 3> origin{};
 };
 
@@ -203,7 +204,7 @@ struct SceneView {
 // instance keeps its mesh and its number of joints and weights, each light its type, and each material its
 // number.
 struct MotionView {
-    // What happens to acceleration structures that no longer fit.
+    // The treatment of acceleration structures that no longer fit.
     enum class Builds : std::uint32_t {
         ByRule,   // refit or rebuild by the rules of GpuScene::update()
         Refit,    // refit and update, however slow rays become
@@ -213,8 +214,8 @@ struct MotionView {
     std::span<const LightView> lights;
     Builds builds = Builds::ByRule;
     std::span<const MaterialView> materials{};  // the materials of the upload, in their order
-    // As SceneView::origin, of these instances and lights. It may be another one in each pose. Instances that
-    // stay where they are in the world then have other transforms, so the top level is built anew.
+    // The origin of these instances and lights, as SceneView::origin. It may differ between poses. Instances
+    // that keep their place in the world then get other transforms, so the TLAS is built anew.
     std::array<double, 3> origin{};
 };
 inline constexpr Named<MotionView::Builds> kBuildsNames[] = {

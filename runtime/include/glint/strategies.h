@@ -1,6 +1,6 @@
 // The strategies: how the hits of rays are shaded. A strategy is one row of the table in
 // runtime/src/modules/strategies.cpp and one folder with its GLSL, shaders/strategies/<strategy>/. The
-// compiler, the loader, the renderer, the cost model and the tools act on what the row says.
+// compiler, the loader, the renderer, the cost model and the tools act on the row's fields.
 #pragma once
 
 #include <glint/names.h>
@@ -35,14 +35,14 @@ enum class ShaderKind : std::uint8_t {
     Miss,
 };
 
-// For which cases a module has code.
+// The cases that a module has code for.
 enum class CaseCode : std::uint8_t {
     None,
     Switch,  // for all, with a switch over them
     Own,     // for one: each case has a module of its own
 };
 
-// What the pass of a module is dispatched over.
+// The elements over which the pass of a module is dispatched.
 enum class Over : std::uint8_t {
     Nothing,      // it has no pass: a ray tracing pipeline of its strategy runs it
     Rays,         // every ray of the list
@@ -71,9 +71,9 @@ struct StrategyInfo {
     std::string_view what;  // a sentence without a full stop
     std::span<const StrategyModule> modules{};
 
-    // What follows from the modules.
-    // It stores hits and orders them by shader before it shades them. The others shade a hit where they find
-    // it, so that they can read its positions from the acceleration structure.
+    // These follow from the modules. A strategy that orders hits stores them and orders them by shader before
+    // it shades them. The others shade a hit where they find it, so that they can read its positions from the
+    // acceleration structure.
     bool ordersHits = false;
     bool dispatchesCases = false;  // one dispatch for each case, so that no shader holds all cases
     bool fillsWorkgroups = false;  // workgroups have hits of one case, so that the switch is uniform in each

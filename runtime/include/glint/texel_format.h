@@ -1,4 +1,4 @@
-// How the texels of an image are stored: as they are, or in blocks that GPUs read without unpacking them.
+// The storage of an image's texels: as they are, or in blocks that GPUs read without unpacking them.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +46,7 @@ struct TexelFormatInfo {
     std::uint32_t blockHeight;
     std::uint32_t blockBytes;
     std::uint32_t channels;  // red first; a shader reads 0 for the other colours and 1 for alpha
-    bool hasSrgb;            // whether there is such a format whose colours are in sRGB
+    bool hasSrgb;            // there is such a format with colours in sRGB
 };
 
 // Indexed by TexelFormat.
@@ -118,7 +118,7 @@ private:
 };
 static_assert(kTexelFormatCount <= 32);
 
-// What a shader reads as a channel of an image.
+// The value that a shader reads as a channel of an image.
 enum class TexelChannel : std::uint32_t { R, G, B, A, Zero, One };
 using TexelChannels = std::array<TexelChannel, 4>;
 inline constexpr TexelChannels kChannelsAsStored{TexelChannel::R, TexelChannel::G, TexelChannel::B,

@@ -24,16 +24,16 @@ public:
 
     // Records copies of about `mostBytes` bytes, and at least one row of blocks if something waits.
     // `commands` is a command buffer of the caller's, in the recording state and outside a render pass.
-    // Levels that are complete are read by what is recorded from then on: GpuScene::descriptorSet() is
-    // another one, and accumulated pictures should start anew if the result is above 0. In a scene that is
-    // edited the next SceneEditor::record() takes them over. `frame` is the caller's number of the frame that
-    // the commands belong to; it may not fall. The commands must be submitted, in the order of their
-    // recording. Returns how many levels were completed. Has the errors of memory and Vulkan's calls, and
-    // "stream-frame" (the number has fallen); nothing is then recorded.
+    // Recordings from then on read the levels that are complete. GpuScene::descriptorSet() is then another
+    // one, and accumulated pictures should start anew if the result is above 0. In a scene that is edited the
+    // next SceneEditor::record() takes them over. `frame` is the caller's number of the frame that the
+    // commands belong to; it may not fall. The commands must be submitted, in the order of their recording.
+    // Returns how many levels were completed. Has the errors of memory and Vulkan's calls, and "stream-frame"
+    // (the number has fallen); nothing is then recorded.
     Result<std::uint32_t> record(VkCommandBuffer commands, std::uint64_t frame,
                                  std::uint64_t mostBytes = std::uint64_t{8} << 20);
-    // Says that the device has completed all commands of frames up to `frame`, and frees what they alone
-    // used.
+    // Says that the device has completed all commands of frames up to `frame`, and frees the resources that
+    // they alone used.
     void complete(std::uint64_t frame);
 
     // Leaves out levels finer than `level` of a texture, until another call asks for them. Levels that are on
@@ -47,7 +47,7 @@ public:
         std::uint64_t bytes = 0;     // of these levels
     };
     Progress progress() const;
-    // How many bytes wait for complete().
+    // Returns how many bytes wait for complete().
     std::uint64_t retiredBytes() const;
 
     struct State;  // for the runtime's own sources

@@ -30,8 +30,8 @@ private:
 // Calls record(commands) for a command buffer of its own, which it submits and waits for.
 Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record);
 
-// As runOnce(), for a record(commands) that returns a Result with a pointer to what it has made. That has a
-// function complete(), which is called for the frame 0.
+// Does the same for a record(commands) that returns a Result with a pointer to an object that it has made.
+// Calls the object's function complete() for the frame 0.
 template <typename Record>
 std::invoke_result_t<Record, VkCommandBuffer> makeOnce(Context::State& context, const Record& record) {
     std::invoke_result_t<Record, VkCommandBuffer> made(nullptr);

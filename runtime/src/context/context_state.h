@@ -36,7 +36,7 @@ struct DeviceLimits {
     VkPhysicalDeviceAccelerationStructurePropertiesKHR accelerationStructure{};
     VkPhysicalDeviceRayTracingPipelinePropertiesKHR rayPipeline{};   // zeros where it is not enabled
     VkPhysicalDeviceOpacityMicromapPropertiesEXT opacityMicromap{};  // zeros where it is not enabled
-    std::uint32_t maxTextures = 0;  // how many sampled images one stage can see, updated after bind
+    std::uint32_t maxTextures = 0;  // sampled images that one stage can see, updated after bind
     std::uint32_t maxSamplers = 0;
     float samplerAnisotropy = 1.0F;        // anisotropy of texture samplers; 1: none
     bool wideTextures = false;             // R16G16B16A16_UNORM can be sampled, filtered and blitted
@@ -73,7 +73,7 @@ struct Context::State {
     ValidationLog log;
     DeviceLimits limits;
     LeafOrder leafOrder = nullptr;  // null: halvingOrder()
-    // What modules may use of the device: moduleFeatures().
+    // The features of the device that modules may use: moduleFeatures().
     std::vector<std::string> features;
     // The renderers of this context share this cache.
     VkPipelineCache pipelineCache = VK_NULL_HANDLE;

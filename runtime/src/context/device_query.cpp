@@ -1,4 +1,4 @@
-// Queries what physical devices report.
+// Queries the reports of physical devices.
 #include "context/requirements.h"
 #include "context/vulkan_error.h"
 
@@ -78,7 +78,8 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
 
 namespace {
 
-// Fills `report` through the system's loader. Returns what is missing for that.
+// Fills `report` through the system's loader. Returns the names of everything that this needs and the system
+// lacks.
 std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report) {
     if (device == VK_NULL_HANDLE) {
         return {"a physical device"};

@@ -152,8 +152,8 @@ Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& sta
     return devices;
 }
 
-// Returns the first device that has that name and all features. The error says for each device what is wrong
-// with it. Leaves in `tracers` those that the chosen device supports.
+// Returns the first device that has that name and all features. The error lists the faults of each device.
+// Reduces `tracers` to those that the chosen device supports.
 Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const HeadlessOptions& options,
                                       std::uint32_t& tracers) {
     const std::string& wanted = options.deviceName;

@@ -51,7 +51,7 @@ bool SharedMemory::take(const VkMemoryRequirements& requirements, Allocation& ta
         offset + requirements.size > end) {
         return false;
     }
-    // The pool has handed it out already, so there is nothing to give back.
+    // The pool has already handed out this memory, so there is nothing to give back.
     taken = Allocation{};
     taken.memory = memory.memory;
     taken.offset = offset;

@@ -19,23 +19,22 @@ struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize offset = 0;
     std::uint8_t* mapped = nullptr;
-    // What MemoryPool::release() gives back: from here on, the gap before `offset` included.
+    // The range that MemoryPool::release() gives back. It includes the gap before `offset`.
     VkDeviceSize begin = 0;
     VkDeviceSize bytes = 0;
     std::uint32_t type = 0;  // of the memory
 };
 
-// Tiling of a resource; buffers are linear. Memory for Shared is for an image in whose place buffers may lie
-// as well, at other times.
+// Tiling of a resource; buffers are linear. Shared memory holds an image, and at other times buffers.
 enum class Tiling { Linear, Optimal, Shared };
 
-// Memory that buffers may share with an image: what no buffer has yet of an allocation for Tiling::Shared.
+// Memory that buffers share with an image: the rest of an allocation for Tiling::Shared.
 struct SharedMemory {
     Allocation memory;       // without memory: there is none to share
     VkDeviceSize begin = 0;  // in `memory`
     VkDeviceSize end = 0;
 
-    // Takes memory for a buffer. Returns false if the rest is too small or not of a type that it may have.
+    // Takes memory for a buffer. Returns false if the rest is too small or has an unsuitable type.
     bool take(const VkMemoryRequirements& requirements, Allocation& taken);
 };
 
@@ -53,8 +52,8 @@ public:
     // Errors: "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call".
     Result<Allocation> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
 
-    // Takes back memory that it has handed out and that no resource uses any more. A block of which nothing
-    // is left in use is freed. An allocation without memory changes nothing.
+    // Takes back memory that no resource uses any more. A block without a resource is freed. An allocation
+    // without memory changes nothing.
     void release(const Allocation& allocation);
 
     // Returns the size of all allocations, including memory that was not handed out.

@@ -54,7 +54,7 @@ std::vector<MemoryItem> Renderer::memory() const {
     for (std::size_t i = 0; i < frame.layers.size(); ++i) {
         addTo(items, "layer " + state_->size.layers[i].name, frame.layers[i]);
     }
-    // Memory that buffers share with the depth counts as theirs.
+    // Memory that buffers share with the depth image counts as the buffers' memory.
     VkDeviceSize shared = 0;
     for (const auto& [name, buffer] : frame.buffers()) {
         const bool shares =

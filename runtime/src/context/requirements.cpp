@@ -23,7 +23,7 @@ struct RequiredFeature {
 #name, [](DeviceRequirements & requirements) -> VkBool32& { return requirements.member.name; } \
     }
 
-// What the runtime or all modules need.
+// The features that the runtime or all modules need.
 constexpr RequiredFeature kFeatures[] = {
     GLINT_FEATURE(vulkan12, bufferDeviceAddress),
     GLINT_FEATURE(vulkan12, scalarBlockLayout),
@@ -35,7 +35,7 @@ constexpr RequiredFeature kFeatures[] = {
     GLINT_FEATURE(accelerationStructure, accelerationStructure),
 };
 
-// What some modules need. A device without them runs the packages whose modules do not.
+// The features that some modules need. A device without them runs the packages whose modules do not.
 constexpr RequiredFeature kModuleFeatures[] = {
     GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
     GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),

@@ -1,4 +1,4 @@
-// Pure functions that compare the report of a device with what Glint requires.
+// Pure functions that compare the report of a device with Glint's requirements.
 #pragma once
 
 #include "context/vulkan_table.h"

@@ -12,7 +12,7 @@ namespace {
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize{16} << 20;
 // Copies start at multiples of a texel, and of the alignment that devices prefer.
 constexpr VkDeviceSize kStagingAlignment = 256;
-// The smallest one. The next ones are as large as all before them together.
+// The size of the first staging buffer. Each next one is as large as all before it together.
 constexpr VkDeviceSize kFirstStagingBytes = VkDeviceSize{64} << 10;
 
 constexpr VkPipelineStageFlags2 kCopyStages = VK_PIPELINE_STAGE_2_COPY_BIT;

@@ -37,12 +37,13 @@ public:
     // than 16 MiB of staging memory.
     static Result<std::unique_ptr<Uploader>> create(Context::State& context);
     // Returns one whose commands wait for record(). Its staging memory is from `pool`, which must outlive it.
-    // If it would have more than `mostStaged` bytes of it, it submits what waits and waits for the device.
+    // If it would have more than `mostStaged` bytes of it, it submits the commands that wait, and waits for
+    // the device.
     static std::unique_ptr<Uploader> createDeferred(Context::State& context, MemoryPool& pool,
                                                     VkDeviceSize mostStaged = kUnlimited);
     static constexpr VkDeviceSize kUnlimited = ~VkDeviceSize{0};
 
-    // Queues a command. What it refers to must stay until it is recorded.
+    // Queues a command. Everything that it refers to must stay until it is recorded.
     void add(Command command) {
         queued_.push_back(std::move(command));
     }
@@ -65,8 +66,8 @@ public:
         TexelBlock block{};
     };
     Result<std::uint32_t> copyMipRows(const MipRows& rows, VkDeviceSize mostBytes);
-    // Submits what waits, with a dependency that makes it visible to all commands that are submitted later,
-    // and waits for the device.
+    // Submits the commands that wait, with a dependency that makes their results visible to all commands that
+    // are submitted later, and waits for the device.
     Status finish();
 
     // Returns how many commands wait.
@@ -117,14 +118,14 @@ struct StagedCopies {
     explicit StagedCopies(Context::State& contextState)
         : context(contextState), pool(contextState), uploader(Uploader::createDeferred(contextState, pool)) {}
 
-    // Records what the uploader has, and makes it visible to all later commands.
+    // Records the uploader's commands, and makes their results visible to all later commands.
     void record(VkCommandBuffer commands, std::uint64_t frameNumber);
 
     Context::State& context;
     MemoryPool pool;  // of the staging memory. Members are destroyed in reverse order.
     std::unique_ptr<Uploader> uploader;
     std::vector<Buffer> staging;
-    std::uint64_t frame = 0;  // that the commands belong to
+    std::uint64_t frame = 0;  // frame of the commands
 };
 
 // Returns the bytes of an array of plain structures.

@@ -111,7 +111,7 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
     std::uint64_t read = emission->read;
     const bool layered = read == ~std::uint64_t{0};
     if (!layered && (key.features & inputs(emission->textureInput)) == 0) {
-        // Nothing is read at these coordinates.
+        // Shaders read nothing at these coordinates.
         read &= ~inputs(emission->texCoord0Input | emission->texCoord1Input) | emission->always;
     }
     const std::uint64_t unlike = (emission->always & ~key.features) |

@@ -1,4 +1,4 @@
-// Which shader of a package shades a key.
+// Finds the shader of a package that shades a key.
 #pragma once
 
 #include <glint/package.h>
@@ -12,7 +12,7 @@
 
 namespace glint {
 
-// What a geometry record says about its material's key.
+// The fields of a geometry record that follow from its material's key.
 struct Shading {
     std::uint64_t features = 0;
     std::uint32_t geometryFlags = 0;
@@ -31,7 +31,8 @@ public:
     // the shader that they have. For others it is the case that has all of the key's features and takes the
     // fewest others into account. Errors: "scene-edit-feature", "scene-edit-case".
     Result<Shading> find(const MaterialKey& key, const std::string& where) const;
-    // Checks that the attributes include what shaders of the key's features read. Error "scene-edit-key".
+    // Checks that the attributes include those that shaders of the key's features read. Error
+    // "scene-edit-key".
     Status checkAttributes(const MaterialKey& key, const std::string& where) const;
 
     // The shader IDs of the shader binding table of a strategy: those of the cases, then one for all others.
@@ -43,7 +44,7 @@ public:
 
 private:
     Status checkKnown(const MaterialKey& key, const std::string& where) const;
-    // Checks that shaders compute what a light with this key emits.
+    // Checks that shaders compute the emission of a light with this key.
     Status checkEmitter(const MaterialKey& key, const std::string& where) const;
 
     const Package& package_;

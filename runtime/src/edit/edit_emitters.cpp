@@ -98,7 +98,7 @@ void noteEmitters(SceneEditor::State& state, InstanceHandle handle, const Edited
         state.emissiveInstances.erase(handle.generation);
     }
     state.emittersDirty = state.emittersDirty || was || is;
-    // Records of another instance may have been here. gatherEmitters() numbers those that are lights.
+    // These places may have held records of another instance. gatherEmitters() numbers those that are lights.
     const std::uint32_t end = instance.firstGeometry + instance.geometryCount;
     for (std::uint32_t i = instance.firstGeometry; i < end; ++i) {
         state.firstEmitters.write(i, gpu::kNoEmitter);

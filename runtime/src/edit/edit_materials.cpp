@@ -38,7 +38,7 @@ Status checkUse(const SceneEditor::State& state, const TextureUse& use, const st
     return okStatus();
 }
 
-// Checks what a source says by itself.
+// Checks a source on its own, without the scene.
 Status checkSource(const SceneEditor::State& state, const MaterialSource& source, const std::string& where) {
     if (source.record.size() != state.layout.recordBytes) {
         return badValue(where,
@@ -61,7 +61,7 @@ Status checkSource(const SceneEditor::State& state, const MaterialSource& source
     return okStatus();
 }
 
-// Writes into a record which textures it has, as far as records know that.
+// Writes into a record which textures it has, if records of this layout hold that.
 void settleTextures(const SceneEditor::State& state, std::span<const TextureUse> uses,
                     std::span<const std::uint32_t> samplers, std::span<std::uint8_t> record) {
     const MaterialTable table{record, state.layout.recordBytes, state.layout.textureOffset,

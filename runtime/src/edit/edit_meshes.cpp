@@ -64,7 +64,7 @@ BlasInput inputOf(const SceneEditor::State& state, const GpuPrimitive& primitive
     return input;
 }
 
-// Gives back what a mesh that could not be made has got so far.
+// Gives back everything that an unfinished mesh has so far.
 void discardMesh(SceneEditor::State& state, EditedMesh& mesh) {
     for (EditedMeshPrimitive& primitive : mesh.primitives) {
         for (EditedPart& part : primitive.parts) {

@@ -1,4 +1,4 @@
-// SceneEditor: what the device has to do for the edits since the last recording.
+// SceneEditor: the work of the device for the edits since the last recording.
 #include "edit/editor_state.h"
 #include "renderer/draw_batches.h"
 #include "renderer/pass_dependencies.h"
@@ -20,7 +20,7 @@ using Placed = VkAccelerationStructureInstanceKHR;
 constexpr VkDeviceSize kPlacedAlignment = 16;  // of the array of instances that a TLAS is built from
 constexpr VkBufferUsageFlags kRecordUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-// An array of records on the device. Those that the package's shaders don't read have no buffer.
+// An array of records on the device. It has no buffer if the package's shaders don't read it.
 struct Array {
     RecordStore& store;
     Buffer& device;
@@ -28,7 +28,7 @@ struct Array {
 };
 constexpr std::size_t kArrays = 7;
 
-// Everything that a recording needs to allocate. What was not handed over is discarded with it.
+// Everything that a recording needs to allocate. Its destructor discards everything that was not handed over.
 struct Prepared {
     explicit Prepared(MemoryPool& memory) : pool(memory) {}
     ~Prepared() {
@@ -146,7 +146,7 @@ private:
         }
     }
 
-    // BLASes are opaque and seen from both sides or not as the material of the geometry says.
+    // A BLAS is opaque, and seen from both sides, if the material of the geometry says so.
     Placed placedAt(const EditedInstance& instance, const EditedPart& part, std::uint32_t geometry) const {
         const auto record = state_.geometries.read<gpu::GeometryRecord>(geometry);
         const bool doubleSided = (record.flags & gpu::kGeometryDoubleSided) != 0;
@@ -280,7 +280,7 @@ private:
         if (!hasWork()) {
             return;
         }
-        // Earlier frames may still read what is written here.
+        // Earlier frames may still read the memory that is written here.
         recordDependency(context_, commands_, kAllToAll);
         recordResizes();
         for (Buffer& staging : state_.uploader->record(commands_)) {
@@ -375,7 +375,7 @@ private:
         context_.vk.CmdBuildAccelerationStructuresKHR(commands_, 1, &build.info, &ranges);
     }
 
-    // Takes over what was prepared, and notes that nothing is pending.
+    // Takes over everything that was prepared, and notes that nothing is pending.
     void finish() {
         if (prepared_.set) {
             state_.retired.add(std::move(scene_.descriptorPool));

@@ -1,5 +1,5 @@
-// The upload of a scene that can be edited: its content becomes that of the editor, and then takes the way of
-// edits, but for BLASes, which are built together.
+// The upload of a scene that can be edited. Its content becomes the editor's, and is then recorded as edits
+// are. Only the BLASes are built together.
 #include "edit/editor_state.h"
 #include "scene/material_table.h"
 #include "scene/scene_materials.h"

@@ -1,4 +1,5 @@
-// What a SceneEditor knows of its scene: the content by handles, and what the device still has to get.
+// The state of a SceneEditor: the content of the scene by handles, and the data that the device still has to
+// get.
 #pragma once
 
 #include "context/upload.h"
@@ -44,8 +45,8 @@ struct EditedMaterial {
     std::uint32_t uses = 0;  // by primitives of meshes and by instances
 };
 
-// A BLAS with one geometry: a primitive, or a part of a large one. What a material decides about it is said
-// by the TLAS, so that a change of materials builds no BLAS.
+// A BLAS with one geometry: a primitive, or a part of a large one. The TLAS holds the properties that follow
+// from its material, so that a change of materials builds no BLAS.
 struct EditedPart {
     TriangleRange triangles;
     AccelerationStructure blas;
@@ -101,7 +102,7 @@ struct SceneEditor::State {
     std::vector<package::SamplerEntry> samplers;  // of GpuScene::State::samplers
     DeviceImage white;                            // for places without a texture
 
-    // By their numbers at the upload.
+    // Handles by their numbers at the upload.
     std::vector<TextureHandle> firstTextures;
     std::vector<MaterialHandle> firstMaterials;
     std::map<std::uint32_t, MeshHandle> firstMeshes;
@@ -122,12 +123,12 @@ struct SceneEditor::State {
     std::set<std::uint32_t> emissiveMaterials;  // of those that were shown at the last recording
     EmitterMeans emitterMeans;
 
-    // What record() has to do.
+    // The work of the next record().
     std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
     Uploader* uploader = nullptr;
     struct PendingBuild {
         BlasBuild build;  // with its destination
-        Buffer input;     // that this build and those before it of the same primitive read; may be none
+        Buffer input;     // input of this and earlier builds of the same primitive; may be none
     };
     std::vector<PendingBuild> builds;
     bool tlasDirty = true;
@@ -147,13 +148,13 @@ struct SceneEditor::State {
 };
 
 // The upload of an editable scene; `known` may be a scene without tables. Records everything that is queued
-// in `upload`, and what the editor adds.
+// in `upload` or added by the editor.
 Status uploadEditable(GpuScene::State& state, const Package& package, const PackageScene& known,
                       const SceneView& view, SceneUpload& upload, VkCommandBuffer commands);
 
 // Parts of an edit that several functions share.
 
-// Finds the shading of a material on a primitive. Errors as SceneEditor says.
+// Finds the shading of a material on a primitive. Has the errors that SceneEditor lists.
 Result<Shading> shadingOf(const SceneEditor::State& state, MaterialHandle material, AttributeMask attributes);
 // Lists the key in the report if the fallback shades it.
 void addTo(EditReport& report, const SceneEditor::State& state, MaterialHandle material,
@@ -164,14 +165,14 @@ MaterialHandle materialOf(const SceneEditor::State& state, const EditedInstance&
 // Writes the geometry records of an instance, whose materials have been checked.
 void writeGeometries(SceneEditor::State& state, InstanceHandle handle, const EditedInstance& instance);
 // Uploads the primitives of a mesh. With `inputs`, the caller builds their BLASes from these, part by part;
-// otherwise record() does. Materials are the caller's to set.
+// otherwise record() does. The caller sets the materials.
 Result<EditedMesh> makeMesh(SceneEditor::State& state, std::span<const PrimitiveView> primitives,
                             std::vector<BlasInput>* inputs);
 // Adds an instance whose mesh and materials have been checked.
 InstanceHandle placeInstance(SceneEditor::State& state, EditedInstance instance);
 // Finds the sampler, or makes it. Error "scene-edit-room".
 Result<std::uint32_t> samplerIndex(SceneEditor::State& state, const package::SamplerEntry& entry);
-// Writes a material's record. Lights follow if what it emits has changed.
+// Writes a material's record. Lights follow if its emission has changed.
 void writeMaterial(SceneEditor::State& state, std::uint32_t material, std::span<const std::uint8_t> record);
 
 // --- Emissive triangles (edit_emitters.cpp) ---
@@ -181,15 +182,15 @@ std::shared_ptr<const EmissionTexels> emissionTexels(const SceneEditor::State& s
                                                      bool srgb);
 // Notes that an instance, whose geometry records have been written, is or was a light.
 void noteEmitters(SceneEditor::State& state, InstanceHandle handle, const EditedInstance& instance);
-// Notes that an instance is elsewhere, shown or hidden; `removed`: that it is gone.
+// Notes that an instance has moved, or was shown, hidden or (`removed`) removed.
 void moveEmitters(SceneEditor::State& state, InstanceHandle handle, bool removed = false);
-// Notes that the image of a texture is another one.
+// Notes that a texture has another image.
 void replaceEmission(SceneEditor::State& state, TextureHandle texture);
 // Returns the emissive triangles of all instances that are shown, and these instances.
 Emitters gatherEmitters(SceneEditor::State& state);
 std::vector<InstanceView> emissiveViews(const SceneEditor::State& state);
 
-// Records what is pending, for a frame that is not before the last one.
+// Records the pending edits, for a frame that is at or after the last one.
 Status recordEdits(SceneEditor::State& state, VkCommandBuffer commands, std::uint64_t frame);
 
 std::string placeOf(const char* what, std::uint32_t index);

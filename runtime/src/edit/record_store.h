@@ -31,7 +31,7 @@ private:
     std::uint32_t end_ = 0;
 };
 
-// The host's copy of an array of records, and what of it the device does not have yet.
+// The host's copy of an array of records, with the parts of it that the device does not have yet.
 class RecordStore {
 public:
     explicit RecordStore(std::size_t stride) : stride_(stride) {}
@@ -43,7 +43,7 @@ public:
         static_assert(std::is_trivially_copyable_v<T>);
         writeBytes(index, std::span(reinterpret_cast<const std::uint8_t*>(&record), sizeof record));
     }
-    // Makes the records these, and writes from the first that differs to the last.
+    // Replaces the records by these, and writes the range from the first to the last that differs.
     template <typename T>
     void replace(std::span<const T> records) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -79,7 +79,7 @@ public:
 
     // The size of the array on the device, in records.
     std::uint32_t capacity = 0;
-    std::uint32_t firstCapacity = 0;  // that of the upload
+    std::uint32_t firstCapacity = 0;  // the capacity at the upload
 
 private:
     std::size_t stride_;

@@ -15,7 +15,7 @@ void discard(MemoryPool& pool, Buffer&& buffer);
 void discard(MemoryPool& pool, DeviceImage&& image);
 void discard(MemoryPool& pool, AccelerationStructure&& structure);
 
-// What was retired waits for the next recording, whose commands may still use it, and then for its frame.
+// A retired resource waits for the next recording, whose commands may still use it, and then for its frame.
 class Retired {
 public:
     explicit Retired(MemoryPool& pool) : pool_(pool) {}
@@ -25,9 +25,9 @@ public:
     void add(AccelerationStructure&& structure);
     void add(UniqueDescriptorPool&& descriptors);
     void add(UniqueImageView&& view);
-    // What was added since the last call belongs to this frame.
+    // Assigns the resources that were added since the last call to this frame.
     void close(std::uint64_t frame);
-    // Frees what belongs to frames up to `frame`.
+    // Frees the resources of frames up to `frame`.
     void complete(std::uint64_t frame);
     std::uint64_t bytes() const;
     std::uint32_t count() const;  // of buffers and images

@@ -9,7 +9,7 @@
 namespace glint {
 namespace {
 
-// Returns a handle of the upload if what it names is still there.
+// Returns a handle of the upload if the thing that it names is still there.
 template <typename Entries, typename Handle>
 Handle stillThere(const Entries& entries, std::span<const Handle> handles, std::uint32_t number) {
     return number < handles.size() && entries.find(handles[number]) != nullptr ? handles[number] : Handle{};

@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::uint32_t kDraws = 4;
 
-// Returns how many bounces are recorded beyond the certain ones if `passed` draws did, but for the last draw.
+// Returns how many bounces beyond the certain ones are recorded after `passed` successful draws. After the
+// last draw all bounces are.
 constexpr std::uint32_t bouncesBehind(std::uint32_t passed) {
     return (2U << passed) - 2U;  // 0, 2, 6, 14
 }

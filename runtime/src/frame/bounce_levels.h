@@ -1,7 +1,7 @@
-// How many bounces of a frame's paths are recorded. A frame of many bounces has most of its passes for lists
-// that are empty or nearly so, because roulette ends most paths before. The device says how deep the paths of
-// earlier frames were. Later frames record the bounces that many paths reach, and further ones at random:
-// what is found beyond a draw counts twice as much, so no light is lost in the mean.
+// Chooses how many bounces of a frame's paths are recorded. In a frame of many bounces, most passes work on
+// lists that are empty or nearly so, because Russian roulette ends most paths early. The device says how deep
+// the paths of earlier frames were. Later frames record the bounces that many paths reach, and further ones
+// at random. Light that is found beyond a draw counts twice as much, so the mean is unbiased.
 #pragma once
 
 #include <array>
@@ -36,16 +36,16 @@ public:
     static constexpr std::uint32_t kFewBounces = 8;
     // The device keeps the depths of so many recordings until the host reads them.
     static constexpr std::uint32_t kSlots = 8;
-    // How many of the last completed recordings decide.
+    // The number of completed recordings, counted back from the last, that decide.
     static constexpr std::size_t kRemembered = 16;
 
     static std::uint32_t slotOf(std::uint64_t recording) {
         return static_cast<std::uint32_t>(recording % kSlots);
     }
 
-    // Returns how many bounces the next recording has in any case: as many as many paths of the last
-    // completed recordings reached, and one more. If many reached the last bounce of their recording, more
-    // may have gone on, so then it is twice as many. Without completed recordings it is all of `bounces`.
+    // Returns how many bounces the next recording has in any case: one more than the number that many paths
+    // of the last completed recordings reached. If many reached the last bounce of their recording, more may
+    // have gone on, so then it is twice as many. Without completed recordings it is all of `bounces`.
     std::uint32_t certainBounces(std::uint32_t bounces) const;
 
     // Notes a recording, numbered from 1.
@@ -57,7 +57,7 @@ public:
 
     // Forgets everything, for other buffers on the device. Recordings before do not count.
     void reset();
-    // Says that a recording followed no paths, so that nothing is learned of it and of those before.
+    // Says that a recording followed no paths, so that it and earlier ones give no depths.
     void skipped(std::uint64_t recording);
 
 private:

@@ -1,4 +1,4 @@
-// The parts of FrameConstants that all recordings share, and checks of what they are made from.
+// The parts of FrameConstants that all recordings share, and checks of their inputs.
 #pragma once
 
 #include "renderer/pass_state.h"
@@ -20,7 +20,7 @@ struct Outside {
 Status checkOutside(const FrameSize& size, const Outside& outside);
 void fillOutside(const Outside& outside, gpu::FrameConstants& constants);
 
-// Sets the addresses of the frame's own lists, and what describes their buckets.
+// Sets the addresses of the frame's own lists, and the description of their buckets.
 void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameConstants& constants);
 
 // Sets the rows of a band.

@@ -81,12 +81,13 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
 
 namespace {
 
-// Whether the shaders of the frame's package know an image.
+// Returns whether the shaders of the frame's package use an image.
 bool bindsImage(const FrameSize& size, std::uint32_t binding) {
     return binding != gpu::kBindingPosition || size.effects.screenStarts != 0;
 }
 
-// Whether an image has memory of its own. The others are not written, or written before the picture is.
+// Returns whether an image has memory of its own. The other images are never written, or are written before
+// the picture is.
 bool hasImage(const FrameSize& size, std::uint32_t binding) {
     switch (binding) {
         case gpu::kBindingRadiance:
@@ -142,15 +143,15 @@ struct WantedBuffer {
     VkBufferUsageFlags usage;
     MemoryUse use;
 
-    // Whether nothing writes or reads the buffer until surfaces are known. Then it may lie in the memory of
-    // the depth, which nothing needs afterwards. Others are cleared at the start of a frame, or are read by
-    // the raster pass.
+    // Returns true if nothing writes or reads the buffer until surfaces are known. It may then share the
+    // memory of the depth image, which nothing needs afterwards. Other buffers are cleared at the start of a
+    // frame, or are read by the raster pass.
     bool followsDepth() const {
         return use == MemoryUse::Device && (usage & VK_BUFFER_USAGE_TRANSFER_DST_BIT) == 0;
     }
 };
 
-// In the order of FrameResources::buffers().
+// Returns the buffers in the order of FrameResources::buffers().
 std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const FrameSize& size) {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =

@@ -22,8 +22,8 @@ inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 inline constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 inline constexpr VkFormat kHalfLightFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-// The layout of what counters() reads: the counters first, then for each round of rays the counters of its
-// lists and its buckets.
+// The layout of the data that counters() reads: the counters first, then for each round of rays the counters
+// of its lists and its buckets.
 inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
 
 // Members are destroyed in reverse order: the pool's memory last. Resources that the frame's effects do not
@@ -36,13 +36,14 @@ struct FrameResources {
     // others is `pool`.
     static constexpr std::size_t kBufferCount = 26;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
-    // By binding; layout GENERAL. Bindings that share an image have it in one place (imageOf()).
+    // The images by binding, in the layout GENERAL. Bindings that share an image have it in one place
+    // (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
     std::vector<DeviceImage> layers;  // FrameSize::layers; layout GENERAL
     // Buffers may lie in its memory, so each frame gives it the layout DEPTH_ATTACHMENT_OPTIMAL anew.
     DeviceImage depth;
     Buffer constants;  // FrameConstants; every pass reads them, so this is not host memory
-    // These buffers and those below serve all effects with rays. Samples are those of a band.
+    // These and the following buffers serve all effects with rays. They have room for the samples of a band.
     Buffer sampleStarts;
     Buffer sampleAims;
     Buffer sampleWeights;  // present if samples are not packed
@@ -52,8 +53,8 @@ struct FrameResources {
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer skyShares;    // present if the sky is a light of the package
-    Buffer rayHits;      // present if layers need what rays hit
-    Buffer bounceLight;  // present if layers need what bounces bring
+    Buffer rayHits;      // present if layers need the hits of rays
+    Buffer bounceLight;  // present if layers need the light of bounces
     Buffer walkedLight;  // present if layers need the lights that walks find
     Buffer hits;         // full or packed records; present if hits are ordered and samples don't hold them
     Buffer orderedHits;  // like `hits`, in the order of the buckets
@@ -121,7 +122,7 @@ struct FrameSize {
     bool deferredShadows = false;
     bool environmentMap = false;
     std::uint32_t textureLevels = 0;  // textures whose finest level is noted
-    bool hostRays = false;            // the list of rays and what they bring back are the host's
+    bool hostRays = false;            // the host owns the list of rays and their results
     bool rayPipeline = false;         // a ray tracing pipeline dispatches lists as rays
 
     bool paths = false;  // the package's shaders keep the state of paths
@@ -131,7 +132,7 @@ struct FrameSize {
     std::uint32_t bounces = 1;  // the most of a path
 
     std::vector<package::PackageLayer> layers{};  // images beside the picture
-    bool layerRays = false;                       // layers need what rays hit
+    bool layerRays = false;                       // layers need the hits of rays
     std::uint32_t layerBounces = 0;               // bounces that have layers of their own
     bool layerWalks = false;                      // layers need the lights that walks find
 
@@ -216,11 +217,11 @@ struct NextBuffers {
     std::uint32_t made = 0;
 };
 
-// Returns the bytes of the images and buffers of a frame of that size, without what a device adds to an
-// image. Pure.
+// Returns the bytes of the images and buffers of a frame of that size, without the padding that a device adds
+// to images. Pure.
 VkDeviceSize frameBytes(const FrameSize& size);
 
-// Whether frames of both sizes have the same images and the same layout of set 1.
+// Returns whether frames of both sizes have the same images and the same layout of set 1.
 bool haveSameImages(const FrameSize& first, const FrameSize& second);
 
 // Makes the buffers that frames of the size `next` need and frames of the size `now` lack. Errors: those of

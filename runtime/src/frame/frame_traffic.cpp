@@ -42,14 +42,16 @@ std::uint32_t rayBytes(const TrafficShape& shape) {
     return kWord + (packsSamples(shape) ? kStart : kVector + kWord) + aimBytes(shape);
 }
 
-// What a pass that shades a hit writes: light, and the next ray of the path or that there is none.
+// The data that a pass writes when it shades a hit: light, and the next ray of the path or that there is
+// none.
 std::uint32_t answerBytes(const TrafficShape& shape) {
     const std::uint32_t spread = packsSamples(shape) ? 0 : kWord;
     return shape.paths ? kPixel + kStart + aimBytes(shape) + spread + kPath + (shape.skyLight ? kWord : 0)
                        : kStart;
 }
 
-// What it reads of the ray. A record that holds the hit as well has the rest of the direction there.
+// The data that such a pass reads of the ray. A record that also holds the hit has the rest of the direction
+// in it.
 std::uint32_t arrivalBytes(const TrafficShape& shape) {
     const std::uint32_t apart = packsSamples(shape) ? aimBytes(shape) + kWord : kVector;
     const std::uint32_t direction = kWord + (shape.hitsInSamples ? aimBytes(shape) : apart);
@@ -71,7 +73,7 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
                     kStart - always + aim + weightBytes(shape) - (shape.marchesScreen ? weight : 0) + share +
                         (shape.paths ? kPath : 0)});
     if (shape.walks > 0) {
-        // The counts tell effects apart no further, so all that is sent is taken for walked.
+        // The counts do not split effects further, so all samples that are sent count as walked.
         rows.push_back({"effect walk", Unit::Sample, kWord, 0});
         rows.push_back({"effect walk", Unit::Sent, kIdentity + (packsSamples(shape) ? kVector : kWord),
                         kStart + aim + weightBytes(shape)});
@@ -87,7 +89,7 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     rows.push_back({"effect rays", Unit::Ray, 0, kWord});
 }
 
-// What a pass reads and writes of its layers. Light is divided by an albedo, which is read.
+// The bytes that a pass reads and writes of its layers. Light is divided by an albedo, which is read.
 TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::string_view name) {
     TrafficRow row{name, Unit::Pixel, 0, 0};
     for (const package::LayerEntry& entry : shape.layers) {
@@ -118,7 +120,7 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
         rows.push_back({"copy", Unit::Ray, key, kWord});
     }
     const std::uint32_t direction = packsSamples(shape) ? aimBytes(shape) + kWord : kVector;
-    // A miss needs of its record only that it is one.
+    // A miss reads of its record only that it is a miss.
     const TrafficRow miss{"", Unit::Miss,
                           (shape.skyLight ? 4 : 3) * kWord + direction + (shape.paths ? kVector : 0),
                           shape.paths ? kPixel + kWord : kStart};
@@ -126,7 +128,7 @@ void addShading(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const TrafficRow traced{
         "", Unit::Ray, rayBytes(shape) + (shape.paths ? kPath : 0) + (shape.emissiveLights ? kIdentity : 0),
         answer};
-    // What layers need of hits is stored by the pass that finds them. Each bounce adds its light.
+    // The pass that finds hits stores the data that layers need of them. Each bounce adds its light.
     const std::uint32_t bounce = shape.layerBounces > 0 ? kBounce : 0;
     rows.push_back({strategy.ordersHits ? std::string_view("trace") : strategy.modules.front().pass,
                     Unit::Ray, (shape.layerRays ? kWord : 0) + bounce,

@@ -13,7 +13,7 @@ constexpr VkBufferUsageFlags kHistoryUsage =
     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
 constexpr VkDeviceSize kVertexAlignment = 16;
 
-// Shaders and copies have read the arrays of the frame before, and have written those of this one.
+// Shaders and copies have read the arrays of the previous frame, and have written those of this one.
 constexpr MemoryDependency kFrameToCopy{
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
@@ -66,7 +66,7 @@ Status MotionHistory::makeRoom() {
     return okStatus();
 }
 
-// Geometries that do not deform keep the positions that they have, in whatever form that is.
+// Geometries that do not deform keep their positions, in whatever form they are.
 Status MotionHistory::createVertices() {
     std::vector<gpu::PreviousVertices>& table = newTable_;
     table.reserve(scene_->geometryPositions.size());

@@ -1,4 +1,4 @@
-// The state of the frame before, for motion: the camera, the transforms of instances, and the positions of
+// The state of the previous frame, for motion: the camera, the transforms of instances, and the positions of
 // vertices that follow joints or morph weights.
 #pragma once
 
@@ -13,16 +13,16 @@
 
 namespace glint {
 
-// Belongs to one renderer: its frame before is the last picture that this renderer began. The scene must
+// Belongs to one renderer. Its previous frame is the last picture that this renderer began. The scene must
 // outlive it.
 class MotionHistory {
 public:
     // A scene that neither moves nor is edited needs no memory. Errors: those of buffers.
     static Result<std::unique_ptr<MotionHistory>> create(const GpuScene::State& scene);
 
-    // Fills FrameConstants::previous*, whose camera is that of the frame to come. Without a frame before, or
-    // after the scene got room for more instances, the frame itself takes its place. Errors: those of
-    // buffers.
+    // Fills FrameConstants::previous*, whose camera is that of the frame to come. Without a previous frame,
+    // or after the scene got room for more instances, the frame itself stands for the previous one. Errors:
+    // those of buffers.
     Status fill(gpu::FrameConstants& constants);
     // Records the copies that the next frame needs, after a frame's passes. The commands that follow must
     // wait for them.

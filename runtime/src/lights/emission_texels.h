@@ -1,4 +1,4 @@
-// How bright the texels of an emissive texture are on a part of it.
+// The brightness of an emissive texture's texels on a part of it.
 #pragma once
 
 #include <glint/package_format.h>
@@ -26,7 +26,7 @@ public:
     // Returns an estimate of the mean luminance within the box, for a sampler with these wrap modes
     // (SamplerEntry). It is 0 only if every texel that the box and its filter reach is black.
     double mean(const TexelBox& box, std::uint32_t wrapU, std::uint32_t wrapV) const;
-    // Returns an estimate of that of the whole image.
+    // Returns an estimate of the mean luminance of the whole image.
     double mean() const {
         return levels_.back().values.front();
     }

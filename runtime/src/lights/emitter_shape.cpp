@@ -9,7 +9,7 @@ namespace {
 
 using package::EmissionEntry;
 
-// Numbers that are none are the same, too.
+// Two NaNs count as the same, too.
 bool same(const gpu::vec3& a, const gpu::vec3& b) {
     return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
 }
@@ -60,7 +60,7 @@ std::optional<EmitterTexture> emitterTexture(const EmissionEntry& emission, std:
         emission.texture == EmissionEntry::kNone) {
         return std::nullopt;
     }
-    // As readsSecondSet() of hit/texture.glsl chooses.
+    // This is the choice of readsSecondSet() in hit/texture.glsl.
     const bool second = (featureInputs & emission.texCoord1Input) != 0 &&
                         ((featureInputs & emission.texCoord0Input) == 0 || record.texCoord == 1);
     return EmitterTexture{std::move(texels), record, samplers[record.samplerIndex], second, false};

@@ -1,4 +1,4 @@
-// What the host has to know of a primitive whose triangles may be lights.
+// The host's data about a primitive whose triangles may be lights.
 #pragma once
 
 #include "interop/scene.h"
@@ -31,7 +31,7 @@ struct EmitterShape {
     std::vector<std::uint32_t> indices;
 };
 
-// How an emissive material shows its texture.
+// The texture of an emissive material, with the way in which the material reads it.
 struct EmitterTexture {
     std::shared_ptr<const EmissionTexels> texels;
     gpu::TextureRecord record{};
@@ -55,7 +55,7 @@ class EmitterMeans {
 public:
     TexelMeans find(const std::shared_ptr<const EmitterShape>& shape, std::uint32_t material,
                     const std::optional<EmitterTexture>& texture);
-    // Forgets those that find() was not asked for since the last call.
+    // Forgets the means that find() was not asked for since the last call.
     void forgetUnused();
 
 private:

@@ -1,4 +1,4 @@
-// Triangles that emit light, as lights: which they are, where, and how bright.
+// Triangles that emit light, as lights: their records, their bounds and their intensity.
 #pragma once
 
 #include "lights/emitter_shape.h"
@@ -32,7 +32,8 @@ struct EmitterPart {
     std::shared_ptr<const MotionBounds> motion;  // null unless the instance's mesh changes its shape
 };
 
-// Returns the luminance of what a material's record says, in linear Rec. 709, as in bsdf/constants.glsl.
+// Returns the luminance of the emission in a material's record, in linear Rec. 709, as in
+// bsdf/constants.glsl.
 double emittedLuminance(std::span<const std::uint8_t> record, const package::EmissionEntry& emission);
 
 class Emitters {

@@ -37,7 +37,7 @@ struct Cone {
     double angle = kLightPi;
 };
 
-// What the cost of a set of lights depends on.
+// The properties that the cost of a set of lights depends on.
 struct LightExtent {
     Double3 lower{};
     Double3 upper{};
@@ -47,7 +47,7 @@ struct LightExtent {
     bool isEmpty = true;
 };
 
-// What is known of a set of lights.
+// The properties of a set of lights.
 struct LightBounds : LightExtent {
     Double3 mean{};         // of the positions, weighted by intensity
     Double3 variance{};     // of the positions, by axis

@@ -19,7 +19,7 @@ struct LightTree {
     std::uint32_t apart = 0;
 };
 
-// What bounds the light of a triangle.
+// Bounds of the light of a triangle.
 struct EmitterBounds {
     std::array<double, 3> lower{};
     std::array<double, 3> upper{};

@@ -16,7 +16,7 @@ constexpr LayerFormatInfo kFormats[] = {
 };
 
 // To add a layer, add a row here, and its line to docs/layers.md. A layer with a function needs it in
-// shaders/layers/; one with a tally needs its macro where passes do what it counts.
+// shaders/layers/; one with a tally needs its macro in the passes whose work it counts.
 constexpr LayerInfo kRows[] = {
     {.number = 1,
      .name = "depth",

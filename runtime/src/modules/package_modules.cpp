@@ -8,7 +8,7 @@ namespace glint::package {
 namespace {
 
 // The feature that a capability of SPIR-V needs (Vulkan specification, "Capabilities"). Every device with
-// Vulkan 1.3 has those without a name.
+// Vulkan 1.3 has the features that have no name here.
 struct CapabilityFeature {
     std::uint32_t capability;
     const char* feature;
@@ -126,7 +126,7 @@ void addRoles(std::vector<RoleInfo>& roles, const StrategyInfo& strategy, std::u
     }
 }
 
-// Whether a package of this shape needs modules with this purpose.
+// Returns whether a package of this shape needs modules with this purpose.
 bool hasPurpose(Purpose purpose, const PackageShape& shape) {
     const bool frame = shape.passes == Passes::Frame;
     const bool hits = !frame || shape.effects.rays != 0;
@@ -155,7 +155,7 @@ bool hasPurpose(Purpose purpose, const PackageShape& shape) {
     return false;
 }
 
-// Whether a module traces, given that modules of its kind may do so.
+// Returns whether a module traces, given that modules of its kind may trace.
 bool traces(const RoleInfo& info, const PackageShape& shape) {
     if (info.role == ModuleRole::Lighting) {
         return shape.effects.tracesAtSurfaces();

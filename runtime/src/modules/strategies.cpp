@@ -62,7 +62,7 @@ constexpr Row kRows[] = {
             .kind = ShaderKind::ClosestHit,
             .cases = CaseCode::Own,
             .fallback = "HitFallback"},
-           // Hits whose shader ID no case has.
+           // This one shades hits whose shader ID no case has.
            {.name = "HitUnknown",
             .source = "strategies/hit_shaders/hit_unknown.rchit",
             .kind = ShaderKind::ClosestHit},
@@ -90,7 +90,7 @@ constexpr std::ptrdiff_t countOf(const Row& row, ShaderKind kind, CaseCode cases
     });
 }
 
-// What the renderer relies on.
+// Checks everything that the renderer relies on.
 constexpr bool isSound(const Row& row) {
     const std::ptrdiff_t pipelines = countOf(row, ShaderKind::RayGeneration);
     const bool hitShaders = countOf(row, ShaderKind::ClosestHit, CaseCode::Own) == pipelines &&

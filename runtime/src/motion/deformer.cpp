@@ -54,7 +54,7 @@ std::vector<Difference> joined(const PrimitiveView& view, Member member) {
     return differences;
 }
 
-// Whether this primitive of a deformed instance moves.
+// Returns whether this primitive of a deformed instance moves.
 bool moves(const PrimitiveView& view, const InstanceView& instance) {
     const bool follows = !view.joints.empty() && !instance.joints.empty();
     const bool morphs = !view.targets.empty() && !instance.morphWeights.empty();

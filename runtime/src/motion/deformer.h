@@ -17,7 +17,8 @@
 
 namespace glint {
 
-// Whether joints or weights move the instance's vertices. Its mesh may also have primitives that do not move.
+// Returns whether joints or weights move the instance's vertices. Its mesh may also have primitives that do
+// not move.
 bool isDeformed(const InstanceView& instance);
 bool hasDeformedInstance(const SceneView& scene);
 

@@ -101,8 +101,8 @@ Decisions decide(SceneMotion& motion, std::vector<bool> deformed, bool placedCha
     return decisions;
 }
 
-// Orders the instances for a top level that is built anew, by their present positions. An update keeps the
-// order of the last build.
+// Orders the instances for a TLAS that is built anew, by their present positions. An update keeps the order
+// of the last build.
 void orderPlaced(SceneMotion& motion, const InstanceOrder& order, std::span<const InstanceView> instances) {
     const std::vector<std::uint32_t> places = order.at(instances, motion.partInstances);
     motion.partInstances = permuted<PartInstance>(motion.partInstances, places);
@@ -234,7 +234,7 @@ void stage(GpuScene::State& state, std::span<const InstanceView> instances,
 void recordAll(GpuScene::State& state, VkCommandBuffer commands, const Decisions& decisions) {
     SceneMotion& motion = *state.motion;
     motion.timer.recordReset(commands);
-    // Earlier frames may still read what the copies overwrite.
+    // Earlier frames may still read the memory that the copies overwrite.
     recordDependency(state.context, commands, kAllToAll);
     recordCopies(state, commands);
     if (motion.deformer) {

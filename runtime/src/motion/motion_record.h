@@ -24,12 +24,12 @@ struct Decisions {
 // Returns the boxes of the scene's instances in world space.
 std::vector<Box> boxesOf(const SceneMotion& motion, std::span<const InstanceView> instances);
 
-// Places the instances of the top level and the draws as the pose says. An instance that is flattened or not
-// visible keeps its last place and is hidden. Returns whether an instance of the top level has changed.
+// Places the instances of the TLAS and the draws as the pose says. An instance that is flattened or not
+// visible keeps its last place and is hidden. Returns whether an instance of the TLAS has changed.
 bool place(GpuScene::State& state, std::span<const InstanceView> instances);
 
-// Writes the records of instances, lights and materials and the instances of the top level to the staging
-// buffer, from which they are copied.
+// Writes the records of instances, lights and materials and the instances of the TLAS to the staging buffer,
+// from which they are copied.
 void stage(GpuScene::State& state, std::span<const InstanceView> instances,
            std::span<const LightView> lights);
 

@@ -5,7 +5,7 @@
 namespace glint {
 namespace {
 
-// Whether a box has moved, since the build, by more than the length that it had then.
+// Returns whether a box has moved, since the build, by more than its length at that time.
 bool hasLeft(const Box& built, const Box& now) {
     if (built.isEmpty() || now.isEmpty()) {
         return built.isEmpty() != now.isEmpty();

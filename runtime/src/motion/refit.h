@@ -1,4 +1,4 @@
-// Bottom levels that are built and refitted in place, frame by frame.
+// BLASes that are built and refitted in place, frame by frame.
 #pragma once
 
 #include "motion/motion_rules.h"

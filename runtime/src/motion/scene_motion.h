@@ -28,7 +28,7 @@ struct SceneMotion {
     std::vector<std::uint32_t> blasInstances;  // for each refitted BLAS, its instance
     std::vector<BlasHistory> blasHistories;    // for each refitted BLAS
 
-    std::vector<PartInstance> partInstances;                 // instances of the top level, in their order
+    std::vector<PartInstance> partInstances;                 // instances of the TLAS, in their order
     std::vector<VkAccelerationStructureInstanceKHR> placed;  // the same, as last sent to the device
     Buffer placedBuffer;
     TlasBuild tlasBuild;
@@ -53,14 +53,14 @@ struct SceneMotion {
     VkDeviceSize placedOffset = 0;
     VkDeviceSize materialOffset = 0;
 
-    Timer timer;  // deform, bottom levels, top level
+    Timer timer;  // deform, BLASes, TLAS
     MotionStatistics statistics;
     bool recorded = false;
 };
 
-// Makes state.motion and state.tlas for a scene with SceneView::moves. It queues the builds of the bottom
-// levels of `refitted`, which are the layout's parts that belong to one instance, and the top
-// level at the scene's pose. `deformer` is null if no instance changes its shape.
+// Makes state.motion and state.tlas for a scene with SceneView::moves. It queues the builds of the BLASes of
+// `refitted`, which are the layout's parts that belong to one instance, and the TLAS at the scene's pose.
+// `deformer` is null if no instance changes its shape.
 Status createMotion(GpuScene::State& state, const SceneView& scene, const SceneLayout& layout,
                     std::span<const BlasInput> refitted, std::unique_ptr<Deformer> deformer,
                     Uploader& uploader);
@@ -71,7 +71,7 @@ void readFirstBuild(GpuScene::State& state);
 Status recordMotion(GpuScene::State& state, VkCommandBuffer commands, const MotionView& motion);
 Result<MotionStatistics> readMotion(const GpuScene::State& state);
 
-// Makes an instance of the top level.
+// Makes an instance of the TLAS.
 VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
                                               const std::array<float, 12>& objectToWorld,
                                               VkDeviceAddress blas);

@@ -31,14 +31,14 @@ float multiplied(float a, float b, int ulps, float towards) {
     return stepped(a * b, ulps, towards);
 }
 
-// The value of a texel as a shader may read it at the least or at the most.
+// The least or the largest value that a shader may read from a texel.
 float valueOf(std::uint32_t texel, int ulps, float towards) {
     const bool isExact = texel == 0 || texel == 255;
     const auto value = static_cast<float>(static_cast<double>(texel) / kSteps);
     return isExact ? value : stepped(value, ulps, towards);
 }
 
-// A filtered value beyond a texel's. Filters make no values outside of [0, 1].
+// Returns a texel's value, moved by the filter's error. Filters make no values outside of [0, 1].
 float filtered(float value, double error, float towards) {
     if (error == 0.0) {
         return value;
@@ -73,7 +73,7 @@ std::array<Part, 4> quartersOf(const Part& part) {
     const auto [u, v, inverted] = part.place;
     const std::uint32_t farU = u + half;
     const std::uint32_t farV = v + half;
-    // The one in the middle is turned over.
+    // The middle part is inverted.
     const MicroTriangle middle = inverted ? MicroTriangle{farU, farV, false} : MicroTriangle{u, v, true};
     const MicroTriangle first = inverted ? MicroTriangle{farU, farV, true} : MicroTriangle{u, v, false};
     return {{{first, half}, {{farU, v, inverted}, half}, {{u, farV, inverted}, half}, {middle, half}}};
@@ -94,7 +94,7 @@ public:
         }
     }
 
-    // `outside`: barycentrics may be that far outside of the part.
+    // Barycentrics may be `outside` far outside of the part.
     State stateOf(const Corners& corners, double outside) const {
         if (!provable_) {
             return State::UnknownOpaque;
@@ -116,7 +116,7 @@ public:
         return range.least <= range.most ? judge(bounds) : State::UnknownOpaque;
     }
 
-    // To which side an unknown part leans.
+    // The side to which an unknown part leans.
     State leaningOf(const Corners& corners) const {
         const Point middle{(corners[0][0] + corners[1][0] + corners[2][0]) / 3.0,
                            (corners[0][1] + corners[1][1] + corners[2][1]) / 3.0};
@@ -220,7 +220,7 @@ private:
     const AlphaTriangle& triangle_;
     const ErrorModel& model_;
     bool provable_ = true;
-    // The triangle in texels, and by how much a lookup may be off.
+    // The triangle in texels, and the error of a lookup's coordinates.
     std::array<double, 3> x_{};
     std::array<double, 3> y_{};
     double marginX_ = 0.0;

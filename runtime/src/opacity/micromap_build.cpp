@@ -13,7 +13,7 @@
 namespace glint {
 namespace {
 
-// VkMicromapBuildInfoEXT asks for it (VUID-vkCmdBuildMicromapsEXT-pInfos-07515).
+// VkMicromapBuildInfoEXT requires this alignment (VUID-vkCmdBuildMicromapsEXT-pInfos-07515).
 constexpr VkDeviceSize kInputAlignment = 256;
 
 constexpr MemoryDependency kMicromapToStructures{
@@ -46,7 +46,7 @@ Result<InputBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploa
     return InputBuffer{std::move(buffer), aligned};
 }
 
-// What the build of one micromap needs until it is done.
+// The resources of one micromap's build, which must stay until it is done.
 struct PendingMicromap {
     InputBuffer data;
     InputBuffer records;
@@ -147,7 +147,7 @@ private:
     SceneUpload& upload_;
     Context::State& context_;
     MemoryPool& pool_;
-    // Its buffers are the upload's.
+    // The upload owns its buffers.
     std::shared_ptr<std::vector<PendingMicromap>> pending_ = std::make_shared<std::vector<PendingMicromap>>();
 };
 

@@ -18,7 +18,7 @@ struct DeviceMicromap {
     Buffer buffer;
     UniqueMicromap handle;                   // null if no triangle has a record
     Buffer indices;                          // 32 bits for each triangle
-    std::vector<VkMicromapUsageEXT> usages;  // of triangles, as a bottom level asks for them
+    std::vector<VkMicromapUsageEXT> usages;  // of triangles, as a BLAS asks for them
     std::uint64_t bytes = 0;                 // on the device
 };
 

@@ -22,7 +22,7 @@ using opacity::State;
 
 // Triangles whose states one thread finds at a time.
 constexpr std::size_t kTrianglesOfJob = 512;
-// The size of a micro-triangle below which a level more is not worth its bytes.
+// The size of a micro-triangle, in texels, below which one more level is not worth its bytes.
 constexpr double kTexelsOfMicroTriangle = 2.0;
 
 float floatAt(const MaterialTable& materials, std::uint32_t material, std::uint32_t offset) {
@@ -49,7 +49,7 @@ std::uint8_t alphaOf(const std::uint8_t* texel, TexelChannel channel) {
     }
 }
 
-// The alpha of an image's first level, and how far the device's own may be from it.
+// The alpha of an image's first level, and the error that the device's own may have.
 struct KnownAlpha {
     AlphaTexels texels;
     int steps = 0;
@@ -86,7 +86,7 @@ std::optional<KnownAlpha> knownAlpha(const ImageView& image) {
     return known;
 }
 
-// Coordinates as shaders read them (host/geometry.glsl).
+// Texture coordinates as shaders read them (host/geometry.glsl).
 std::vector<std::array<float, 2>> coordinatesOf(std::span<const std::array<float, 2>> given,
                                                 VertexForm form) {
     std::vector<std::array<float, 2>> read(given.begin(), given.end());
@@ -199,7 +199,7 @@ private:
         candidates_.push_back(std::move(candidate));
     }
 
-    // As samplePoint() of hit/surface_point.glsl reads it. Returns whether its texels are known.
+    // Reads as samplePoint() of hit/surface_point.glsl does. Returns whether its texels are known.
     bool addLookup(const PrimitiveView& view, const package::PrimitiveEntry& entry, Candidate& candidate) {
         const gpu::TextureRecord texture = textureAt(materials_, entry.materialIndex, opacity_.texture);
         const std::optional<KnownAlpha>& alpha = alphaOfImage(known_.textures[texture.textureIndex].image);
@@ -294,7 +294,7 @@ private:
         append([](State state) { return state == State::Opaque; });
         append([](State state) { return state == State::Transparent; });
         const auto all = static_cast<std::uint32_t>(candidate.states.size());
-        // A structure can't be empty, so where nothing is seen one triangle is tested.
+        // If all triangles are transparent, one of them is tested, because a BLAS can't be empty.
         const std::uint32_t tested = std::max(all - opaque - transparent, all == transparent ? 1U : 0U);
         decided.splits[candidate.primitive] = {tested, opaque};
         if (level_ > 0 && all > opaque + transparent) {

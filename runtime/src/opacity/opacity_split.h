@@ -1,4 +1,4 @@
-// Decides before tracing what alpha tests of triangles would decide while tracing.
+// Decides alpha tests of triangles before tracing, so that rays need not run them.
 #pragma once
 
 #include "scene/geometry.h"
@@ -14,14 +14,14 @@
 
 namespace glint {
 
-// What was decided about the triangles of a scene.
+// The decisions about the triangles of a scene.
 struct DecidedTriangles {
-    // By index into SceneView::primitives: its indices, tested triangles first, then opaque ones, then those
-    // that let all rays through. Empty for primitives that stay as they are.
+    // By index into SceneView::primitives: the primitive's indices, tested triangles first, then opaque ones,
+    // then those that let all rays through. A primitive that is unchanged has none.
     std::vector<std::vector<std::uint32_t>> sorted;
     std::map<std::uint32_t, OpacitySplit> splits;
-    // The micromaps of the tested triangles of primitives with a split, in their order; only if micromaps
-    // were asked for.
+    // The micromaps of the tested triangles of primitives with a split, in the order of these triangles.
+    // Empty unless micromaps were requested.
     std::map<std::uint32_t, opacity::MicromapArray> micromaps;
     std::uint64_t tested = 0;       // triangles of materials that are tested, once for each mesh
     std::uint64_t opaque = 0;       // of those: proved opaque
@@ -38,7 +38,8 @@ DecidedTriangles decideTriangles(const Package& package, const PackageScene& kno
                                  std::span<const std::uint8_t> materials, const BlasCapacity& capacity,
                                  std::uint32_t level);
 
-// Returns all that an alpha test of a primitive reads besides vertices and texels, as bytes to compare.
+// Returns everything that an alpha test of a primitive reads besides vertices and texels, as bytes to
+// compare.
 std::vector<std::uint8_t> alphaInputs(const package::OpacityEntry& opacity, const MaterialTable& materials,
                                       const package::PrimitiveEntry& entry);
 

@@ -7,7 +7,7 @@
 namespace glint::opacity {
 namespace {
 
-// Beyond it texels are no longer told apart in 32 bits, and the whole image counts as reached.
+// Beyond this distance 32 bits no longer distinguish texels, and the whole image counts as reached.
 constexpr double kFarthest = 0x1p22;
 // An image that is repeated more often counts as reached whole.
 constexpr double kMostRepeats = 4.0;

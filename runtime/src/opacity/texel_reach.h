@@ -12,7 +12,7 @@ namespace glint::opacity {
 struct TexelTriangle {
     std::array<double, 3> x{};
     std::array<double, 3> y{};
-    // By how much a lookup's coordinates may be off.
+    // The error that a lookup's coordinates may have.
     double marginX = 0.0;
     double marginY = 0.0;
 };
@@ -23,8 +23,8 @@ struct TexelRange {
 };
 
 // Walks over every texel that a lookup in the triangle can read: row by row of texels, in each row between
-// the ends of the part of the triangle whose lookups reach the row. Such a walk is exact: it visits no texel
-// that no point of the triangle, moved by no more than the margins, reaches.
+// the ends of the part of the triangle whose lookups reach the row. The walk is exact: it visits only texels
+// that some point of the triangle reaches when it is moved by at most the margins.
 class TexelWalk {
 public:
     // Requires finite numbers. Keeps references.

@@ -60,7 +60,7 @@ Status checkFiles(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
-// The modules must match what the header says: none may be missing, and there may be no others.
+// The modules must match the header: none may be missing, and there may be no others.
 Status checkModules(const Package::State& state, const std::string& where) {
     std::set<package::ModuleKey> present;
     for (const package::ModuleEntry& module : state.modules) {
@@ -153,7 +153,7 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
-// Shaders read what the offsets and the slot name in any case; the runtime does only if they are right.
+// Shaders read at these offsets and slots without a check. The runtime reads there only if they are right.
 Status checkEmission(const Package::State& state, const std::string& where) {
     if (state.emission.empty()) {
         return okStatus();
@@ -365,7 +365,7 @@ Status checkEffects(const Package::State& state, const std::string& where) {
         const bool isNext = std::has_single_bit(entry.effect) && entry.effect > last;
         const bool isKnown = entry.kind <= package::EffectKind::Rays &&
                              (entry.abilities & ~std::uint32_t{package::kAllEffectAbilities}) == 0;
-        // Only rays are followed.
+        // Only effects with rays have abilities.
         const bool fits = entry.abilities == 0 || entry.kind == package::EffectKind::Rays;
         if (!inStrings(state, entry.name) || entry.name.length == 0 || !isNext || !isKnown || !fits) {
             return altered(where, "an effect is not well formed");

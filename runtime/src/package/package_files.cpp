@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::uint32_t kSpirvMagic = 0x07230203;
 constexpr std::size_t kSpirvHeaderBytes = 20;
-// Whether a name is a relative path of plain components, so that the name does not lead out of the folder.
+// Returns whether a name is a relative path of plain components, so that the name does not lead out of the
+// folder.
 bool staysInside(const std::filesystem::path& name) {
     if (name.empty() || name.is_absolute() || name.has_root_path()) {
         return false;
@@ -22,7 +23,7 @@ bool staysInside(const std::filesystem::path& name) {
         name, [](const std::filesystem::path& part) { return !part.empty() && part != ".." && part != "."; });
 }
 
-// Whether symbolic links keep the file inside the folder too. `file` must exist.
+// Returns whether symbolic links keep the file inside the folder too. `file` must exist.
 bool resolvesInside(const std::filesystem::path& folder, const std::filesystem::path& file) {
     std::error_code error;
     const std::filesystem::path root = std::filesystem::canonical(folder, error);

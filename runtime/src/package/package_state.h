@@ -56,7 +56,7 @@ package::PackageShape shapeOf(const Package::State& state);
 Status readTables(Package::State& state, const std::string& where);
 
 // Checks every index, reference and promise of the tables, and fills state.effects. Error "package-altered"
-// says what is wrong.
+// names the fault.
 Status checkTables(Package::State& state, const std::string& where);
 
 // The source of a package's files.

@@ -161,7 +161,7 @@ Status readTables(Package::State& state, const std::string& where) {
         }
         GLINT_TRY_DO(readKnownSection(state, section, where));
     }
-    // Every package has those up to the effects. Names of features are for messages only.
+    // Every package has the sections up to that of the effects. Names of features are for messages only.
     constexpr std::size_t kSectionKinds = 10;
     seen.erase(package::SectionKind::Emission);
     seen.erase(package::SectionKind::Opacity);

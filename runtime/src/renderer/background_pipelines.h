@@ -64,7 +64,7 @@ public:
 private:
     void work();
     std::optional<PlannedPipeline> next();
-    // Returns what is made next; the end if nothing may be begun. Requires the lock.
+    // Returns the pipeline that is made next; the end if nothing may be begun. Requires the lock.
     std::vector<PlannedPipeline>::iterator best();
     std::vector<Done> take(std::vector<Done>::iterator first, std::vector<Done>::iterator end);
 

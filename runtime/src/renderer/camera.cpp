@@ -31,8 +31,8 @@ glm::vec4 rowAlong(const glm::vec3& axis, const glm::vec3& position, float facto
 }
 
 bool isUnit(const glm::vec3& v) {
-    // Four digits are enough for a view, and the tolerance is above what normalising in single precision
-    // loses.
+    // Four digits are enough for a view, and the tolerance is above the error of normalising in single
+    // precision.
     return std::abs(glm::dot(v, v) - 1.0F) < 1e-3F;
 }
 
@@ -42,8 +42,9 @@ bool isFinite(const glm::vec3& v) {
 
 // The unit of the lengths that packed records keep as codes: see FrameConstants::lengthUnit. A pixel is about
 // a thousandth of its distance wide, and a scene seldom extends over more than a million times the distance
-// of the near plane. So for near planes from 1/1024 m to 64 m a metre serves. Others have a power of two that
-// keeps the narrowest cone at the near plane, or a scene that reaches as far beyond it.
+// of the near plane. So the unit is a metre for near planes from 1/1024 m to 64 m. For others it is a power
+// of two with which the codes can hold the narrowest cone at the near plane, or a scene that extends as far
+// beyond it.
 float lengthUnitOf(const CameraView& camera) {
     constexpr float kLeastNear = 0x1p-10F;
     constexpr float kMostNear = 0x1p6F;

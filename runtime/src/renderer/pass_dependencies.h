@@ -6,12 +6,12 @@
 
 namespace glint {
 
-// All earlier commands against all later ones. Frames then follow each other, whoever recorded the frame
-// before.
+// Makes all later commands wait for all earlier ones. So frames run one after the other, whichever renderer
+// recorded the previous one.
 inline constexpr MemoryDependency kAllToAll{
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
     VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
-// Between fills and copies that write the same memory.
+// Orders fills and copies that write the same memory.
 inline constexpr MemoryDependency kTransferToTransfer{
     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
     VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};

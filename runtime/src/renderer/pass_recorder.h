@@ -28,7 +28,7 @@ public:
     // Begins and ends a label around several passes.
     void beginLabel(const std::string& name);
     void endLabel();
-    // Sets the number of rows that passes over pixels have: those of the image, unless told otherwise.
+    // Sets the number of rows that passes over pixels have. The default is the height of the image.
     void setRows(std::uint32_t rows);
     // Dispatches the pass over the pixels of these rows.
     void dispatchPixels(const PassLabel& label, const PassPipeline& pass);

@@ -1,4 +1,4 @@
-// What a recording of passes works on, whoever records it.
+// The state that recordings of passes work on, of renderers and of RaySteps.
 #pragma once
 
 #include "context/timer.h"

@@ -42,8 +42,8 @@ public:
             recordBand(frame, constants);
         }
         passes_.endStretch(whole);
-        // Layers of motion are those of a picture's first sample, and so is what they need of the frame
-        // before.
+        // Layers of motion describe a picture's first sample, so only that sample needs the state of the
+        // previous frame.
         if (state_.history != nullptr && constants.averaged == 0) {
             state_.history->record(commands_);
         }
@@ -63,7 +63,7 @@ private:
                            bounceBits(frame.sampleIndex, frame.seed));
     }
 
-    // Copies how deep the paths were for BounceLevels.
+    // Copies the depth of the paths for BounceLevels.
     void keepDepth() {
         if (!state_.size.paths) {
             return;
@@ -112,8 +112,7 @@ private:
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
     }
 
-    // Shades the surfaces with edited features as a draft, in the place of what the lighting pass made of
-    // them.
+    // Shades the surfaces with edited features as a draft, in place of the result of the lighting pass.
     void recordEdit() {
         const auto edit = state_.pipelines.passes.find(ModuleRole::LightingEdit);
         if (edit != state_.pipelines.passes.end()) {
@@ -134,7 +133,7 @@ private:
         passes_.barrier(dependencies().passToPass);
     }
 
-    // Drafts have no walk, and walks of packs need not store what they find.
+    // Drafts have no walk, and walks of packs need not store their results.
     void clearWalks() {
         fill(state_.frame.walkedLight, VK_WHOLE_SIZE, 0);
     }
@@ -216,8 +215,8 @@ private:
         vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), offset, sizeof(value), &value);
     }
 
-    // Tells the passes which bounce they shade, and which list has its rays: odd bounces have the list that
-    // the effects fill. What the passes before wrote is visible to those that follow.
+    // Tells the passes which bounce they shade, and which list has its rays: odd bounces use the list that
+    // the effects fill. Makes the writes of the earlier passes visible to the later ones.
     void setBounce(const gpu::FrameConstants& constants, std::uint32_t bounce) {
         const bool swapped = bounce > 0 && bounce % 2 == 0;
         passes_.barrier(dependencies().passToClear);
@@ -239,7 +238,7 @@ private:
     }
 
     void clearRound() {
-        // The round before read these lists. Their counts are the first counters.
+        // The previous round read these lists. Their counts are the first counters.
         static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
         passes_.barrier(dependencies().passToClear);
         fill(state_.frame.counters, kRoundCounterBytes, 0);

@@ -33,8 +33,9 @@ struct MadePipeline {
 // at once.
 std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount);
 
-// Returns the pipelines, or why there is none, in the order of their jobs. The largest job begins first.
-// `threads` includes the calling thread and must not be 0; if the system gives fewer threads, fewer are used.
+// Returns the pipelines, or the errors that prevented them, in the order of their jobs. The largest job
+// begins first. `threads` includes the calling thread and must not be 0; if the system gives fewer threads,
+// fewer are used.
 std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs, VkPipelineCreateFlags flags,
                                                std::uint32_t threads);
 

@@ -1,4 +1,4 @@
-// Which pipelines a choice of a package's modules consists of, and how they join the passes.
+// Plans the pipelines that a choice of a package's modules consists of, and joins them to the passes.
 #pragma once
 
 #include "renderer/background_pipelines.h"
@@ -16,14 +16,14 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
                                            const PipelineChoice& choice,
                                            std::span<const std::uint32_t> shaderIds, VkPipelineLayout layout);
 
-// Takes a pipeline, and lets the passes that it is for use it. Errors: those of buffers, "vulkan-call".
+// Takes a pipeline, and lets the passes that it serves use it. Errors: those of buffers, "vulkan-call".
 Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
                    Pipelines& pipelines);
 
-// Lets the fallback stand in for what is made later.
+// Lets the fallback replace the pipelines that are made later.
 void addFallback(const Package& package, const PipelineChoice& choice, Pipelines& pipelines);
 
-// Whether the package's fallback shades some of `shaderIds`, as no case has them.
+// Returns whether the package's fallback shades some of `shaderIds`, because no case has them.
 bool hasUnknown(const Package& package, std::span<const std::uint32_t> shaderIds);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// Reads what a driver reports about a pipeline.
+// Reads a driver's report about a pipeline.
 #pragma once
 
 #include "context/context_state.h"
@@ -14,7 +14,7 @@ namespace glint {
 // VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Error "vulkan-call".
 Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline);
 
-// Returns how the pipeline was made, without its executables.
+// Returns the way in which the pipeline was made, without its executables.
 PipelineStatistics describe(const MadePipeline& pipeline);
 
 }  // namespace glint

@@ -112,7 +112,7 @@ bool isGraphics(const package::RoleInfo& info) {
     return info.kind == package::ShaderKind::Vertex || info.kind == package::ShaderKind::Fragment;
 }
 
-// Whether the choice runs a module of its shape.
+// Returns whether the choice runs a module of its shape.
 bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const package::ModuleKey& key) {
     if (info.repeated == package::Repeated::ByOrdering) {
         return key.index == static_cast<std::uint32_t>(choice.ordering);
@@ -215,7 +215,7 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
     return plan;
 }
 
-// Takes a pipeline, and lets the passes that it is for use it.
+// Takes a pipeline, and lets the passes that it serves use it.
 Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
                    Pipelines& pipelines) {
     const VkPipeline pipeline = made.handle->get();
@@ -236,7 +236,7 @@ Status addPipeline(Context::State& context, const PlannedPipeline& planned, Made
     return okStatus();
 }
 
-// Lets the fallback stand in for what is made later.
+// Lets the fallback replace the pipelines that are made later.
 void addFallback(const Package& package, const PipelineChoice& choice, Pipelines& pipelines) {
     if (!choice.background) {
         return;
@@ -301,7 +301,8 @@ PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role) {
 }
 
 bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
-    // A fallback with a pass shades hits whose shader ID no case has. Shaders with a switch have it in them.
+    // A fallback with a pass shades hits whose shader ID no case has. Shaders with a switch contain the
+    // fallback.
     const package::RoleInfo& info = *package::findRole(role);
     return choice.background || info.purpose != package::Purpose::Fallback ||
            info.over != package::Over::Nothing;

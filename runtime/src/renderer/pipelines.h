@@ -25,8 +25,8 @@ struct PipelineChoice {
     bool checksOrder = false;
     bool batchEffects = false;
     std::uint32_t bounces = 1;  // the most of a path
-    std::uint32_t bands = 0;    // what chooseBandRows() takes
-    // Pipelines with shaders of cases are made later, by threads; until then a fallback is in their place.
+    std::uint32_t bands = 0;    // the argument of chooseBandRows()
+    // Pipelines with shaders of cases are made later, by threads; until then a fallback replaces them.
     bool background = false;
     // Frames begin with a draft. Requires `background`.
     bool draft = false;
@@ -35,7 +35,7 @@ struct PipelineChoice {
     bool halfPicture = false;  // as FrameSize::halfPicture
 };
 
-// When a pipeline is made: these follow each other.
+// The time at which a pipeline is made, in this order.
 enum class PipelineTurn : std::uint8_t {
     First,  // frames can't begin without it
     Fixed,  // frames are drafts without it
@@ -43,7 +43,7 @@ enum class PipelineTurn : std::uint8_t {
     Spare,  // nothing that is drawn needs it
 };
 
-// How pipelines are made.
+// The settings for making pipelines.
 struct PipelineMaking {
     std::uint32_t threads = 0;       // 0: as many as the machine runs at once
     bool captureStatistics = false;  // requires DeviceHandles::pipelineStatistics
@@ -77,11 +77,11 @@ struct Pipelines {
     VkShaderStageFlags pushStages = 0;
     VkPipeline gbuffer = VK_NULL_HANDLE;
     std::map<package::ModuleRole, PassPipeline> passes;
-    // Those of one effect, by role and package::effectNumber().
+    // The passes of one effect, by role and package::effectNumber().
     std::map<std::pair<package::ModuleRole, std::uint32_t>, PassPipeline> effectPasses;
     std::vector<PassPipeline> cases;  // indexed by shader ID; cases that share a module share a pipeline
     std::vector<MadePipeline> owned;
-    std::shared_ptr<const Package> package;  // that threads read; null if the caller keeps it
+    std::shared_ptr<const Package> package;  // the package that threads read; null if the caller keeps it
     std::uint32_t threads = 0;               // threads that made them
     bool captureStatistics = false;
     double creationMs = 0.0;
@@ -109,10 +109,10 @@ struct LayoutSource {
 // Returns the part of the package's shape that decides which of its modules the choice needs.
 package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice);
 
-// Returns when the choice has pipelines of that role made.
+// Returns the time at which pipelines of that role are made.
 PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role);
 
-// Whether the choice needs a pipeline of a fallback's role. It is true for other roles.
+// Returns whether the choice needs a pipeline of a fallback's role. It is true for other roles.
 bool runsFallback(const PipelineChoice& choice, package::ModuleRole role);
 
 // Returns the stages that push constants are for.
@@ -133,9 +133,9 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& layout);
 
-// Puts pipelines that threads have made since the last call in the place of the fallback, and all fixed
-// passes together in the place of the draft. The passes that are recorded afterwards use them. Errors: those
-// of buffers, "vulkan-call".
+// Replaces the fallback by the pipelines that threads have made since the last call, and the draft by all
+// fixed passes together. The passes that are recorded afterwards use them. Errors: those of buffers,
+// "vulkan-call".
 Status adoptPipelines(Context::State& context, Pipelines& pipelines);
 
 }  // namespace glint

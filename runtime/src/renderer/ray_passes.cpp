@@ -13,7 +13,7 @@ SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index
     return package.spirv({role, index, package::kTracerRayPipeline});
 }
 
-// Returns the source of passes that only trace. Other passes shade what their rays find.
+// Returns the source of passes that only trace. Other passes shade the hits of their rays.
 RayPipelineSource tracingSource(const Package& package, SpirvWords rayGeneration) {
     RayPipelineSource source;
     source.rayGeneration = rayGeneration;
@@ -61,7 +61,7 @@ HitShaderRoles hitShaderRoles(package::Strategy strategy) {
     return roles;
 }
 
-// Returns the source of such a pipeline without closest-hit shaders.
+// Returns the source of a pipeline of a strategy's own, without closest-hit shaders.
 RayPipelineSource hitShaderStart(const Package& package, const HitShaderRoles& roles) {
     RayPipelineSource source;
     source.rayGeneration = rayWords(package, roles.rayGeneration);
@@ -71,7 +71,8 @@ RayPipelineSource hitShaderStart(const Package& package, const HitShaderRoles& r
     return source;
 }
 
-// Returns the source of such a pipeline. Each geometry has a record, with the hit group of its shader ID.
+// Returns the source of a strategy's own pipeline. Each geometry has a record, with the hit group of its
+// shader ID.
 RayPipelineSource hitShaderSource(const Package& package, const HitShaderRoles& roles,
                                   std::span<const std::uint32_t> shaderIds) {
     RayPipelineSource source = hitShaderStart(package, roles);
@@ -99,7 +100,7 @@ RayPipelineSource hitShaderSource(const Package& package, const HitShaderRoles& 
     return source;
 }
 
-// Returns the source of such a pipeline with the fallback for every hit.
+// Returns the source of a strategy's own pipeline with the fallback for every hit.
 RayPipelineSource hitFallbackSource(const Package& package, const HitShaderRoles& roles) {
     RayPipelineSource source = hitShaderStart(package, roles);
     source.closestHit = {rayWords(package, roles.fallbackHit)};

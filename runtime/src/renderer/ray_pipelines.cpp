@@ -67,7 +67,7 @@ Status addHitGroups(Context::State& context, const RayPipelineSource& source, Pa
 
 Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source, bool halfPicture) {
     Parts parts;
-    // The other stages know no images of light.
+    // The other stages use no images of light.
     std::vector<std::uint32_t> withHalf;
     SpirvWords rayGeneration = source.rayGeneration;
     if (halfPicture) {
@@ -143,7 +143,7 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
     VkRayTracingPipelineCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
     info.pNext = &feedback;
-    // Without it rays must not meet structures with micromaps. Ray queries need no flag.
+    // Without this flag rays must not meet structures with micromaps. Ray queries need no flag.
     info.flags =
         creation.flags | (context.handles.opacityMicromaps
                               ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}

@@ -1,4 +1,4 @@
-// Chooses what a renderer runs from its options, its package and the device.
+// Chooses the modules and the settings of a renderer from its options, its package and the device.
 #pragma once
 
 #include "frame/frame_resources.h"
@@ -18,7 +18,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
 // Pure.
 std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted);
 
-// Whether frames have a picture of 16-bit floats: what asks for it is there, and nothing needs it in full.
+// Returns whether frames have a picture of 16-bit floats: the options request it, and nothing needs 32 bits.
 // The march in screen space reads depths from it, and shaders have one format for the picture and for layers
 // of 32-bit vectors.
 bool hasHalfPicture(const Package& package, const RendererOptions& options);

@@ -42,7 +42,7 @@ struct Renderer::State : PassState {
     std::uint64_t drafts = 0;       // recordings that were drafts
     bool drafted = false;           // the last recording was one
     std::uint32_t firstSample = 0;  // FrameOptions::sampleIndex with which the picture began
-    // Which package of the scene the pipelines are for, as ScenePackage::number.
+    // The package of the scene that the pipelines are for, as ScenePackage::number.
     std::uint64_t scenePackage = 0;
     std::unique_ptr<NextPackage> next;  // null unless a package waits
     std::vector<std::unique_ptr<Leftovers>> leftovers;

@@ -17,7 +17,7 @@ constexpr std::uint32_t kSmallCopyGroups = 3;
 constexpr std::uint32_t kCopyGroups = 2;
 constexpr std::uint32_t kLargeCopyGroups = 1;
 
-// Scans need it: they have a word of shared memory for every fourth thread.
+// Scans need subgroups of at least this size: they have a word of shared memory for every fourth thread.
 constexpr std::uint32_t kLeastSubgroup = 4;
 
 std::uint32_t groupsFor(std::uint64_t hits, std::uint32_t hitsOfGroup, std::uint32_t atOnce) {

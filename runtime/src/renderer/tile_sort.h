@@ -9,7 +9,7 @@
 
 namespace glint {
 
-// Whether the device has enough shared memory, threads and subgroups for tile-sort.
+// Returns whether the device has enough shared memory, threads and subgroups for tile-sort.
 bool sortsTiles(const DeviceLimits& limits);
 
 // Returns the number of threads in a workgroup of the copy pass.

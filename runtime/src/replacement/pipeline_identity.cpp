@@ -28,7 +28,7 @@ PipelineIdentity identify(const Package& package, const RayPipelineSource& sourc
     std::vector<SpirvWords> stages{source.rayGeneration, source.anyHit};
     stages.insert(stages.end(), source.miss.begin(), source.miss.end());
     stages.insert(stages.end(), source.closestHit.begin(), source.closestHit.end());
-    // With the number of stages, the number of miss shaders says which stage is what.
+    // The number of miss shaders, together with the number of stages, tells the kind of each stage.
     return identify(package, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, source.miss.size(), stages);
 }
 

@@ -14,8 +14,8 @@ namespace glint {
 
 struct RayPipelineSource;
 
-// A hash of all that a pipeline is made from, but for its layout and flags: its stages' SPIR-V and the size
-// of its workgroups. 128 bits, so that two pipelines of a program never share one by chance.
+// A hash of everything that a pipeline is made from, except its layout and flags: its stages' SPIR-V and the
+// size of its workgroups. 128 bits, so that two pipelines of a program never share one by chance.
 struct PipelineIdentity {
     std::uint64_t low = 0;
     std::uint64_t high = 0;
@@ -30,7 +30,7 @@ struct PipelineIdentity {
 PipelineIdentity identify(const Package& package, VkPipelineBindPoint point, std::uint64_t number,
                           const std::vector<std::span<const std::uint32_t>>& stages);
 
-// The records of the shader binding table do not count: they are no part of the pipeline.
+// The records of the shader binding table do not count, because they are no part of the pipeline.
 PipelineIdentity identify(const Package& package, const RayPipelineSource& source);
 
 }  // namespace glint

@@ -20,7 +20,7 @@ using KnownPipelines = std::map<PipelineIdentity, MadePipeline>;
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-// Takes what the threads of a package that waits have made so far.
+// Takes the pipelines that the threads of a waiting package have made so far.
 void collect(NextPackage& next) {
     if (next.pipelines.background) {
         std::ranges::move(next.pipelines.background->take(kAll), std::back_inserter(next.ready));
@@ -41,7 +41,7 @@ KnownPipelines knownPipelines(Renderer::State& state) {
     return known;
 }
 
-// Whether the pipeline only shades hits whose shader ID no case has, and the scene has none.
+// Returns whether the pipeline only shades hits whose shader ID no case has, while the scene has none.
 bool isSpare(const PlannedPipeline& planned, bool shadesUnknown) {
     const auto isFallback = [](const package::ModuleKey& key) {
         const package::RoleInfo& info = *package::findRole(key.role);
@@ -119,7 +119,7 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next, PackageReplace
     return okStatus();
 }
 
-// Makes all that frames of the package need. Nothing of the renderer changes.
+// Makes everything that frames of the package need. Nothing of the renderer changes.
 Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::shared_ptr<const Package> package,
                                               PackageReplacement& result) {
     if (package->passes() != package::Passes::Frame) {
@@ -220,7 +220,7 @@ void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_pt
         return;
     }
     try {
-        // The task may be copied, so it shares what it destroys.
+        // The task may be copied, so its copies share the objects that it destroys.
         const auto taken =
             std::make_shared<std::pair<std::unique_ptr<Pipelines>, std::unique_ptr<NextPackage>>>(
                 std::move(pipelines), std::move(next));

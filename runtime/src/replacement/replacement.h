@@ -1,4 +1,4 @@
-// A package that is about to take the place of a renderer's, and what the ones before have left behind.
+// A package that is about to replace a renderer's, and the remains of earlier packages.
 #pragma once
 
 #include "context/timer.h"
@@ -26,7 +26,7 @@ struct EffectName {
     std::string name;
 };
 
-// Returns what reports and labels need of a package.
+// Returns the names of effects that reports and labels need of a package.
 std::vector<EffectName> effectsOf(const Package& package);
 std::vector<std::string> caseNamesOf(const Package& package);
 
@@ -73,10 +73,10 @@ private:
 Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_ptr<const Package> package);
 
 // If all pipelines of the package that waits are there, lets the commands that are recorded from now on use
-// it. If one could not be made, gives it up.
+// that package. If a pipeline could not be made, gives the package up.
 void switchPackage(Renderer::State& state, VkCommandBuffer commands);
 
-// Destroys what recordings after `recording` do not use; pipelines are gone some time later.
+// Destroys resources that recordings after `recording` do not use; pipelines are gone some time later.
 void releaseLeftovers(Renderer::State& state, std::uint64_t recording);
 
 }  // namespace glint

@@ -63,7 +63,8 @@ std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const Ma
     return emissions;
 }
 
-// Compares what the importer's vertices, the textures and the acceleration structures were made of.
+// Compares the inputs from which the importer's vertices, the textures and the acceleration structures were
+// made.
 Status checkPrimitives(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     if (known.primitives.size() != now.entries.size()) {
@@ -113,7 +114,8 @@ Status checkPrimitives(const GpuScene::State& scene, const Package& package, con
     return okStatus();
 }
 
-// Whether both find the emission at the same places of records. The features that follow are for edits alone.
+// Returns whether both find the emission at the same places of records. The features that follow are for
+// edits alone.
 bool isReadAlike(const package::EmissionEntry& a, const package::EmissionEntry& b) {
     return std::memcmp(&a, &b, offsetof(package::EmissionEntry, read)) == 0;
 }
@@ -153,7 +155,7 @@ std::span<const ChangingMaterial> hostMaterialsOf(const GpuScene::State& scene) 
     return scene.motion != nullptr ? scene.changing : scene.package.hostMaterials;
 }
 
-// Triangles that no ray tests stay so, whichever package draws them.
+// Triangles that no ray tests stay so, whichever package draws the scene.
 Status checkDecided(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     std::vector<std::uint8_t> records(known.materials.bytes.begin(), known.materials.bytes.end());

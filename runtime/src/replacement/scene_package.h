@@ -18,8 +18,8 @@
 
 namespace glint {
 
-// What the upload took from the package. Another package may replace it if it agrees in all that is on the
-// device and that no package brings with it: vertices, textures and acceleration structures.
+// The data that the upload took from the package. Another package may replace it if it agrees with the data
+// that is on the device and that a package does not contain: vertices, textures and acceleration structures.
 struct ScenePackage {
     // An attribute of packs, as it is in the vertices.
     struct Attribute {
@@ -29,7 +29,7 @@ struct ScenePackage {
 
         friend bool operator==(const Attribute&, const Attribute&) = default;
     };
-    // What a material emits, in packages with emissive lights.
+    // The emission of a material, in packages with emissive lights.
     struct Emission {
         std::array<float, 3> factor{};
         float strength = 1.0F;
@@ -38,7 +38,8 @@ struct ScenePackage {
         friend bool operator==(const Emission&, const Emission&) = default;
     };
 
-    // A primitive of whose triangles some need no alpha test, and what that follows from (alphaInputs()).
+    // A primitive some of whose triangles need no alpha test, and the inputs of that decision
+    // (alphaInputs()).
     struct Decided {
         std::uint32_t entry = 0;
         std::vector<std::uint8_t> inputs;
@@ -63,12 +64,12 @@ struct ScenePackage {
     std::shared_ptr<MemoryPool> pool;
 };
 
-// Returns what an upload has taken. `layout` is that of the scene.
+// Returns the data that an upload has taken. `layout` is that of the scene.
 ScenePackage describePackage(const Package& package, const SceneView& scene, const SceneLayout& layout,
                              std::span<const ChangingMaterial> hostMaterials);
 
 // Returns the index of the scene in `package`. Errors: "scene-package" (it has no such scene, or differs in
-// what only an upload can change), "position-fetch", "half-precision".
+// data that only an upload can change), "position-fetch", "half-precision".
 Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& package);
 
 // Returns the shader ID of each geometry record in `package`. Requires findScene().
@@ -81,8 +82,8 @@ struct SceneLeftovers {
     std::vector<Buffer> buffers;
 };
 
-// Records the copies that bring the scene's records of geometries and materials to `package`, which must stay
-// ahead of all commands that read them, and makes `scene` one of that package. Values of materials that the
+// Records the copies that bring the scene's records of geometries and materials to `package`, which must run
+// before all commands that read them, and makes `scene` one of that package. Values of materials that the
 // host has given stay. Requires findScene(), which gave `index`. With an error nothing changes. Errors: those
 // of buffers.
 Result<SceneLeftovers> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,

@@ -1,4 +1,4 @@
-// Acceleration structures, their scratch memory, and the top level.
+// Acceleration structures, their scratch memory, and the TLAS.
 #include "scene/acceleration.h"
 
 #include "context/commands.h"

@@ -32,7 +32,7 @@ struct BlasGeometry {
     const DeviceMicromap* micromap = nullptr;  // must outlive the structure; null: none
 };
 
-// The most that one BLAS may hold.
+// The largest content of one BLAS.
 struct BlasCapacity {
     std::uint64_t triangles = 0;
     std::uint64_t geometries = 0;
@@ -44,8 +44,9 @@ struct BlasInput {
     bool updatable = false;                // built fast and refitted; not compacted
 };
 
-// Returns what one BLAS of this device may hold. It follows from the device's limits; also, no structure and
-// no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage buffers.
+// Returns the largest content of one BLAS of this device. It follows from the device's limits; also, no
+// structure and no scratch may exceed maxStorageBufferRange, because mobile drivers bind both as storage
+// buffers.
 BlasCapacity blasCapacity(const Context::State& context);
 
 struct SceneUpload;
@@ -64,8 +65,8 @@ Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::s
 Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
                                       std::span<const VkAccelerationStructureInstanceKHR> instances);
 
-// A top level in Vulkan's terms. `instances` is the address of their array, or 0 to ask for sizes only.
-// `info` points at `geometry`, so it must be set again after a move.
+// A TLAS in Vulkan's terms. `instances` is the address of their array, or 0 to ask for sizes only. `info`
+// points at `geometry`, so it must be set again after a move.
 struct TlasBuild {
     VkAccelerationStructureGeometryKHR geometry{};
     VkAccelerationStructureBuildGeometryInfoKHR info{};
@@ -75,7 +76,7 @@ struct TlasBuild {
 Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
                     bool updatable, TlasBuild& build);
 
-// Creates a structure of `bytes` that is not built yet, for bottom and top levels.
+// Creates a structure of `bytes` that is not built yet, for BLASes and TLASes.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                                               VkAccelerationStructureTypeKHR type);
 // A scratch buffer. `address` has the alignment that the device asks for.

@@ -1,4 +1,4 @@
-// Bottom levels: their sizes, and the builds of an upload.
+// BLASes: their sizes, and the builds of an upload.
 #include "context/commands.h"
 #include "context/vulkan_error.h"
 #include "renderer/pass_dependencies.h"
@@ -17,7 +17,7 @@ constexpr MemoryDependency kBuildToQuery{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCT
                                          VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
                                          VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
 
-// Everything that the recorded builds refer to, besides memory.
+// All data that the recorded builds refer to, besides memory.
 struct Builds {
     std::vector<BlasBuild> all;
     std::vector<VkAccelerationStructureKHR> handles;

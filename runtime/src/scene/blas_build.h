@@ -1,4 +1,4 @@
-// The description of a bottom level in Vulkan's terms.
+// The description of a BLAS in Vulkan's terms.
 #pragma once
 
 #include "context/commands.h"
@@ -24,15 +24,15 @@ struct BlasBuild {
 // Describes a build except for its destination and its scratch memory.
 BlasBuild describeBuild(const Context::State& context, const BlasInput& input);
 
-// Between builds that share scratch memory, or of which one reads what the other has built.
+// Orders builds that share scratch memory, or of which one reads the result of the other.
 inline constexpr MemoryDependency kBuildsInOrder{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR};
 
-// Builds with destinations that share scratch memory: those that do not fit beside the ones before them wait
-// for these. No dependency is recorded before the first build or after the last. Requires scratchBytesOf()
+// Builds with destinations that share scratch memory: a build that does not fit beside the earlier ones waits
+// for them. No dependency is recorded before the first build or after the last. Requires scratchBytesOf()
 // bytes.
 struct ScratchRange {
     VkDeviceAddress address = 0;

@@ -1,4 +1,4 @@
-// Compaction: copies of the bottom levels, and the top level over them.
+// Compaction: copies of the BLASes, and the TLAS over them.
 #include "context/vulkan_error.h"
 #include "edit/editor_state.h"
 #include "renderer/pass_dependencies.h"
@@ -17,7 +17,7 @@ struct Replacement {
     AccelerationStructure copy;
 };
 
-// Returns nothing if the device has not written them yet.
+// Returns no value if the device has not written the sizes yet.
 Result<std::optional<std::vector<VkDeviceSize>>> readSizes(const GpuScene::State& state) {
     const Compaction& compaction = *state.compaction;
     std::vector<VkDeviceSize> sizes(compaction.count);

@@ -20,7 +20,7 @@ struct AttributeUpload {
     VkDeviceSize offset = 0;
 };
 
-// The words of attributes in a compact form. Those of the others are empty.
+// The words of attributes in a compact form. An attribute in another form has none.
 struct CompactWords {
     std::vector<std::uint32_t> indices;
     std::vector<std::uint32_t> normals;
@@ -189,7 +189,7 @@ struct PartIndices {
     std::vector<std::uint32_t> main;
     std::vector<std::uint32_t> decided;  // of opaque triangles whose primitives have others in `main`
 };
-// Those of each mesh that has triangles.
+// The parts of each mesh that has triangles.
 using PartsOfMesh = std::map<std::uint32_t, PartIndices>;
 
 // Appends the triangles of a primitive to `ranges`. It begins a new part when one is full.
@@ -226,7 +226,7 @@ void appendRange(const TriangleRange& range, const BlasCapacity& capacity,
     ranges.back().back() = range;
 }
 
-// What a scene's partition depends on.
+// The inputs of a scene's partition.
 struct PartitionInput {
     const PackageScene& known;
     const SceneView& scene;

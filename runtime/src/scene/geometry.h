@@ -27,8 +27,8 @@ inline constexpr std::uint32_t kMostGeometries = (1U << 24) - 2;
 // A primitive's attributes in one buffer. The address of an attribute that it lacks is 0.
 struct GpuPrimitive {
     Buffer buffer;
-    // Positions as acceleration structures are built from them. They are in memory of their own if shaders
-    // read others (kGeometryPackedPositions), and needed for the builds alone.
+    // The positions from which acceleration structures are built. They are in memory of their own, and needed
+    // for the builds alone, if shaders read others (kGeometryPackedPositions).
     Buffer buildInput;
     VkDeviceAddress buildPositions = 0;
     VkDeviceAddress indices = 0;
@@ -41,7 +41,7 @@ struct GpuPrimitive {
     VkDeviceAddress attributes = 0;  // of packs, as AttributeEntry describes
     std::uint32_t vertexCount = 0;
     std::uint32_t triangleCount = 0;
-    // kGeometryPacked*, kGeometryColors* and kGeometryShortIndices: what is in a compact form
+    // kGeometryPacked*, kGeometryColors* and kGeometryShortIndices: the compact attributes.
     std::uint32_t forms = 0;
 };
 
@@ -50,7 +50,7 @@ VkDeviceAddress indicesFrom(const GpuPrimitive& primitive, std::uint32_t triangl
 // Returns the triangles [first, first + count) as a geometry of a BLAS, with the flags of an opaque one.
 BlasGeometry blasGeometry(const GpuPrimitive& primitive, std::uint32_t first, std::uint32_t count);
 
-// How primitives are uploaded.
+// The settings of the upload of primitives.
 struct PrimitiveUpload {
     VertexForm form = VertexForm::Compact;
     // A primitive with more triangles becomes several geometries, which may begin at any of them.
@@ -62,8 +62,8 @@ struct PrimitiveUpload {
 std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
                                   const PrimitiveView& view);
 
-// Returns the same, whatever a key reads. The primitive may lack attributes; their fallback then stands for
-// them, or 0.
+// Returns the attributes' values, too, whatever a key reads. If the primitive lacks an attribute, its
+// fallback or 0 is used.
 std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
 
 // The parts of a primitive that are uploaded beside the attributes of its view.
@@ -74,8 +74,8 @@ struct PrimitiveContent {
 };
 
 // Queues the copies in `uploader`. A primitive without triangles gets no buffer. Unless the form is the full
-// one, an attribute gets a form that keeps its values nearly (vertices/vertex_format.h), if there is one;
-// what joints and morph targets change stays as it is.
+// one, an attribute gets a compact form (vertices/vertex_format.h) if that nearly keeps its values.
+// Attributes that joints and morph targets change stay as they are.
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                      const PrimitiveView& view, const PrimitiveContent& content,
                                      const PrimitiveUpload& how);
@@ -110,7 +110,7 @@ struct TriangleRange {
     std::uint32_t primitive = 0;  // index into SceneView::primitives
     std::uint32_t first = 0;
     std::uint32_t count = 0;  // in the BLAS
-    std::uint32_t drawn = 0;  // that the raster pass draws, from `first` on; 0: another geometry draws them
+    std::uint32_t drawn = 0;  // triangles of the raster pass, from `first` on; 0: another geometry draws them
     bool opaque = false;      // every ray stops there, although the material is tested for alpha
 };
 
@@ -156,7 +156,7 @@ struct PrimitiveRange {
 };
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
 
-// What a geometry record is of.
+// The instance and the primitive of a geometry record.
 struct GeometryPlace {
     std::uint32_t instance = 0;  // index into SceneView::instances
     std::uint32_t mesh = 0;

@@ -33,8 +33,8 @@ Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const
     return uploader.copyToBuffer(bytesOf(records), target);
 }
 
-// Makes the hierarchy over lights and emissive triangles, in packages that have one, and the records of the
-// triangles, in packages that have those.
+// Makes the hierarchy over lights and emissive triangles, and the records of the triangles, in packages that
+// have them.
 Status uploadLightTree(GpuScene::State& state, const Package& package, const SceneView& scene,
                        Uploader& uploader, std::span<const gpu::LightRecord> lights, std::size_t geometries) {
     const std::vector<EmitterBounds> bounds = state.emitters.boundsAt(scene.instances);
@@ -224,7 +224,7 @@ BlasInput makeInput(const GpuScene::State& state, const PackageScene& known, con
     return input;
 }
 
-// Builds the bottom levels that stay as they are. createMotion() builds those that move.
+// Builds the BLASes that stay as they are. createMotion() builds those that move.
 Status buildBottomLevels(GpuScene::State& state, SceneUpload& upload, const PackageScene& known,
                          const SceneView& scene, const SceneLayout& layout, bool dataAccess,
                          std::vector<BlasInput>& refitted) {
@@ -269,7 +269,7 @@ Status buildTopLevel(GpuScene::State& state, SceneUpload& upload, const SceneVie
 // Queues the upload of a scene that is not edited.
 Status uploadStill(GpuScene::State& state, const Package& package, const PackageScene& known,
                    const SceneView& given, SceneUpload& upload) {
-    // Everything that is made of positions has those that the device reads.
+    // Everything that is made from positions uses those that the device reads.
     const std::vector<GridPositions> positions = packPositions(given.primitives, given.vertices);
     const std::vector<PrimitiveView> primitives = withPositions(given.primitives, positions);
     SceneView scene = given;

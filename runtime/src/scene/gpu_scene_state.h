@@ -26,7 +26,7 @@
 
 namespace glint {
 
-// Where a geometry record has its positions.
+// The place of a geometry record's positions.
 struct GeometryPositions {
     VkDeviceAddress positions = 0;
     std::uint32_t vertexCount = 0;  // of those that follow joints or morph weights; 0 for others
@@ -40,14 +40,14 @@ struct GpuScene::State {
     MemoryPool pool;
     std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
-    ScenePackage package;                    // that the scene is drawn with
+    ScenePackage package;                    // the package that draws the scene
     std::array<double, 3> origin{};          // SceneView::origin, or that of the last MotionView
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     std::vector<AccelerationStructure> blases;          // the BLASes that are built once
     std::vector<VkDeviceAddress> partBlases;            // indexed as SceneLayout::parts
-    // Null if the top level has its instances in the scene's own order.
+    // Null if the TLAS has its instances in the scene's own order.
     std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;
     Buffer geometries;
@@ -55,23 +55,23 @@ struct GpuScene::State {
     // One for each geometry record, for Renderer::readPlace(); empty in scenes that are edited.
     std::vector<GeometryPlace> places;
     std::vector<GeometryPositions>
-        geometryPositions;  // likewise, if some vertices follow joints or morph weights
+        geometryPositions;  // by record, if some vertices follow joints or morph weights
     Buffer instances;
     Buffer materials;
     Buffer lights;
     std::uint32_t lightCount = 0;
-    // In packages that choose lights by a hierarchy:
+    // The hierarchy of lights, in packages that choose lights by one.
     LightTree lightTree;
     Buffer lightNodes;
-    // In packages with emissive lights. The triangles of a scene that neither moves nor is edited are on the
-    // device alone.
+    // The emissive triangles, in packages with emissive lights. The triangles of a scene that neither moves
+    // nor is edited are on the device alone.
     Emitters emitters;
     std::uint32_t emitterCount = 0;
     Buffer emitterRecords;
     Buffer firstEmitters;
     std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
-    // How many of both the set's layout has; 0: as many as there are.
+    // The number of textures and samplers that the set's layout has; 0: as many as there are.
     std::uint32_t textureRoom = 0;
     std::uint32_t samplerRoom = 0;
     UniqueSetLayout setLayout;
@@ -85,8 +85,8 @@ struct GpuScene::State {
     MaterialTable materialLayout;  // without records
     Statistics statistics;
     std::unique_ptr<SceneMotion> motion;  // null if the scene does not move
-    // Null if the scene can't be edited. An editable scene has its primitives, BLASes and draws in the
-    // editor, and here what the renderer reads.
+    // Null if the scene can't be edited. The editor of an editable scene holds its primitives, BLASes and
+    // draws, and this state holds the data that the renderer reads.
     std::unique_ptr<SceneEditor> editor;
     std::unique_ptr<TextureStream> stream;  // null unless SceneView::streamsTextures
 };
@@ -100,14 +100,15 @@ inline std::uint32_t textureCapacity(const GpuScene::State& state) {
 // samplers.
 Status createSceneSet(GpuScene::State& state);
 
-// These are its parts. A set of its own pool, so that older ones can stay with the frames that use them:
+// The parts of set 0. Each set has a pool of its own, so that older sets can stay with the frames that use
+// them.
 struct SceneSet {
     UniqueDescriptorPool pool;
     VkDescriptorSet set = VK_NULL_HANDLE;
 };
 Status createSetLayout(GpuScene::State& state);
 
-// How many textures and samplers the arrays of set 0 have, and whether some of them may be absent.
+// The number of textures and samplers in the arrays of set 0, and whether some of them may be absent.
 struct SceneSetSize {
     std::uint32_t textures = 1;
     std::uint32_t samplers = 1;
@@ -115,7 +116,7 @@ struct SceneSetSize {
 };
 // Error "vulkan-call".
 Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const SceneSetSize& size);
-// `absent` is bound where a texture has no image, and where there is no texture at all.
+// `absent` is bound where a texture has no image or there is no texture.
 Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
                               VkImageView absent);
 

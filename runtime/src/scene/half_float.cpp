@@ -9,7 +9,7 @@ std::uint16_t toHalf(float value) {
     constexpr float kSmallestNormal = 0x1p-14F;
     if (value < kSmallestNormal) {
         // The result counts multiples of 2^-24. The count 1024 is the smallest normal number, and its bits
-        // are those of that number.
+        // are the same as those of the count.
         return static_cast<std::uint16_t>(std::nearbyint(value * 0x1p24F));
     }
     const auto bits = std::bit_cast<std::uint32_t>(value);

@@ -33,8 +33,8 @@ bool isInvertible(const Rows& objectToWorld) {
         }
         box *= length;
     }
-    // The ratio of both is the volume that the columns would span if their lengths were 1. It bounds what a
-    // shear adds to the inverse.
+    // The ratio of both is the volume that the columns would span if their lengths were 1. It bounds the
+    // effect of a shear on the inverse.
     return volume > 1e-12 * box;
 }
 

@@ -16,7 +16,8 @@ inline gpu::vec3 toVec3(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
 }
 
-// Whether the linear part has an inverse that floats can hold, that is, it is finite and not flattened.
+// Returns whether the linear part has an inverse that floats can hold, that is, it is finite and not
+// flattened.
 bool isInvertible(const Rows& objectToWorld);
 
 // Makes the matrices and flags of an instance. They are finite whenever objectToWorld is.

@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kInputVertexColor = 1U << 9;
 inline constexpr std::uint32_t kInputNormals = 1U << 10;
 inline constexpr std::uint32_t kInputTangents = 1U << 11;
 
-// What a device takes as images.
+// The images that a device accepts.
 struct ImageLimits {
     std::uint32_t maxSize = 0;  // texels of an axis
     TexelFormats formats;

@@ -1,4 +1,5 @@
-// What the upload of a scene needs until the device has completed it, and the compaction that follows.
+// The resources of a scene's upload that must stay until the device has completed it, and the compaction that
+// follows.
 #pragma once
 
 #include "context/timer.h"
@@ -17,8 +18,7 @@
 namespace glint {
 
 // --- Compaction ---
-// Bottom levels are built at their full size, and the size of a compacted copy is known when the device has
-// built them.
+// BLASes are built at their full size. The size of a compacted copy is known when the device has built them.
 
 // The place of a BLAS in a scene that is edited.
 struct PartOfMesh {
@@ -37,11 +37,11 @@ struct Compaction {
     std::uint32_t count = 0;
     std::vector<AccelerationStructure> replaced;
     std::vector<Buffer> kept;
-    // The top level of a scene that neither moves nor is edited, as it was built.
+    // The TLAS of a scene that neither moves nor is edited, as it was built.
     std::vector<VkAccelerationStructureInstanceKHR> placed;
     std::vector<PartOfMesh> parts;       // in a scene that is edited
     bool queued = false;                 // the editor has the copies
-    std::optional<std::uint64_t> frame;  // in which the copies were recorded
+    std::optional<std::uint64_t> frame;  // frame of the recorded copies
 };
 
 // These implement GpuScene::recordCompaction() and the part of GpuScene::complete() that is about it.
@@ -51,7 +51,7 @@ void completeCompaction(GpuScene::State& state, std::uint64_t frame);
 // --- The upload ---
 
 struct SceneUpload {
-    // `mostStaged` is that of Uploader::createDeferred().
+    // `mostStaged` is as in Uploader::createDeferred().
     SceneUpload(Context::State& contextState, VkDeviceSize mostStaged)
         : context(contextState),
           pool(contextState),
@@ -69,16 +69,16 @@ struct SceneUpload {
     static constexpr std::uint32_t kTlasStretch = 1;
 
     Context::State& context;
-    // It holds staging, scratch, and what acceleration structures are built from. Members are destroyed in
-    // reverse order: the pool's memory last.
+    // It holds staging, scratch, and the inputs of acceleration structures. Members are destroyed in reverse
+    // order: the pool's memory last.
     MemoryPool pool;
     std::vector<Buffer> kept;
     std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order
     std::unique_ptr<Deformer> deformer;  // of a scene that does not move and is not in its rest pose
     std::optional<Timer> timer;
-    std::uint32_t stretches = 0;             // that are recorded
+    std::uint32_t stretches = 0;             // recorded ones
     std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
-    std::uint64_t frame = 0;                 // that the commands belong to
+    std::uint64_t frame = 0;                 // frame of the commands
 };
 
 }  // namespace glint

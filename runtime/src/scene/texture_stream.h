@@ -1,4 +1,4 @@
-// What a TextureStream knows of the textures whose levels it brings.
+// The state of a TextureStream: the textures whose levels it brings.
 #pragma once
 
 #include "context/upload.h"
@@ -19,7 +19,7 @@ struct StreamedTexture {
     StoredImage image;
     std::uint32_t level = 0;   // the finest that is complete
     std::uint32_t row = 0;     // of the next finer one: the first row of blocks that is missing
-    std::uint32_t finest = 0;  // that may be brought
+    std::uint32_t finest = 0;  // the finest level that may be brought
 
     bool waits() const {
         return level > finest;
@@ -46,7 +46,7 @@ struct TextureStream::State {
 // rest.
 Result<DeviceImage> uploadStreamed(TextureStream::State& stream, Uploader& uploader, std::uint32_t texture,
                                    const ImageView& image, bool srgb);
-// Makes an image with the levels that are there, streamed if the scene streams.
+// Makes an image with the given levels, which is streamed if the scene streams.
 Result<DeviceImage> uploadSceneTexture(GpuScene::State& scene, Uploader& uploader, std::uint32_t texture,
                                        const ImageView& image, bool srgb);
 // Forgets a texture whose image is replaced or removed.

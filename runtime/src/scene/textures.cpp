@@ -80,7 +80,7 @@ VkFilter filter(std::uint32_t linear) {
 
 }  // namespace
 
-// A file that asks for nearest texels, or for no mips, gets those.
+// A file that requests nearest texels, or no mips, gets no anisotropic filter.
 float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry) {
     const bool isTrilinear = entry.minification != 0 && entry.mipmapped != 0 && entry.mip != 0;
     return isTrilinear ? context.limits.samplerAnisotropy : 1.0F;

@@ -14,7 +14,7 @@
 
 namespace glint {
 
-// The texture of a slot that names none. White leaves a factor unchanged.
+// The texture of a slot without a texture. White leaves a factor unchanged.
 inline constexpr std::uint8_t kWhiteTexel[] = {255, 255, 255, 255};
 
 // Texels in the format that the device stores.
@@ -41,7 +41,7 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
 // Returns the maximum anisotropy of that sampler.
 float anisotropyOf(const Context::State& context, const package::SamplerEntry& entry);
 
-// Error "scene-textures": there are more than a shader of this device can see.
+// Error "scene-textures": there are more textures than a shader of this device can see.
 Status checkTextureCount(const Context::State& context, std::size_t count);
 
 // Returns how many of those textures are narrowed from 16 bits to 8.

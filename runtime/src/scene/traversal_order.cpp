@@ -63,8 +63,8 @@ std::vector<std::uint32_t> orderSplit(const PrimitiveView& view, std::span<const
     return indicesOf(triangles);
 }
 
-// Returns the box around the vertices that the triangles use, because primitives may share an array of which
-// each uses a part.
+// Returns the box around the vertices that the triangles use, because primitives may share an array and use
+// different parts of it.
 Box boxOf(const PrimitiveView& view) {
     LeafBox box;
     for (const std::uint32_t corner : view.indices) {

@@ -19,21 +19,21 @@ namespace glint {
 // good tree themselves.
 LeafOrder leafOrderFor(const Context::State& context, TraversalOrder wanted);
 
-// Returns what one BLAS holds if triangles are ordered: one geometry. A driver that keeps the geometries of a
-// BLAS in sequence would mix parts of neighbours in its nodes. With one geometry each, instances can be
+// Returns the capacity of one BLAS if triangles are ordered: one geometry. A driver that keeps the geometries
+// of a BLAS in sequence would mix parts of neighbours in its nodes. With one geometry each, instances can be
 // ordered by their positions.
 BlasCapacity orderedCapacity(BlasCapacity capacity);
 
 // Returns the indices of each primitive in the order of its triangles; the corners of a triangle keep their
 // order. `capacity` is that of orderedCapacity(). A primitive above it is cut into pieces that are ordered
-// one by one. A primitive with a split has the indices `sorted`, of which each kind is ordered by itself.
-// Takes 56 bytes a triangle while a primitive is ordered, 12 of which stay.
+// one by one. In a primitive with a split, each kind of triangles in `sorted` is ordered by itself. Takes 56
+// bytes a triangle while a primitive is ordered, and keeps 12 of them.
 std::vector<std::vector<std::uint32_t>> orderedTriangles(
     std::span<const PrimitiveView> primitives, const BlasCapacity& capacity, LeafOrder order,
     std::span<const std::vector<std::uint32_t>> sorted = {},
     const std::map<std::uint32_t, OpacitySplit>& splits = {});
 
-// Knows the boxes of a top level's instances in any pose of the scene.
+// Knows the boxes of a TLAS's instances in any pose of the scene.
 class InstanceOrder {
 public:
     // Keeps no reference to its arguments. `primitives` are those of the scene.

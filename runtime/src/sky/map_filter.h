@@ -9,8 +9,8 @@
 namespace glint {
 
 // Limits of the map's width on the device. Each mip has half the size of the one before. The last one in use
-// is 32 texels wide or a little wider, which is what the lobe of roughness 1 needs. The smallest map still
-// has four such mips.
+// is 32 texels wide or a little wider, as the lobe of roughness 1 needs. The smallest map still has four such
+// mips.
 inline constexpr std::uint32_t kMinMapWidth = 256;
 inline constexpr std::uint32_t kMaxMapWidth = 2048;
 inline constexpr std::uint32_t kMinMapHeight = 128;

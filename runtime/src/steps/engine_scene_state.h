@@ -27,7 +27,7 @@ struct EngineScene::State {
     Buffer materials;
     Buffer lights;
     Buffer firstRecords;
-    // The same, or those of a GpuScene.
+    // The addresses of these buffers, or of those of a GpuScene.
     struct Addresses {
         VkDeviceAddress geometries = 0;
         VkDeviceAddress instances = 0;

@@ -220,7 +220,7 @@ void RaySteps::shade(VkCommandBuffer commands) {
     passes.beginLabel("glint shade");
     HitPasses(*state_, passes).shade();
     passes.endStretch(state_->whole);
-    // The counters go to host memory, and the answers to whatever the host does next.
+    // The counters go to host memory, and the answers to the host's next commands.
     passes.barrier(kAllToAll);
     const auto copy = [&](const Buffer& source, VkDeviceSize bytes, VkDeviceSize to) {
         const VkBufferCopy region{0, to, bytes};

@@ -59,7 +59,7 @@ float valueOnAxis(std::uint32_t code, const AxisGrid& grid) {
     return static_cast<float>(static_cast<double>(grid.least) + offset);
 }
 
-// Returns the exponent of the lowest bit that is set; 0 has none and takes any.
+// Returns the exponent of the lowest bit that is set. 0 has no such bit and fits any exponent.
 int lowestBit(float value) {
     if (value == 0.0F) {
         return std::numeric_limits<int>::max();
@@ -88,7 +88,7 @@ std::optional<AxisGrid> gridOfIntegers(std::span<const PrimitiveView> mesh, std:
     return std::nullopt;
 }
 
-// Tries the largest power of two of which all values are multiples.
+// Tries the largest power of two that divides all values.
 std::optional<AxisGrid> gridOfPowers(std::span<const PrimitiveView> mesh, std::size_t axis,
                                      const Bounds& bounds) {
     int lowest = std::numeric_limits<int>::max();

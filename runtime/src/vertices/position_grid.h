@@ -21,20 +21,20 @@ struct PositionGrid {
 
 // A primitive's positions in 16 bits.
 struct GridPositions {
-    // For the device: the bits of least and step, then three codes of 16 bits for each vertex. Empty if the
-    // positions stay as they are.
+    // For the device: the bits of least and step, then three codes of 16 bits for each vertex. It is empty if
+    // the positions are stored in full.
     std::vector<std::uint32_t> words;
-    // What the words mean, to the bit.
+    // The values that the words stand for, bit-exact.
     std::vector<std::array<float, 3>> values;
 };
 
-// Returns a grid on which every position lies, but for 2^-22 of the mesh's largest coordinate on an axis, as
-// rounded sums have it: coordinates that a file has as integers of 8 or 16 bits, and others that are
-// multiples of a power of two. None if there is no such grid.
+// Returns a grid on which every position lies, up to a rounding error of 2^-22 of the mesh's largest
+// coordinate on an axis: coordinates that a file has as integers of 8 or 16 bits, and others that are
+// multiples of a power of two. There is no value if no such grid exists.
 std::optional<PositionGrid> findGrid(std::span<const PrimitiveView> mesh);
 
 // Returns a grid over the box of the mesh, on which a coordinate moves by at most half a step: 1/131070 of
-// the box. An axis that findGrid() can keep is kept. None if a coordinate is not finite.
+// the box. An axis that findGrid() can keep is kept. There is no grid if a coordinate is not finite.
 std::optional<PositionGrid> coverByGrid(std::span<const PrimitiveView> mesh);
 
 GridPositions placeOnGrid(std::span<const std::array<float, 3>> positions, const PositionGrid& grid);
@@ -44,8 +44,8 @@ GridPositions placeOnGrid(std::span<const std::array<float, 3>> positions, const
 // mesh.
 std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives, VertexForm form);
 
-// Returns the primitives with the values of `positions`, which must outlive the result, in the place of those
-// that they have.
+// Returns the primitives with the values of `positions`, which must outlive the result, in place of their own
+// positions.
 std::vector<PrimitiveView> withPositions(std::span<const PrimitiveView> primitives,
                                          std::span<const GridPositions> positions);
 

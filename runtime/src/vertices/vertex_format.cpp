@@ -16,7 +16,7 @@ double dot(const Vector& a, const Vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// The same mapping as octahedralEncode() and octahedralDecode() of shaders/hit/geometry.glsl.
+// These are the mappings octahedralEncode() and octahedralDecode() of shaders/hit/geometry.glsl.
 std::array<double, 2> encode(const Vector& v) {
     const double sum = std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
     const double x = v[0] / sum;
@@ -59,7 +59,7 @@ Codes nearestCodes(const Vector& v, int mostX, int mostY) {
     return best;
 }
 
-// Returns the vector with length 1, or none if it is not nearly so long.
+// Returns the vector with length 1, or no value if its length is not close to 1.
 std::optional<Vector> unit(float x, float y, float z) {
     const Vector v{x, y, z};
     const double length = std::sqrt(dot(v, v));
@@ -73,7 +73,7 @@ std::uint32_t low16(int code) {
     return static_cast<std::uint32_t>(code) & 0xFFFFU;
 }
 
-// Whether a number is one of the steps of an integer of that size, as a file of integers has it.
+// Returns whether a number is one of the steps of an integer of that size, as in a file of integers.
 bool isStep(double value, double most) {
     const double steps = value * most;
     return std::abs(steps - std::round(steps)) <= 0.01;

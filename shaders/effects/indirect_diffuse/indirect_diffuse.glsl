@@ -10,7 +10,7 @@
 const uint kPairIndirect = 3u;
 const uint kPairIndirectSide = 4u;
 
-// How much a ray's cone grows in a metre. The rays of one pixel go everywhere, and their result is a mean. An eighth of
+// The growth of a ray's cone in a metre. The rays of one pixel go everywhere, and their result is a mean. An eighth of
 // a radian keeps out the finest texture levels, which would only make noise.
 const float kIndirectSpread = 0.125;
 

@@ -24,7 +24,7 @@ vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
 }
 
 #if GLINT_SHARED_LIGHTS
-// What the surface at hand sends.
+// The rays that the surface at hand sends.
 struct ReflectionRay {
     TracedLayers layers;
     float baseChance;  // that the ray is one of the base, if that is no mirror
@@ -53,7 +53,7 @@ EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLay
     vec3 l = chosen == kChosenBase ? reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u))
                                    : sampleTracedLayer(surface, features, chosen, u);
     if (chosen == kChosenBase ? l.z <= 0.0 : l == vec3(0.0)) {
-        // The facet sends the view to other facets. Energy compensation counts what becomes of that light.
+        // The facet sends the view to other facets. Energy compensation accounts for that light.
         return noSample(kRayBlack);
     }
     vec3 weight = vec3(0.0);
@@ -125,8 +125,8 @@ float glossyDensity(Surface surface, Features features, vec3 l) {
     return density;
 }
 
-// The density of the ray that was sent; 0 if it is a mirror's, or if its end may be found on the screen, where nobody
-// knows what part of the light is emission.
+// The density of the ray that was sent; 0 if it is a mirror's, or if its end may be found on the screen, where the
+// emission's part of the light is unknown.
 float densityReflection(Surface surface, Features features, vec3 l) {
     return reflectionRay.isMirror || GLINT_FRAME.screenSteps != 0u ? 0.0 : glossyDensity(surface, features, l);
 }

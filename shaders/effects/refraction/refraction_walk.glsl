@@ -53,8 +53,8 @@ const uint kReflects = 1u;
 const uint kStops = 2u;     // the surface is shaded like any other
 const uint kAbsorbs = 3u;
 
-// The share of a facet's reflection that no other facets block. If energy is compensated, what they block leaves in the
-// end, too. At a thin wall both lobes then grow in proportion and keep their shape (Turquin, "Practical multiple
+// The share of a facet's reflection that no other facets block. With energy compensation, the blocked light leaves in
+// the end, too. At a thin wall both lobes then grow in proportion and keep their shape (Turquin, "Practical multiple
 // scattering compensation for microfacet models", 2019). The albedo of a lobe that bends is not known; there a facet's
 // whole light leaves along its own direction, mirrored at the plane if it points below.
 float shareBehindFacets(Bsdf b, bool thin, vec3 l) {
@@ -134,7 +134,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
                      : 0.0;
     }
     if (GLINT_ENERGY_COMPENSATION != 0 && thin) {
-        // At the first interface, the effect reflection and the sky have added all that is reflected. Where nothing
+        // At the first interface, the effect reflection and the sky have added all reflected light. Where nothing
         // passes, both are 0; the bound keeps their quotient finite.
         passed *= first ? diffusePassed(surface) / max(passedOnce(b), 1e-6) : 1.0 / (1.0 - b.viewLoss);
     } else if (GLINT_ENERGY_COMPENSATION != 0) {
@@ -147,8 +147,8 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
 }
 
 #if GLINT_SIZED_LIGHTS
-// The light of lights with a size that the ray meets before the distance at which it ends, as the viewer sees it. No
-// samples of lights bring light to the surfaces of a walk.
+// The light of area lights that the ray meets before the distance at which it ends, as the viewer sees it. No samples
+// of lights bring light to the surfaces of a walk.
 vec3 lightsOnWay(Walker walker, float end) {
     vec3 sum = vec3(0.0);
     LightSearch lights = lightsOnRay(walker.origin, walker.direction, end, true);
@@ -286,7 +286,7 @@ uint walk(uvec2 pixel, uint target) {
     GLINT_FRAME.rayHits.data[samplePlace(target)].distance = max(way - travelled, 0.0);
 #endif
 #if GLINT_PATHS
-    // What the ray meets is in these volumes, and sends its next ray there.
+    // The next surface of the ray is in these volumes, and sends its next ray there.
     GLINT_FRAME.paths.data[samplePlace(target)].media = uint[2](walker.media.x, walker.media.y);
 #endif
     return segments;

@@ -34,7 +34,7 @@ void reportShadows(ShadowCounts counts) {
     }
 }
 
-// The points of a light that a sample takes: one of a light without a size.
+// The points of a light that a sample takes: one, unless it is an area light.
 uint lightPointCount(HostLight light) {
     return hostLightHasSize(light) ? GLINT_FRAME.shadowSamples : 1u;
 }

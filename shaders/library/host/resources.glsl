@@ -1,4 +1,4 @@
-// The library has no resources. It asks the shader that includes it.
+// The library has no resources. It calls functions of the shader that includes it.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_scalar_block_layout : require

@@ -45,7 +45,7 @@ float clearcoatLobe(vec3 n, float nDotL, float nDotV, vec3 v, vec3 l, float alph
            (nDotL * clearcoatProjection(nDotV, alpha) + nDotV * clearcoatProjection(nDotL, alpha));
 }
 
-// The factor of the lobe by which the coat reflects its Fresnel reflectance, and no less where it is rough: what its
+// The factor of the lobe by which the coat reflects its Fresnel reflectance, and no less if it is rough: light that its
 // facets scatter more than once leaves in proportion to the rest (Turquin 2019). 1 without energy compensation.
 float clearcoatGain(float alpha, float nDotV) {
     return GLINT_ENERGY_COMPENSATION != 0 ? 1.0 / (1.0 - ggxLoss(nDotV, alpha)) : 1.0;
@@ -73,7 +73,7 @@ LayerMirror clearcoatMirror(Clearcoat layer) {
 }
 
 // The coat covers the hemisphere about its normal, whatever the normal of the base is. If it turns away from the
-// viewer, it covers only what is above the base, too.
+// viewer, it covers only directions that are also above the base.
 LayerLight clearcoatEvaluate(Clearcoat layer, vec3 view, vec3 l) {
     float nDotL = accurateDot(layer.normal, l);
     float nDotV = clearcoatViewCosine(layer, view);

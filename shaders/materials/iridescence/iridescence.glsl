@@ -37,13 +37,13 @@ vec3 iridescentFresnel(float cosine, vec3 baseF0, float filmIor, float thickness
     }
     float cosineInFilm = sqrt(max(sum.x + (sum.y + square.y), 0.0)) / ior;
 
-    // From air to film. A reflection off the denser side turns the phase by half a cycle.
+    // This is the interface from air to film. A reflection off the denser side turns the phase by half a cycle.
     float root12 = excess / (2.0 + excess);
     float r12 = mix(root12 * root12, 1.0, schlickWeight(cosine));
     float t121 = 1.0 - r12;
     float turn21 = excess < 0.0 ? 0.0 : 0.5;
 
-    // From film to base. An F0 of 1 has no finite index; 0.9999 corresponds to one of 4e4.
+    // This is the interface from film to base. An F0 of 1 has no finite index; 0.9999 corresponds to one of 4e4.
     vec3 root = sqrt(clamp(baseF0, vec3(0.0), vec3(0.9999)));
     vec3 baseExcess = 2.0 * root / (vec3(1.0) - root);
     vec3 ratio = (baseExcess - vec3(excess)) / (baseExcess + vec3(2.0 + excess));

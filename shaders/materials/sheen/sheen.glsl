@@ -20,7 +20,7 @@ float sheenLambdaFit(float x, float alpha) {
 }
 
 float sheenLambda(float cosine, float alpha) {
-    // The cosine of a unit vector may be rounded to more than 1, and no number has a power of less than 0.
+    // The cosine of a unit vector may be rounded to more than 1, and powers of numbers below 0 are undefined.
     return exp(cosine < 0.5 ? sheenLambdaFit(cosine, alpha)
                             : 2.0 * sheenLambdaFit(0.5, alpha) - sheenLambdaFit(max(1.0 - cosine, 0.0), alpha));
 }

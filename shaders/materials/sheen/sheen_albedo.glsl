@@ -1,6 +1,6 @@
 // The directional albedo of the sheen lobe in closed form. Constants and bounds come from
 // benchmarks/fit_directional_albedo.py, which checks them in single precision against quadrature. The fit errs on the
-// high side, so that what the base has adds no light.
+// high side, so that the base's share adds no light.
 #include "bsdf/constants.glsl"
 
 // 0.07². Below alpha = 0.068 the lobe of KHR_materials_sheen reflects more than it receives near grazing, up to 2.94
@@ -44,7 +44,7 @@ float sheenAlbedo(float nDotV, float alpha) {
     float x = clamp(nDotV, kMinViewCosine, 1.0);
     float a2 = alpha * alpha;
     float r = sqrt(alpha);
-    // What masks the view is that of the lobe. The fractions are what the light's masking and the azimuths leave.
+    // The masking of the view is the lobe's own. The fractions stand for the light's masking and the azimuths.
     float lit = r * (0.6068648 + 0.02986767 * alpha * r) +
                 x * (-0.08529104 + r * (1.026365 + 0.3330232 * r) + 2.570138 * a2 +
                      x * (0.1037437 * x * x - 1.681584 * r - 1.203383 * a2));

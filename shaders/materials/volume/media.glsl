@@ -31,7 +31,7 @@ uint placeOf(Media media, uint material) {
     return kMostMedia;
 }
 
-// A ray that is in four volumes stays in those.
+// A ray that is in four volumes stays in those four.
 Media enterMedium(Media media, uint material) {
     bool fits = mediumAt(media, kMostMedia - 1u) == 0u && material <= kLastMediumMaterial;
     return fits ? uvec2(media.x << 16u | (material + 1u), media.y << 16u | media.x >> 16u) : media;

@@ -14,7 +14,7 @@ vec3 mediumIors(Hit hit, Features features) {
     return vec3(ior);
 }
 
-// The same for the number of a medium; 1 for none.
+// Returns the same for the number of a medium; 1 for none.
 vec3 iorsOfMedium(uint number) {
     if (number == 0u) {
         return vec3(1.0);

@@ -1,4 +1,4 @@
-// KHR_materials_volume: the index on the far side, and what the volume absorbs.
+// KHR_materials_volume: the index on the far side, and the absorption of the volume.
 #include "hit/surface_values.glsl"
 #include "materials/volume/attenuation.glsl"
 #include "materials/volume/nesting.glsl"
@@ -12,7 +12,7 @@ void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Su
     surface.bsdf.eta = inside ? vec3(1.0) / iors : iors;
 #endif
     if (inside) {
-        // From within, more is reflected than the albedos of the outside say, so the diffuse lobe is removed.
+        // From within, more light is reflected than by the outside's albedos, so the diffuse lobe is removed.
         surface.bsdf.diffuse = vec3(0.0);
         surface.bsdf.diffuseTransmitted = vec3(0.0);
     }

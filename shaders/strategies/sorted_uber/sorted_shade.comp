@@ -43,7 +43,7 @@ void main() {
     }
     // The first hit of a workgroup gives the case of all its hits.
 #if GLINT_HITS_IN_SAMPLES
-    // It may already have its light in the place of the hit, so this reads its bucket.
+    // The first hit's light may already be in the place of the hit, so this reads its bucket.
     uint shaderId = storedKey(GLINT_FRAME.orderedHits.data[firstSlot()]) - 1u;
 #else
     uint first = storedGeometry(GLINT_FRAME.orderedHits.data[firstSlot()]);

@@ -16,7 +16,7 @@ namespace glint::measure {
 
 namespace {
 
-// What is known of a check besides its result.
+// The description of a check.
 struct CheckInfo {
     MaterialCheck check;
     const char* name;

@@ -15,13 +15,13 @@ namespace glint::measure {
 
 namespace {
 
-// What may be beyond a range for reasons of rounding.
+// The tolerances for values outside of their range, for rounding.
 constexpr double kShareTolerance = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
 // Differences between f(v, l) and f(l, v), as a share of the larger. Near the peak of the sharpest lobes,
 // alpha 1e-4, a unit vector of single precision decides about the value to 1e-3.
 constexpr double kReciprocityLimit = 1e-2;
-// The part of a lobe that counts as nothing when both are compared.
+// The part of a lobe that is ignored when both are compared.
 constexpr double kReciprocityFloor = 1e-4;
 constexpr double kDensityLimit = 3e-3;
 constexpr double kSignificanceLimit = 1e-6;
@@ -48,7 +48,7 @@ double smallestOf(const float (&v)[3]) {
     return std::min({v[0], v[1], v[2]});
 }
 
-// How far a result is from what it may be, and in which words; 0 and none if it is right.
+// The distance of a result from its permitted range, with a message; 0 and no message if it is right.
 struct Fault {
     double distance = 0.0;
     const char* what = "";
@@ -98,7 +98,7 @@ std::vector<Direction> adverseViews() {
     return views;
 }
 
-// Lights that formulas may not like, for a view in the frame of the surface.
+// Lights that are difficult for formulas, for a view in the frame of the surface.
 std::vector<Direction> adverseLights(const Direction& view) {
     std::vector<Direction> lights{{0, 0, 1},
                                   {0, 0, -1},
@@ -121,7 +121,7 @@ std::vector<Direction> adverseLights(const Direction& view) {
     return lights;
 }
 
-// The ends of the numbers that samples are made of, and some between.
+// The ends of the numbers that samples are made of, and some numbers between them.
 std::array<float, 3> adverseRandom(std::size_t index) {
     constexpr float kLast = 0.99999994F;
     switch (index % 5) {
@@ -185,7 +185,7 @@ struct SeenMaterial {
     Direction surfaceView{};  // in the frame of the surface
 };
 
-// Every combination from two views: one from aside, and one that changes from straight above to grazing.
+// Every combination from two views: one from the side, and one that changes from normal to grazing incidence.
 Result<std::vector<SeenMaterial>> seenMaterials(const FeatureOnDevice& on) {
     const std::vector<Direction> views{tiltedDirection(0.6, 0.4), tiltedDirection(0.0, 0.0),
                                        tiltedDirection(1.2, 2.0), tiltedDirection(1.52, 4.0)};
@@ -217,7 +217,7 @@ Result<std::vector<std::vector<Direction>>> sampleAll(const FeatureOnDevice& on,
     for (std::size_t i = 0; i < outputs.size(); ++i) {
         const Direction direction = toDirection(outputs[i].sampled);
         const double length = std::hypot(direction[0], direction[1], direction[2]);
-        // What is no direction fails the check of ranges.
+        // A sample without a direction fails the check of ranges.
         samples[i / on.samples].push_back(length > 0.5 && length < 2.0 ? direction : Direction{});
     }
     return samples;
@@ -238,7 +238,7 @@ double largestOf(const std::array<double, 3>& v) {
     return std::max({v[0], v[1], v[2]});
 }
 
-// The light that each base alone reflects for a view; above 1 only by the errors of its tables.
+// The light that each base alone reflects for a view; it exceeds 1 only by the errors of its tables.
 Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::vector<SeenMaterial>& seen) {
     std::vector<CheckedMaterial> bases(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -277,7 +277,7 @@ CheckOutcome outcomeOf(MaterialCheck check, double limit) {
     return outcome;
 }
 
-// What one combination and view says about each of the checks.
+// Judges one combination and view by each of the checks.
 void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKernelOutput& shares,
                     double baseEnergy, std::uint32_t samples, const CheckPlace& place, bool isLayer,
                     IntegralOutcomes& outcomes) {
@@ -285,7 +285,7 @@ void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKerne
     if (isLayer) {
         const double total = integrals.density + integrals.lost;
         const double noise = 4.0 * std::sqrt(integrals.lost * (1.0 - integrals.lost) / samples);
-        // What noise and the quadrature's own error explain is no fault.
+        // A distance that noise and the quadrature's own error explain is no fault.
         const double distance = std::max(std::abs(total - 1.0) - noise - integrals.densityError, 0.0);
         isNormalised = distance <= kDensityLimit;
         keepWorst(outcomes.density, distance, distance > outcomes.density.worst, !isNormalised,
@@ -338,7 +338,7 @@ std::array<double, 3> randomNumbers(std::uint64_t index, std::uint32_t stream) {
         std::uint64_t z = state;
         z = (z ^ z >> 30U) * 0xbf58476d1ce4e5b9ULL;
         z = (z ^ z >> 27U) * 0x94d049bb133111ebULL;
-        // As many bits as a float below 1 keeps.
+        // The number has as many bits as a float below 1 keeps.
         number = std::ldexp(static_cast<double>((z ^ z >> 31U) >> 40U), -24);
     }
     return numbers;
@@ -405,7 +405,7 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
     FeatureOnDevice few = on;
     few.samples = kPairs / 2;
     GLINT_TRY(const auto samples, sampleAll(few, seen));
-    // Half of the lights are where the lobe is, the others anywhere above the surface.
+    // Half of the lights follow the lobe; the others are anywhere above the surface.
     std::vector<compiler::FeatureKernelInput> inputs;
     for (std::size_t i = 0; i < seen.size(); ++i) {
         for (std::size_t k = 0; k < kPairs; ++k) {

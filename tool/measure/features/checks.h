@@ -21,11 +21,11 @@ struct FeatureOnDevice {
     std::uint32_t samples = 0;  // directions for each combination and view
 };
 
-// Checks that what all functions return is finite and within its range, for directions and numbers at the
-// ends of what they may be given. Errors here and below are those of FeatureEvaluator::run().
+// Checks that all results of functions are finite and within their ranges, for directions and numbers at the
+// ends of the permitted ones. Errors here and below are those of FeatureEvaluator::run().
 Result<CheckOutcome> checkRanges(const FeatureOnDevice& on);
 
-// Checks that layers which claim it give the same for view and light in each other's place.
+// Checks reciprocity: that layers which claim it give the same value if view and light are exchanged.
 Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on);
 
 // Density, samples, energy and albedo, from integrals over all directions.

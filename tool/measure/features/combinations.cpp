@@ -51,7 +51,7 @@ std::vector<Choice> choicesOf(const std::vector<std::vector<float>>& values, std
     return choices;
 }
 
-// What one feature's combinations are made of.
+// The parts of one feature's combinations.
 struct Ingredients {
     std::vector<const materials::Parameter*> parameters;
     std::vector<std::vector<float>> values;
@@ -141,7 +141,7 @@ std::uint32_t addSquare(gltf::Scene& scene, const materials::Material& material)
     return static_cast<std::uint32_t>(number);
 }
 
-// Whether the square's key has the feature.
+// Returns whether the square's key has the feature.
 bool hasFeature(const materials::Material& material, int feature) {
     materials::PrimitiveInputs inputs;
     inputs.hasNormals = true;
@@ -198,7 +198,7 @@ std::vector<CheckedMaterial> addCombinations(const materials::MaterialModel& mod
             continue;
         }
         // Bases take turns. Textures are there in every second pair. Where the feature would change nothing,
-        // the others are tried.
+        // the other bases are tried.
         const int bases = static_cast<int>(std::size(kCheckedBases));
         const int firstBase = static_cast<int>(made.size()) % bases;
         const bool firstTextured = !ingredients.textures.empty() && made.size() / 2 % 2 == 1;

@@ -13,7 +13,7 @@
 
 namespace glint::measure {
 
-// What a feature is checked on.
+// The material on which a feature is checked.
 struct CheckedMaterial {
     std::uint32_t geometry = 0;  // number of its square, and of its material
     int base = 0;                // index into kCheckedBases
@@ -25,7 +25,7 @@ struct CheckedFeature {
     std::vector<CheckedMaterial> materials;
 };
 
-// The materials below the features. Their colour is white, so that light that is made shows.
+// The materials below the features. Their colour is white, so that a gain of energy is visible.
 struct CheckedBase {
     const char* name;
     float metallic;

@@ -20,8 +20,8 @@ namespace glint::measure {
 
 class FeatureEvaluator {
 public:
-    // Compiles the scene as pictures of it would be, and the kernel. Reports what the device is. Has the
-    // errors of compilePackage(), Context::createHeadless() and GpuScene::upload().
+    // Compiles the scene as pictures of it would be, and the kernel. Reports the device. Has the errors of
+    // compilePackage(), Context::createHeadless() and GpuScene::upload().
     static Result<std::unique_ptr<FeatureEvaluator>> create(const gltf::Scene& scene,
                                                             const CheckMaterialsOptions& options,
                                                             const Observer& observer);

@@ -30,7 +30,7 @@ inline constexpr std::uint32_t kDeepestLevel = 17;
 
 // The place of a direction: the cell of kDeepestLevel that has it.
 HemisphereCell cellOf(const Direction& direction);
-// Whether `cell` is `outer` or within it.
+// Returns whether `cell` is `outer` or within it.
 bool liesWithin(const HemisphereCell& cell, const HemisphereCell& outer);
 
 }  // namespace glint::measure

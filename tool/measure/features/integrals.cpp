@@ -10,7 +10,7 @@ namespace {
 
 // Cells start at this level, which has 32 squares on the sphere.
 constexpr std::uint32_t kFirstLevel = 2;
-// A square is split until that changes its integral by less than this.
+// A square is split until a split changes its integral by less than this.
 constexpr double kSplitChange = 1e-5;
 // The most directions at which one lobe is evaluated, unless its first squares already need more.
 constexpr std::uint64_t kMostEvaluations = 100000;
@@ -159,7 +159,7 @@ private:
         const double density = std::abs(sum.density - square.integral.density);
         const double whole = std::max(largestDifference(sum.whole, square.integral.whole),
                                       largestDifference(sum.reflected, square.integral.reflected));
-        // Nodes may have missed a lobe that samples know.
+        // Nodes may have missed a lobe that samples find.
         const auto samples = static_cast<double>(square.samples.size());
         const double expected = sum.density * static_cast<double>(samples_[square.lobe].size());
         const bool missed = samples > 8.0 && samples > 3.0 * expected;

@@ -1,5 +1,5 @@
 // Integrates lobes over all directions by squares that are split where a lobe is sharp, and compares samples
-// with the squares' shares. It knows nothing of a lobe but its values and its samples.
+// with the squares' shares. It uses only a lobe's values and samples.
 #pragma once
 
 #include "measure/features/hemispheres.h"
@@ -33,11 +33,11 @@ struct LobeIntegrals {
     double density = 0.0;
     std::array<double, 3> reflected{};
     std::array<double, 3> whole{};
-    // What the last splits changed, summed: an upper estimate of the errors.
+    // The sum of the changes by the last splits: an upper estimate of the errors.
     double densityError = 0.0;
     double wholeError = 0.0;
     double lost = 0.0;  // share of the samples that have no direction
-    // The probability that samples which follow the density are at least as far from it as these are.
+    // The probability of a deviation at least as large as this one, if samples follow the density.
     double significance = 1.0;
     std::uint64_t evaluations = 0;
 };

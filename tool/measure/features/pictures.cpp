@@ -1,4 +1,4 @@
-// Pictures of what a feature does, for people.
+// Pictures of a feature's lobe, for people.
 #include "measure/features/checks.h"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kDiscSide = 128;
 constexpr std::uint32_t kSphereSide = 96;
 constexpr std::uint32_t kSphereSamples = 64;
-// How a white furnace looks: light that is made is brighter than the background.
+// The grey of a white furnace: a gain of energy is brighter than the background.
 constexpr float kFurnaceGrey = 0.5F;
 // Above this, where noise can't be the reason, pixels of the sphere are red.
 constexpr double kMadeLight = 1.02;
@@ -51,8 +51,8 @@ std::vector<DiscPlace> discPlaces(std::uint32_t side, std::uint32_t left, std::u
     return places;
 }
 
-// What the lobe reflects in each direction above the surface, seen from straight above the surface, in a map
-// that keeps areas. The views lie to the right of the centre. The brightest hundredth of the directions is
+// Paints the lobe's reflection in each direction above the surface, seen from straight above the surface, in
+// an equal-area map. The views lie to the right of the centre. The brightest hundredth of the directions is
 // white.
 Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
     constexpr double kViews[] = {0.1, 0.7, 1.3};
@@ -77,7 +77,7 @@ Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
     const float white = std::max(brightness[brightness.size() * 99 / 100], 1e-6F);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            // Zero stays apart from the background.
+            // Zero stays distinguishable from the background.
             image.pixels[pixels[i]][channel] = 0.03F + 0.75F * outputs[i].reflected[channel] / white;
         }
     }

@@ -1,6 +1,6 @@
-// Shows which part of the default's error is which approximation.
+// Shows how the default's error is divided among its approximations.
 
-// A bar from the middle for what grows the error, and to the right for what takes it away.
+// A bar from the middle for settings that grow the error, and to the right for settings that reduce it.
 function shareBar(share) {
     const size = Math.min(1, Math.abs(share)) * 100;
     return html("span", {class: "share-bar", "aria-hidden": "true"},

@@ -1,4 +1,4 @@
-// The controls for what the chart shows: the measure of error, and which points.
+// The controls of the chart: the measure of error, and the points that are shown.
 
 function showFilters() {
     const available = (metric) => points.some((point) => errorOf(point, metric));

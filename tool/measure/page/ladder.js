@@ -43,7 +43,8 @@ function chosenSetting() {
 function fillLines() {
     const lines = laddersOf(chosenSetting());
     const select = byId("ladder-line");
-    // Pictures are of the most exact line unless the user asks for another: it shows most of what a value does.
+    // Pictures are of the most exact line unless the user asks for another: the effect of a value shows best
+    // there.
     const best = lines.reduce((least, line, i) => (leastError(line) < leastError(lines[least]) ? i : least), 0);
     select.replaceChildren(...lines.map(({name}, i) => html("option", {value: i}, name)));
     select.value = String(best);
@@ -76,7 +77,7 @@ function drawLadder() {
         legendEntry(name, svg("path", {d: "M-9,0H9", stroke: LADDER_COLORS[i], "stroke-width": 3}))));
 }
 
-// Draws what `of` gives of each step against the values, which are evenly spread.
+// Draws the result of `of` for each step against the values, which are evenly spread.
 function ladderChart(width, values, lines, of, log, name, setting) {
     const height = 260;
     const onAxis = (value) => isNumber(value) && (!log || value > 0);

@@ -1,4 +1,4 @@
-// What the user chose. Each part of the page listens to the values that it shows.
+// The choices of the user. Each part of the page listens to the values that it shows.
 
 const state = {
     metric: ownMetric().key,

@@ -1,4 +1,4 @@
-// The heading: it says in sentences what was measured and with which result.
+// The heading: sentences that name the measured scene and the result.
 
 function showHeading() {
     const scene = report.scene ?? {};

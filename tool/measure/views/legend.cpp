@@ -72,7 +72,7 @@ struct LegendEntry {
     std::uint64_t pixels = 0;
 };
 
-// Those that are many alike are one entry.
+// All categories with isOneOfMany become one entry.
 std::vector<LegendEntry> entriesOf(const View& view) {
     std::vector<LegendEntry> entries;
     LegendEntry many;
@@ -173,7 +173,7 @@ private:
                            shortNumber(statistics.greatest));
     }
 
-    // As many as have room for the longest of the names that are shown, but at least one.
+    // Returns as many columns as have room for the longest of the shown names, at least one.
     std::size_t columnsOfCategories() const {
         std::uint32_t widest = kEntryWidth;
         for (std::size_t i = 0; i < std::min(entries_.size(), kMostRows); ++i) {

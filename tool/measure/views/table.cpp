@@ -1,4 +1,4 @@
-// The table of views, and what each makes of the layers.
+// The table of views, and the function by which each shows its layers.
 #include "image/palette.h"
 #include "plan/cost.h"
 
@@ -174,7 +174,7 @@ void showNonFinite(const ViewInput& input, ViewValues& values) {
     }
 }
 
-// A count over all samples, as that of one.
+// Shows a count over all samples as the count of one sample.
 void showCount(const char* layer, const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
     const std::vector<std::uint32_t>& counts = integersOf(input, layer);
@@ -210,7 +210,7 @@ void showDistance(const ViewInput& input, ViewValues& values) {
     }
 }
 
-// Marks the pixels whose ray has no hit with a shader. Returns whether it is one.
+// Marks the pixels whose ray has no hit with a shader. Returns whether the pixel is such a one.
 bool markUnhit(Filler& filler, std::size_t pixel, std::uint32_t shader) {
     switch (shader) {
         case package::kNoRay:
@@ -321,7 +321,7 @@ double weightOfFeatures(materials::FeatureMask always, materials::FeatureMask so
     return code.instructions + compiler::kFetchCost * code.fetches;
 }
 
-// What the model says of shading a pixel: of its surface by its material's key, and of the hits of all
+// Shows the model's cost of shading a pixel: of its surface by its material's key, and of the hits of all
 // effects by their cases.
 void showCost(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kViewBins = 16;
 
-// Where a number is on the scale, from 0 to 1.
+// Returns the place of a number on the scale, from 0 to 1.
 double shareOf(double value, ViewScale scale, const std::array<double, 2>& ends) {
     const auto place = [scale](double number) {
         return scale == ViewScale::Logarithmic ? std::log(std::max(number, 1e-300)) : number;
@@ -99,7 +99,7 @@ Diagnostic missingLayer(const ViewChoice& choice, std::string_view layer) {
         fmt::format("compile the package with --layers {}", layer));
 }
 
-// The effect that the view is about: the one that is named, or the first with rays.
+// Returns the effect that the view is about: the named one, or the first with rays.
 Result<package::Effect> effectOf(const ViewChoice& choice, const Package& package) {
     std::vector<std::string_view> known;
     for (const package::EffectInfo& effect : package.effects()) {

@@ -180,7 +180,7 @@ bool Clearing::renameMembers() {
                 return false;
             }
             if (instruction.opcode == spv::OpArrayLength) {
-                // It is of a buffer, which keeps all members.
+                // The member belongs to a buffer, which keeps all members.
                 continue;
             }
             bool done = true;

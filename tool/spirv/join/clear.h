@@ -1,4 +1,4 @@
-// Removes what the parts of a shader declared and the joined shader does not read.
+// Removes declarations of a shader's parts that the joined shader does not read.
 #pragma once
 
 #include "spirv/join/parsed_module.h"

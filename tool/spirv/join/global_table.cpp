@@ -72,11 +72,11 @@ std::optional<std::uint32_t> decorationOf(const ParsedModule& module, std::uint3
 
 }  // namespace
 
-// What is known while a module is added.
+// The state while a module is added.
 struct GlobalTable::Added {
     std::vector<std::uint32_t> ids;
     std::vector<const ParsedInstruction*> definitions;           // by the module's ID
-    std::unordered_map<Words, std::uint32_t, HashWords> counts;  // how often a key has come
+    std::unordered_map<Words, std::uint32_t, HashWords> counts;  // occurrences of each key so far
 };
 
 void appendMapped(const ParsedModule& module, const ParsedInstruction& instruction,
@@ -91,7 +91,8 @@ std::size_t GlobalTable::HashWords::operator()(const Words& words) const {
         {reinterpret_cast<const std::uint8_t*>(words.data()), words.size() * sizeof(std::uint32_t)}));
 }
 
-// Describes all that a pointer leads to. Types that lead back to themselves are named by when they came.
+// Describes everything that a pointer leads to. Types that lead back to themselves are named by their order
+// of appearance.
 GlobalTable::Words GlobalTable::describePointer(const ParsedModule& module, const Added& added,
                                                 std::uint32_t id) {
     std::map<std::uint32_t, std::uint32_t> seen;
@@ -102,7 +103,7 @@ GlobalTable::Words GlobalTable::describePointer(const ParsedModule& module, cons
         if (!isNew || added.definitions[next] == nullptr) {
             return;
         }
-        // What is described has as many words as the first of them says, and then its annotations.
+        // A description starts with as many words as its first word tells. Its annotations follow.
         const ParsedInstruction& global = *added.definitions[next];
         for (std::size_t i = global.at; i < global.at + global.length; ++i) {
             if (!module.isId[i]) {

@@ -15,8 +15,8 @@
 namespace glint::compiler {
 
 // Two globals are the same if their words are, with IDs replaced by those of the table, and their
-// decorations; structures and variables must also have the same names. A module that has several such globals
-// keeps them apart: the first of one module is the first of another.
+// decorations; structures and variables must also have the same names. If a module has several equal globals,
+// they stay apart: the first of one module is the first of another.
 class GlobalTable {
 public:
     using Words = std::vector<std::uint32_t>;
@@ -24,12 +24,12 @@ public:
         std::size_t operator()(const Words& words) const;
     };
 
-    // `keepNames` writes the names of what is added.
+    // `keepNames` writes the names of added globals.
     explicit GlobalTable(bool keepNames) : keepNames_(keepNames) {}
 
-    // Adds the globals of a module but for its settings (capabilities to entry points). Returns the table's
-    // ID for each of the module's, 0 for those that are no globals. Error "spirv-join" if the module declares
-    // a resource in another way than a module before it: other types or decorations of the same binding and
+    // Adds the globals of a module except its settings (capabilities to entry points). Returns the table's ID
+    // for each of the module's, 0 for those that are no globals. Error "spirv-join" if the module declares a
+    // resource in another way than an earlier module: other types or decorations of the same binding and
     // name, or of the same built-in variable, or a second block of push constants.
     Result<std::vector<std::uint32_t>> add(const ParsedModule& module, const std::string& shader);
 

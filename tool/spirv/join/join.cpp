@@ -33,8 +33,8 @@ struct NumberedFunction {
     JoinedWords words;
     std::vector<std::uint32_t> ids;       // by number
     JoinedWords annotations;              // decorations of those IDs
-    std::vector<std::size_t> ownWords;    // which of `words` have kOwnId
-    std::vector<std::size_t> ownTargets;  // which of `annotations`
+    std::vector<std::size_t> ownWords;    // indices of `words` with kOwnId
+    std::vector<std::size_t> ownTargets;  // indices of such `annotations`
 };
 
 class Joiner {
@@ -74,7 +74,7 @@ private:
     JoinedWords extensions_;
     JoinedWords memoryModel_;
     std::set<JoinedWords> settings_;  // capabilities and extensions that were added
-    JoinedWords decorations_;         // of what functions define
+    JoinedWords decorations_;         // of the functions' definitions
     JoinedWords names_;
     std::unordered_map<JoinedWords, std::uint32_t, GlobalTable::HashWords> functions_;
     struct Export {
@@ -250,7 +250,8 @@ JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const 
         if (global.opcode == spv::OpEntryPoint) {
             const std::size_t begin = entry.size();
             appendMapped(module, global, first.ids, entry);
-            // Since SPIR-V 1.4 an entry point names every variable that it or what it calls uses.
+            // Since SPIR-V 1.4 an entry point names every variable that it, or a function that it calls,
+            // uses.
             std::set<std::uint32_t> named;
             for (std::size_t i = 0; i < global.length; ++i) {
                 if (module.isId[global.at + i]) {
@@ -267,7 +268,7 @@ JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const 
         } else if (global.opcode == spv::OpExecutionMode || global.opcode == spv::OpExecutionModeId) {
             appendMapped(module, global, first.ids, modes);
         } else if (keepNames_ && global.opcode == spv::OpSource) {
-            // Without the file, which would need an OpString.
+            // The file is left out, because it would need an OpString.
             append(source, JoinedWords{3U << spv::WordCountShift | spv::OpSource, module.words[global.at + 1],
                                        module.words[global.at + 2]});
         }

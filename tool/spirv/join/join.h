@@ -10,11 +10,11 @@
 
 namespace glint::compiler {
 
-// Makes a shader of modules as makeLinkable() makes them, whose names were kept. The first has the entry
-// point and imports functions that the others export. The result has each type, constant, resource and
-// function once: two functions are the same if their instructions and decorations are. Equal modules give
-// equal words. `keepNames` keeps the names in the result. Errors: "spirv-join" if a function is missing or
-// has another type, if modules declare a resource differently, or if a module is no such module.
+// Makes a shader from modules of makeLinkable() whose names were kept. The first has the entry point and
+// imports functions that the others export. The result has each type, constant, resource and function once:
+// two functions are the same if their instructions and decorations are. Equal modules give equal words.
+// `keepNames` keeps the names in the result. Errors: "spirv-join" if a function is missing or has another
+// type, if modules declare a resource differently, or if a module is no such module.
 Result<std::vector<std::uint32_t>> joinModules(std::span<const std::span<const std::uint32_t>> modules,
                                                const std::string& shader, bool keepNames);
 

@@ -1,4 +1,4 @@
-// Which members of structures a module reads.
+// Finds the members of structures that a module reads.
 #pragma once
 
 #include "spirv/join/parsed_module.h"
@@ -21,7 +21,7 @@ public:
     // Both must outlive this.
     LiveMembers(const ParsedModule& module, const Definitions& definitions);
 
-    // False if the module has something that this can't follow.
+    // Returns false if the module has an instruction that this can't follow.
     bool isKnown() const {
         return known_;
     }

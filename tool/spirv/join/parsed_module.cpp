@@ -34,7 +34,7 @@ bool isDecorating(std::uint32_t opcode) {
            opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;
 }
 
-// Places in the source say nothing about what a module does.
+// Places in the source do not change the work of a module.
 bool isPlace(std::uint32_t opcode) {
     return opcode == spv::OpLine || opcode == spv::OpNoLine || opcode == spv::OpString ||
            opcode == spv::OpModuleProcessed;

@@ -1,4 +1,5 @@
-// A SPIR-V module as the join reads it: which words are IDs, what annotates an ID, and where functions begin.
+// A SPIR-V module as the join reads it: the words that are IDs, the annotations of IDs, and the starts of
+// functions.
 #pragma once
 
 #include <glint/result.h>
@@ -29,7 +30,7 @@ public:
     }
     // To be called once, after the last add(). IDs are less than `bound`.
     void finish(std::uint32_t bound);
-    // Those about an ID, in the order of the module.
+    // Returns the annotations of an ID, in the order of the module.
     std::span<const ParsedInstruction> of(std::uint32_t id) const {
         return std::span(sorted_).subspan(begins_[id], begins_[id + 1] - begins_[id]);
     }
@@ -56,7 +57,7 @@ struct ParsedModule {
     std::vector<ParsedFunction> functions;
     Annotations decorations;  // without linkage
     Annotations names;
-    // By ID of a function: the name under which it is linked.
+    // The names under which functions are linked, by their IDs.
     std::map<std::uint32_t, std::string> exports;
     std::map<std::uint32_t, std::string> imports;
 
@@ -75,8 +76,8 @@ Result<ParsedModule> parseModule(std::span<const std::uint32_t> words, const std
 
 // Returns whether a function of the module uses a variable that the functions of an invocation or of a
 // workgroup share (a global variable of GLSL), and the entry point does not. An optimiser that sees one
-// function use such a variable makes it the function's own. One that the entry point uses as well stays, and
-// modules that are joined have it once, by its name.
+// function use such a variable makes it the function's own. A variable that the entry point uses as well
+// stays, and joined modules have it once, by its name.
 bool sharesVariables(const ParsedModule& module);
 
 }  // namespace glint::compiler

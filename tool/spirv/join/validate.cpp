@@ -61,7 +61,7 @@ public:
         std::size_t before = 0;
         for (std::size_t i = 0; i < functions_.size(); ++i) {
             if (groupOf_[i] != kEveryGroup) {
-                // By its middle, so that halves of any size are two groups.
+                // The middle of a function decides, so that halves of any size are two groups.
                 groupOf_[i] = (2 * before + functions_[i].size()) * count / (2 * total);
                 before += functions_[i].size();
             }

@@ -1,6 +1,6 @@
 #version 460
-// Turns linear radiance into what a display shows, as tool/image/tone.h does: exposure, the Khronos PBR Neutral tone
-// mapper, sRGB. Shows one picture, two with a border between them, or how far the second is from the first.
+// Encodes linear radiance for a display, as tool/image/tone.h does: exposure, the Khronos PBR Neutral tone
+// mapper, sRGB. Shows one picture, two with a border between them, or the difference of the two.
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0, rgba32f) readonly uniform image2D first;

@@ -1,4 +1,4 @@
-// Builds of the pictures, and what makes them build again: files and settings.
+// Builds of the pictures, and the changes of files and settings that start them.
 #include "settings/table.h"
 #include "view/window/window.h"
 
@@ -12,7 +12,7 @@ void Window::order(std::size_t index, std::span<const std::string> changed) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
     BuildOrder order{index, one.wanted, scene_, {changed.begin(), changed.end()}};
-    // As on the command line: textures may hold anything where a fallback or a host stands by.
+    // As on the command line, textures may have any contents if there is a fallback or a host.
     order.settings.compile.trustTextures = one.wanted.compile.trustTextures &&
                                            !one.wanted.compile.plan.fallback &&
                                            one.wanted.compile.host.empty();
@@ -148,14 +148,14 @@ Status Window::install(std::size_t index, Build build) {
     return applyPose();
 }
 
-// Gives the picture what has changed of its settings, apart from what needs another build.
+// Applies changed settings to the picture, apart from those that need another build.
 Status Window::followSettings(std::size_t index) {
     Side& one = *sides_[index];
     if (!one.picture.isReady()) {
         return okStatus();
     }
     compiler::Settings next = one.wanted;
-    // Until the other build is there, the picture keeps what only that build has.
+    // The picture keeps settings that need a build until that build is there.
     if (changeBetween(one.ordered, one.wanted) == Change::Build) {
         order(index);
     }

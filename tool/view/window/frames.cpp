@@ -1,4 +1,4 @@
-// Frames of the window: samples of its pictures, and what is shown of them.
+// Frames of the window: samples of its pictures, and the image that is shown.
 #include "view/window/window.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ bool Window::isComplete() const {
            isLookCurrent();
 }
 
-// A size that the panel asks for is there once the window has it.
+// A size that the panel requests is reached once the window has it.
 bool Window::hasWantedSize() const {
     const Side& one = *sides_[0];
     return !one.picture.isReady() || (one.wanted.renderer.width == one.picture.settings().renderer.width &&
@@ -41,7 +41,7 @@ bool Window::isIdle() const {
     return isComplete() && !plays_ && wakes_ <= 0;
 }
 
-// Returns the width and height that pictures have in the window as it is.
+// Returns the width and height that pictures have in the present window.
 std::array<std::uint32_t, 2> Window::pictureExtent() const {
     return {std::max(static_cast<std::uint32_t>(area_.width / divisor_), kLeastSize),
             std::max(static_cast<std::uint32_t>(area_.height / divisor_), kLeastSize)};
@@ -219,7 +219,7 @@ void Window::finishSamples() {
             one->counters = *counters;
         }
         if (const Result<std::vector<PassTiming>> passes = one->picture.renderer().timings(); passes) {
-            // Rounds of rays are parts of the frame's own time, and would count twice.
+            // Rounds of rays are parts of the frame's own time and would be counted twice.
             std::vector<PassTiming> kept;
             std::ranges::copy_if(*passes, std::back_inserter(kept),
                                  [](const PassTiming& pass) { return pass.pass != Pass::Hits; });

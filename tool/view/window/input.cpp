@@ -1,4 +1,4 @@
-// Keys, mouse and files: what they change.
+// Keys, mouse and files, and the changes that they make.
 #include "settings/table.h"
 #include "view/window/window.h"
 
@@ -316,7 +316,7 @@ void Window::nextCamera() {
     say("camera " + name);
 }
 
-// Shows a view, a layer, or the picture. What the package lacks for it is compiled, as for any setting.
+// Shows a view, a layer, or the picture. Missing layers are compiled into the package, as for any setting.
 void Window::chooseLook(const Look& look) {
     look_ = look;
     viewedFrame_ = 0;

@@ -15,7 +15,7 @@ CameraView Window::cameraView() const {
                         picture.settings().renderer.height);
 }
 
-// Returns how far ahead of a camera the point is that it orbits, in metres.
+// Returns the distance of a camera from the point that it orbits, in metres.
 double Window::distanceToMiddle(const CameraView& view) const {
     const Picture& picture = sides_[0]->picture;
     if (const std::optional<scene_view::PlacedCamera> placed =

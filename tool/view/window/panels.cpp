@@ -1,4 +1,4 @@
-// What the window draws over and beside the picture.
+// The panels and marks that the window draws over and beside the picture.
 #include "settings/table.h"
 #include "view/look_panel.h"
 #include "view/window/window.h"
@@ -96,7 +96,8 @@ void Window::drawInterface() {
         drawHelp();
     }
     if (measured != measuresPasses_) {
-        // Times of whole frames and of passes don't mix in a chart. A picture that is complete has none yet.
+        // Times of whole frames and of passes don't mix in a chart. A complete picture has no times of passes
+        // yet.
         for (std::unique_ptr<Side>& one : sides_) {
             if (one) {
                 one->history.clear();
@@ -106,7 +107,8 @@ void Window::drawInterface() {
     }
 }
 
-// Marks over the picture: the pixel that is explained, the border between two pictures, and what is shown.
+// Marks over the picture: the pixel that is explained, the border between two pictures, and the name of the
+// look.
 void Window::drawMarks() {
     ImDrawList* const list = ImGui::GetBackgroundDrawList();
     const float width = static_cast<float>(area_.width) / pixelScale_;
@@ -499,7 +501,7 @@ void Window::drawSidePanel(float x, float width, float height) {
     ImGui::End();
 }
 
-// Takes what the panel has changed. The size of the picture is that of its part of the window.
+// Applies the changes of the panel. The size of the picture is that of its part of the window.
 void Window::followPanel() {
     Side& one = side();
     if (one.picture.isReady()) {
@@ -523,7 +525,7 @@ void Window::followPanel() {
 }
 
 void Window::drawHelp() {
-    // Over the panel, too, where the picture is narrow.
+    // The message also covers the panel where the picture is narrow.
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({0.5F * size.x, 0.5F * size.y}, ImGuiCond_Always, {0.5F, 0.5F});
     ImGui::SetNextWindowSizeConstraints({1.0F, 1.0F}, size);

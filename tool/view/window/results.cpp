@@ -1,4 +1,4 @@
-// What the window measures and writes: exposure, differences, screenshots and reports.
+// The window's measurements and files: exposure, differences, screenshots and reports.
 #include "base/files.h"
 #include "base/json.h"
 #include "base/text.h"

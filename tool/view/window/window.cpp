@@ -1,4 +1,4 @@
-// The window: how it opens, runs and ends.
+// The window's start, loop and end.
 #include "view/window/window.h"
 
 #include "settings/table.h"
@@ -16,7 +16,7 @@ namespace glint::view {
 
 namespace {
 
-constexpr std::size_t kMessages = 200;  // that are kept
+constexpr std::size_t kMessages = 200;  // the most that are kept
 
 Window& windowOf(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
@@ -64,7 +64,7 @@ Status Window::openDevice() {
     }
     options.instanceExtensions.assign(extensions, extensions + count);
     options.deviceExtensions = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
-    // What packages may need is there from the start, where the device has it.
+    // Features that packages may need are enabled from the start, if the device has them.
     const HeadlessOptions asked = options;
     std::optional<Result<std::unique_ptr<Context>>> made;
     constexpr unsigned kClock = 1;

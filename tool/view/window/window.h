@@ -1,4 +1,4 @@
-// The window of glint view: what it knows, and what its panels change.
+// The window of glint view: its state, and the changes that its panels make.
 #pragma once
 
 #include "base/clock.h"
@@ -31,7 +31,7 @@ struct GLFWwindow;
 
 namespace glint::view {
 
-// In window coordinates, at a content scale of 1.
+// These are in window coordinates, at a content scale of 1.
 inline constexpr float kPanelWidth = 440.0F;
 inline constexpr float kStatusHeight = 26.0F;
 
@@ -58,7 +58,7 @@ public:
     void onChange(bool size);
 
 private:
-    // A picture with what the user wants of it.
+    // A picture with the user's settings for it.
     struct Side {
         explicit Side(Context& context) : picture(context) {}
 
@@ -156,7 +156,7 @@ private:
     std::unique_ptr<Script> script_;
 
     std::string scene_;
-    // What was shown while another scene is being opened.
+    // The scene and settings that are shown while another scene is being opened.
     struct Opening {
         std::string scene;
         std::vector<compiler::Settings> wanted;  // of the sides that are there
@@ -190,7 +190,7 @@ private:
     Look look_;                          // of the side whose settings are changed
     std::optional<measure::View> view_;  // as it is shown; no value: the picture itself is shown
     std::string lookNote_;               // why it is not shown
-    // What `view_` was made from.
+    // The inputs of `view_`.
     Look viewedLook_;
     std::size_t viewedSide_ = 0;
     std::uint64_t viewedFrame_ = 0;  // 0: none
@@ -215,7 +215,7 @@ private:
 
     base::InputWatch watch_;
     std::optional<PackageWatch> packageWatch_;
-    std::uint64_t earlyPackages_ = 0;  // that were shown
+    std::uint64_t earlyPackages_ = 0;  // early packages shown so far
     base::Clock::time_point polled_{};
 
     std::vector<KeyPress> keys_;

@@ -36,11 +36,11 @@ namespace glint::measure {
 struct Exposure {
     LinearImage image;
     double milliseconds = 0.0;  // device time of all samples
-    double hitMs = 0.0;  // of that, what strategies differ in: from the list of rays to their shaded hits
+    double hitMs = 0.0;  // the part in which strategies differ: from the list of rays to their shaded hits
     // Times by pass, from one sample measured that way, times the number of samples. Passes that otherwise
     // overlap do not overlap here, so their sum is larger.
     std::map<std::string, double> passes;  // by name; those of cases together, as "shade cases"
-    HitTimes hits;                         // of those, what strategies differ in
+    HitTimes hits;                         // the times in which strategies differ
     FrameCounters counters;                // of the last sample
 };
 
@@ -61,7 +61,7 @@ public:
     Result<Exposure> expose(std::uint32_t seed) const;
     // Renders with other samples and without measuring times.
     Result<LinearImage> exposeSamples(std::uint32_t seed, std::uint32_t samples) const;
-    // Which pixels of the last picture see a surface, as Renderer::readSurfaces() says.
+    // Returns which pixels of the last picture see a surface, as Renderer::readSurfaces() does.
     Result<std::vector<std::uint8_t>> surfaces() const {
         return renderer_->readSurfaces();
     }
@@ -87,13 +87,13 @@ private:
     std::shared_ptr<MountedPackage> package_;
     std::shared_ptr<Renderer> renderer_;
     std::shared_ptr<PictureFilter> filter_;  // null: none
-    std::uint32_t frames_ = 1;               // that the filter sees, with the picture
+    std::uint32_t frames_ = 1;               // frames that the filter sees, with the picture
     FrameOptions frame_;
     std::uint32_t samples_ = 1;
     bool ordersHits_ = false;
 };
 
-// Optional features of a device.
+// The optional features of a device.
 struct DeviceOptions {
     bool positionFetch = false;  // and the compiler
     bool float16 = false;
@@ -118,8 +118,8 @@ public:
     // empty, one is compiled. Compiles, uploads and makes pipelines unless an existing mount has the same
     // ones. Has the errors of each of these steps.
     Result<Mount> mount(const compiler::Configuration& configuration, const std::string& package = {});
-    // Does the same for pictures that are the last of `frames` frames, which a filter has seen. `filter` is
-    // read during the call.
+    // Does the same for pictures that are the last of `frames` frames, all of which a filter gets. `filter`
+    // is read during the call.
     Result<Mount> mountFiltered(const FilterMaker& filter, std::uint32_t frames);
 
     Context& context() {
@@ -165,7 +165,7 @@ private:
     const gltf::Scene& scene_;
     compiler::ModuleCache* cache_;
     compiler::CacheStore* store_;
-    // By whether they are compressed, and whether emission is unpacked as well.
+    // Textures by whether they are compressed, and whether emission is unpacked as well.
     std::map<std::array<bool, 2>, std::shared_ptr<const scene_view::TextureSet>> textures_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;

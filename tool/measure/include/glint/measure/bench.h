@@ -1,4 +1,4 @@
-// Measures what accuracy costs in time on a scene: `glint bench` without a command line.
+// Measures the cost of accuracy in time on a scene: `glint bench` without a command line.
 //
 //     Result<std::unique_ptr<BenchBed>> bed = BenchBed::create(observer, render, scene, nullptr);
 //     BenchReport report;
@@ -34,12 +34,12 @@ struct BenchSettings {
     std::int64_t batch = 8;
     std::string depth = "search";   // singles, pairs or search
     std::vector<std::string> only;  // settings; empty: all
-    // Measures the default's picture filtered, alone and after 15 frames, and one of 64 samples beside it.
-    // Null: no filter.
+    // Measures the default's picture filtered, alone and after 15 frames, and also one of 64 samples. Null:
+    // no filter.
     const FilterMaker* filter = nullptr;
     std::string metric = "trimmed";
-    // The reference has all of light transport. Otherwise it shares the default's effects, bounces and
-    // whatever else decides how light travels.
+    // The reference has all of light transport. Otherwise it shares the default's effects, bounces and other
+    // settings of light transport.
     std::string reference = "full";  // or same
     double referenceError = 0.005;
     std::int64_t referenceSamples = 16384;
@@ -48,11 +48,11 @@ struct BenchSettings {
     double maxError = 0.0;  // 0: none
 };
 
-// Makes the reference, measures one setting at a time, then pairs, then what a search proposes, and fills in
-// the members of `report` that follow: scene but its file, machine, reference, base, settings, points, front,
-// strategies, advice. The caller has set the others (file, rounds, seed, batch, quick, metric) before. `plan`
-// is that of the bed's scene and settings. A point that can't be measured is a warning. `store` keeps the
-// reference; it may be null. Errors: of the reference and of the device, "validation".
+// Makes the reference, measures one setting at a time, then pairs, then the proposals of a search, and fills
+// in the members of `report` that follow: scene except its file, machine, reference, base, settings, points,
+// front, strategies, advice. The caller has set the others (file, rounds, seed, batch, quick, metric) before.
+// `plan` is that of the bed's scene and settings. A point that can't be measured is a warning. `store` keeps
+// the reference; it may be null. Errors: of the reference and of the device, "validation".
 Status runBench(const Observer& observer, const BenchSettings& settings, const compiler::PlanOptions& plan,
                 BenchBed& bed, compiler::CacheStore* store, BenchReport& report);
 

@@ -24,7 +24,7 @@ class ModuleCache;
 
 namespace glint::measure {
 
-// How far a picture is from that of uber. The way in which hits are shaded must not change it.
+// The difference between a picture and that of uber. The strategy must not change the picture.
 struct PictureDifference {
     double largest = 0.0;         // |a - b| / max(1, |b|) over all channels
     std::uint64_t differing = 0;  // pixels that differ by more than 0.001 of that
@@ -54,7 +54,7 @@ struct CalibrationEntry {
     bool shadows = false;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::uint32_t samples = 0;  // that each time is the mean of
+    std::uint32_t samples = 0;  // samples of which each time is the mean
     std::uint64_t hits = 0;     // a sample
     std::uint32_t filledCases = 0;
     std::vector<StrategyMeasure> strategies;
@@ -70,15 +70,15 @@ struct CalibrationReport {
     std::uint32_t seed = 0;
     bool quick = false;
     double compileSeconds = 0.0;  // wall clock, before anything is measured
-    double seconds = 0.0;         // likewise, of everything
+    double seconds = 0.0;         // wall clock of everything
     bool complete = false;        // else more points were to come
     std::vector<CalibrationEntry> entries;
 };
 
-// Returns the mean over the cases, weighted by their shares of hits: what an average hit runs.
+// Returns the mean over the cases, weighted by their shares of hits, that is, the work of an average hit.
 double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member);
 
-// Fills in what follows from the measurements: point.times and fastest.
+// Fills in the members that follow from the measurements: point.times and fastest.
 void settleEntry(CalibrationEntry& entry);
 
 struct CalibrationSettings {

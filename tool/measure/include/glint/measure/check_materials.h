@@ -1,5 +1,5 @@
-// Checks what the code of material features computes: `glint check-materials`. The functions run on the
-// device, as in pictures, over combinations of the declared parameters' values.
+// Checks the code of material features: `glint check-materials`. The functions run on the device, as in
+// pictures, over combinations of the declared parameters' values.
 #pragma once
 
 #include "materials/material_model.h"
@@ -18,20 +18,20 @@
 
 namespace glint::measure {
 
-// What is checked. docs/material_features.md explains each one and its limits.
+// The checks. docs/material_features.md explains each one and its limits.
 enum class MaterialCheck : std::uint8_t {
     Range,        // all values are finite and within their ranges
-    Density,      // the density integrates to one, less what samples lose
+    Density,      // the density integrates to one, less the share of samples that are lost
     Samples,      // samples follow the density
     Reciprocity,  // view and light may change places, where the declaration says so
     Energy,       // no more light leaves than came in
-    Albedo,       // the layer reflects what it says of a white sky
+    Albedo,       // the layer reflects its declared share of a white sky
 };
 inline constexpr MaterialCheck kMaterialChecks[] = {MaterialCheck::Range,   MaterialCheck::Density,
                                                     MaterialCheck::Samples, MaterialCheck::Reciprocity,
                                                     MaterialCheck::Energy,  MaterialCheck::Albedo};
 std::string_view nameOf(MaterialCheck check);  // "range"
-// What `worst` of its outcome is, and the most or least that it may be.
+// Returns the meaning of `worst` in the check's outcome, and of its limit.
 std::string_view quantityOf(MaterialCheck check);  // "distance of the integral from one"
 
 enum class CheckState : std::uint8_t {
@@ -43,7 +43,7 @@ enum class CheckState : std::uint8_t {
 };
 std::string_view nameOf(CheckState state);  // "passed"
 
-// Where something was evaluated.
+// The place of an evaluation.
 struct CheckPlace {
     // The values of the feature's parameters, by name, with "textures" as the last where it has them.
     std::vector<std::pair<std::string, std::vector<float>>> parameters;
@@ -58,7 +58,7 @@ struct CheckOutcome {
     std::uint64_t evaluations = 0;
     double worst = 0.0;  // the value that is nearest to its limit, or farthest beyond it
     double limit = 0.0;
-    std::string message{};  // of a failure: what was found
+    std::string message{};  // of a failure: the finding
     std::optional<CheckPlace> place{};
 };
 

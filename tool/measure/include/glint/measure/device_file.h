@@ -1,5 +1,5 @@
-// The files of `glint bench --calibrate`: calibration.json with what was measured, and device.json with the
-// constants that were fitted to it, by which `--strategy auto` chooses.
+// The files of `glint bench --calibrate`: calibration.json with the measurements, and device.json with the
+// constants fitted to them, by which `--strategy auto` chooses.
 #pragma once
 
 #include "plan/strategy_cost.h"

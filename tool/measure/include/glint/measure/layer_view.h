@@ -1,5 +1,5 @@
-// Pictures of layers as they are, for people who look at one. Views (glint/measure/views.h) say what a layer
-// means; this says what is in it.
+// Pictures of a layer's values as they are, for people. Views (glint/measure/views.h) instead show the
+// meaning of layers.
 #pragma once
 
 #include <glint/measure/views.h>
@@ -16,7 +16,7 @@ namespace glint::measure {
 // - vectors as red, green and blue, from the least to the greatest value of all channels; where some are
 //   below 0, grey is 0
 // The statistics are those of all channels. `name` is PackageLayer::name; View::choice has the layer's name
-// and source, and says what the layer is. Errors: those of Renderer::readLayer().
+// and source, and describes the layer. Errors: those of Renderer::readLayer().
 Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exposure);
 
 }  // namespace glint::measure

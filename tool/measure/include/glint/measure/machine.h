@@ -1,4 +1,4 @@
-// Where something was measured.
+// The machine on which something was measured.
 #pragma once
 
 #include <glint/context.h>

@@ -1,4 +1,4 @@
-// Where a library tells what it does, while it does it.
+// The observer to which a library reports its progress.
 #pragma once
 
 #include <glint/context.h>
@@ -9,17 +9,17 @@
 
 namespace glint::measure {
 
-// The functions are const because nothing that a library decides depends on them. They may be called by the
-// thread that called the library only.
+// The functions are const because no decision of a library depends on them. They may be called by the thread
+// that called the library only.
 class Observer {
 public:
     virtual ~Observer() = default;
 
     // A warning or a note. Errors are returned.
     virtual void report(const Diagnostic& diagnostic) const = 0;
-    // What is being done at present, such as "compiling 3 of 8".
+    // Receives the present activity, such as "compiling 3 of 8".
     virtual void progress(std::string_view text) const = 0;
-    // What was decided and why.
+    // Receives a decision and its reason.
     virtual void detail(std::string_view text) const = 0;
 
     void report(std::span<const Diagnostic> diagnostics) const {

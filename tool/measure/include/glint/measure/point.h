@@ -27,7 +27,7 @@ double additive(ErrorMetric metric, double error);
 
 enum class PointKind { Default, Single, Pair, Search, Package, Exact, Filtered };
 std::string_view nameOf(PointKind kind);
-// Whether settings alone tell a point from the default.
+// Returns whether settings alone distinguish such a point from the default.
 constexpr bool isOfSettings(PointKind kind) {
     return kind != PointKind::Package && kind != PointKind::Filtered;
 }
@@ -40,21 +40,21 @@ inline constexpr std::string_view kFilterPass = "denoise";
 // Each list has one entry for each round, in the order of rounds. Times are milliseconds of the device.
 struct BenchPoint {
     PointKind kind = PointKind::Single;
-    compiler::Configuration configuration;  // what differs from the default
+    compiler::Configuration configuration;  // the settings that differ from the default
     std::string name;                       // for people
     std::string package;                    // folder of one that was given; empty: compiled
     std::uint32_t filteredFrames = 0;       // pictures that a filter has seen, with the last; 0: no filter
     std::vector<double> times;              // of a picture
     std::vector<double> ratios;             // to the default in the same round
     std::map<std::string, std::vector<double>> passes;
-    std::vector<double> hitMs;      // what strategies differ in
+    std::vector<double> hitMs;      // the times in which strategies differ
     std::vector<HitTimes> hits;     // its passes
     std::vector<double> hitRatios;  // of hitMs to that of the default in the same round
     std::vector<image::ImageErrors> errors;
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
-    // Of the mean of all rounds' pictures.
+    // The errors of the mean of all rounds' pictures.
     std::optional<image::ImageErrors> errorOfMean;
-    bool sameImage = true;   // as the default's, bit by bit, in every round
+    bool sameImage = true;   // as the default's, bit-exact, in every round
     LinearImage image;       // of the first round
     FrameCounters counters;  // of its last sample
     Renderer::Footprint footprint;

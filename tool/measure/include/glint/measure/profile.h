@@ -19,7 +19,7 @@ namespace glint::measure {
 // A key as the names of its features, which stay valid if a version of Glint numbers them differently.
 struct ProfileKey {
     std::vector<std::string> features;   // in order of bits
-    std::vector<std::string> materials;  // that have the key; for people
+    std::vector<std::string> materials;  // materials with the key; for people
     std::uint64_t hits = 0;
 };
 
@@ -36,8 +36,8 @@ struct Profile {
     std::vector<ProfileKey> keys;
 };
 
-// Returns what scenes and plan give, without hits. Requires a plan that gives each key its own case, in the
-// order of the keys.
+// Returns the profile of scenes and plan, without hits. Requires a plan that gives each key its own case, in
+// the order of the keys.
 Profile makeProfile(const gltf::SceneList& scenes, const compiler::Plan& plan,
                     const materials::KeyOptions& options);
 
@@ -59,9 +59,8 @@ struct PlanChoice {
 };
 
 // Returns the options of the command line, with the hits of its profile if it names one, and with the alpha
-// policy that `auto` stands for. Notes say what was chosen. Warns of keys that
-// the scene has and the profile lacks, and of a profile that was made with other settings. Has the errors of
-// readProfile().
+// policy that is chosen for `auto`. Notes report the choice. Warns of keys that the scene has and the profile
+// lacks, and of a profile that was made with other settings. Has the errors of readProfile().
 Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes);
 
 }  // namespace glint::measure

@@ -29,7 +29,7 @@ struct Reference {
     // The root of noise.trimmed. A light that few rays find leaves outliers after any number of samples, and
     // these would otherwise dominate the error.
     double relativeError = 0.0;
-    double target = 0.0;   // that was asked for
+    double target = 0.0;   // the requested error
     bool reached = false;  // the target
     bool cached = false;   // samples were taken from the cache, all or some
     double seconds = 0.0;  // wall clock
@@ -46,17 +46,17 @@ struct StrategyRow {
     double traceMs = 0.0;  // of hits that are traced by a pass of their own
     double orderMs = 0.0;
     double shadeMs = 0.0;    // the rest of `hits`; with tracing where a strategy shades while it traces
-    double commonMs = 0.0;   // what every strategy does alike
+    double commonMs = 0.0;   // the passes that all strategies share
     std::uint32_t rays = 0;  // of the last sample
 };
 
 struct StrategyReport {
     std::vector<StrategyRow> rows;     // those that were measured, of the default's other settings
     std::vector<std::string> fastest;  // several: a tie
-    // Counts of hits in the last sample of a strategy that counts them by case; zeros if no such strategy was
-    // measured.
+    // Counts of hits in the last sample of a strategy that counts them by case; the members are 0 if no such
+    // strategy was measured.
     std::uint32_t cases = 0;
-    std::uint32_t filledCases = 0;  // that any hit has
+    std::uint32_t filledCases = 0;  // cases with hits
     double largestShare = 0.0;      // of hits in the case that has most
     // The average number of cases among 32 hits in random order. An uber shader runs at most that many one
     // after another in a subgroup of that size.
@@ -67,16 +67,16 @@ struct StrategyReport {
 // `base` is the strategy of the default, which is the first of `points`.
 StrategyReport compareStrategies(std::span<const BenchPoint> points, const std::string& base);
 
-// What a configuration takes away from the default's error, as shares of that error in a measure that adds up
-// (additive()). Shares below 0: the error grows.
+// The part of the default's error that a configuration removes, as shares of that error in an additive
+// measure (additive()). Below 0 the error grows.
 struct RemovedError {
     std::size_t point = 0;  // index of the configuration
     Interval all;           // from rounds with the same seed
-    double bias = 0.0;      // what no number of samples would take away
-    double noise = 0.0;     // what samples would take away, too
+    double bias = 0.0;      // the part that no number of samples removes
+    double noise = 0.0;     // the part that more samples also remove
 };
 
-// An approximation of the default, and what its exact value alone takes away.
+// An approximation of the default, and the part of the error that its exact value alone removes.
 struct ErrorPart {
     std::string setting;
     std::string from;  // the default's value
@@ -84,17 +84,17 @@ struct ErrorPart {
     RemovedError removed;
 };
 
-// Which part of the default's error is which approximation.
+// The default's error, divided among its approximations.
 struct ErrorParts {
     std::vector<ErrorPart> parts;       // the most bias first
     std::optional<RemovedError> exact;  // all these values at once; absent if none was measured
     double noise = 0.0;                 // share of the error; 0 if there was one round
-    // The share of bias that is in no part. Above 0 it is what only several exact values together take away,
-    // below 0 the parts overlap.
+    // The share of bias that is in no part. Above 0, only several exact values together remove it; below 0,
+    // the parts overlap.
     double rest = 0.0;
 };
 
-// `points` has the default first. Settings of which no point has the exact value alone are left out.
+// `points` has the default first. A setting is left out if no point has its exact value alone.
 ErrorParts partsOfError(std::span<const BenchPoint> points, std::span<const Setting> settings,
                         ErrorMetric metric);
 
@@ -141,7 +141,7 @@ struct BenchReport {
     std::optional<BenchAdvice> advice;
 };
 
-// Returns "all of light transport (--bounces unlimited ...)": what the reference is, in words.
+// Returns the description of the reference: "all of light transport (--bounces unlimited ...)".
 std::string describeReference(const BenchReport& report);
 
 // Returns milliseconds of a picture: the point's ratio times the default's median.

@@ -35,7 +35,7 @@ std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compil
 bool hasExactValue(const Setting& setting);
 
 // Returns the configuration of the reference: every approximation is off, and other settings keep their
-// value. Approximations of transport keep theirs, too, unless the reference has all of it
+// value. Approximations of transport also keep their value, unless the reference has all of light transport
 // (BenchFacts::fullTransport).
 compiler::Configuration exactValues(const compiler::BenchFacts& facts);
 

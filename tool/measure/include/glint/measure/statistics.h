@@ -13,8 +13,8 @@ struct Interval {
     double median = 0.0;
     // The confidence interval of the median: the innermost pair of order statistics that contains it with at
     // least kConfidence, whatever the distribution (binomial with p = 1/2; David and Nagaraja, Order
-    // Statistics, 3rd edition, 7.1). With fewer than six measurements no pair does, and it is the whole
-    // range.
+    // Statistics, 3rd edition, 7.1). With fewer than six measurements no pair does, and the interval is the
+    // whole range.
     double low = 0.0;
     double high = 0.0;
     // The quartiles, linear between order statistics (type 7 of Hyndman and Fan 1996).

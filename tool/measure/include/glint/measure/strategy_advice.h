@@ -23,10 +23,10 @@ namespace glint::measure {
 struct KnownCosts {
     compiler::DeviceCosts device;
     bool builtIn = true;
-    std::optional<compiler::GpuCosts> gpu{};  // `device` is what withGpu() makes of the measured one
+    std::optional<compiler::GpuCosts> gpu{};  // if set, withGpu() has adapted `device` to it
 };
 // Returns the costs in the file of --calibration, or the built-in costs for the type of device if none is
-// named, with what the table of --gpu says. Has the errors of readDeviceFile() and readGpuCosts().
+// named, with the values of --gpu's table. Has the errors of readDeviceFile() and readGpuCosts().
 Result<KnownCosts> knownCosts(const compiler::Settings& settings, bool onCpu);
 
 // Returns the strategies that can be chosen for a device with these tracers (bits), traced by `tracer` if it
@@ -45,9 +45,10 @@ Result<compiler::StrategyAdvice> adviseStrategy(const KnownCosts& costs,
                                                 const std::vector<compiler::Round>& rounds,
                                                 const std::vector<std::string>& available, double pixels);
 
-// Advises for one scene, before anything is rendered. The candidates are what the device can run: of
-// `package` if it is not null, else of a package that would be compiled by `plan`. Warns "calibration-device"
-// if the calibration is for another device. Has the errors of knownCosts() and adviseStrategy().
+// Advises for one scene, before anything is rendered. The candidates are the strategies that the device can
+// run, of `package` if it is not null, else of a package that would be compiled by `plan`. Warns
+// "calibration-device" if the calibration is for another device. Has the errors of knownCosts() and
+// adviseStrategy().
 Result<compiler::StrategyAdvice> adviseRender(const compiler::Settings& arguments,
                                               const compiler::PlanOptions& plan, Context& context,
                                               const gltf::Scene& scene, const Package* package,

@@ -1,5 +1,5 @@
-// Fits the constants of plan/strategy_cost.h to measurements of generated scenes, and says how far they can
-// be trusted. Pure.
+// Fits the constants of plan/strategy_cost.h to measurements of generated scenes, and estimates their
+// accuracy. Pure.
 #pragma once
 
 #include "plan/strategy_cost.h"
@@ -38,7 +38,8 @@ struct CalibrationPoint {
     std::vector<StrategyTime> times;
 };
 
-// How far estimates are from measurements to which the constants were not fitted (see FitQuality::held).
+// The difference between estimates and measurements to which the constants were not fitted (see
+// FitQuality::held).
 struct StrategyQuality {
     std::string strategy;
     std::size_t points = 0;
@@ -59,7 +60,7 @@ struct Regret {
 
 struct FitQuality {
     // Each group of points that differ only in their rays was estimated by constants fitted to all other
-    // groups. With a single group that is impossible, and all estimates come from the one fit.
+    // groups. With a single group, all estimates come from the one fit.
     bool held = false;
     std::vector<StrategyQuality> strategies;
     Regret regret;

@@ -1,4 +1,4 @@
-// Decides which configurations a bench measures: each setting alone, then the pairs that matter, and then
+// Chooses the configurations that a bench measures: each setting alone, then the pairs that matter, and then
 // those that may be better than all before. Recommends one of them for a budget.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace glint::measure {
 std::vector<compiler::Configuration> singles(std::span<const Setting> settings,
                                              const compiler::Configuration& base);
 
-// Returns the configuration in which every approximation that is swept has the reference's value.
+// Returns the configuration in which every swept approximation has the reference's value.
 compiler::Configuration exactTogether(std::span<const Setting> settings, const compiler::Configuration& base);
 
 // Returns configurations that change two settings whose effects do not simply add up: for instance one that
@@ -37,7 +37,7 @@ struct Rated {
 };
 
 // Returns the points with ties settled: a point that is tied with the first one, the default, or within 1 %
-// of it, gets its time or error. Otherwise noise would decide which of two equal things is better.
+// of it, gets its time or error. Otherwise noise would rank points that are equal.
 std::vector<Rated> withTiesSettled(std::span<const Rated> points);
 
 // Returns the Pareto front: the indices of points to which no other point is at least as good in both

@@ -2,8 +2,8 @@
 //
 // viewTable() is their only declaration: the words of --view, the layers that a package needs, the colours,
 // the legend, and the JSON of --stats follow from its rows. A view reads layers of the renderer
-// (glint/layers.h) on the host and colours them. It has no pass, so what a view costs a frame is what its
-// layers cost.
+// (glint/layers.h) on the host and colours them. It has no pass, so its cost in a frame is that of its
+// layers.
 #pragma once
 
 #include "image/text.h"
@@ -56,7 +56,7 @@ struct ViewInfo {
 std::span<const ViewInfo> viewTable();
 // Returns null if there is no such view.
 const ViewInfo* findView(std::string_view name);
-// Whether it is about the rays of one effect, so that "reflection.hit-distance" names it, too.
+// Returns whether it is about the rays of one effect, so that "reflection.hit-distance" names it, too.
 bool isOfRays(const ViewInfo& info);
 
 // A view, and the effect that it is about.
@@ -73,7 +73,7 @@ std::optional<ViewChoice> parseView(std::string_view text);
 // that end with a question mark.
 std::vector<std::string> layersFor(const ViewChoice& view);
 
-// What a view reads. What it points to must outlive it.
+// The inputs of a view. The objects that they point to must outlive it.
 struct ViewInput {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -85,8 +85,8 @@ struct ViewInput {
     const materials::MaterialModel* model = &materials::builtinMaterialModel();  // of the scene's materials
     const LinearImage* picture = nullptr;
     const LinearImage* reference = nullptr;  // if the view compares, of equal size
-    // By ViewInfo::layers; those of ViewInfo::everySource by their whole names, such as
-    // "reflection.hit-shader".
+    // The layers of ViewInfo::layers by name, and those of ViewInfo::everySource by their whole names, such
+    // as "reflection.hit-shader".
     std::map<std::string, LayerValues> layers;
 };
 
@@ -118,10 +118,10 @@ struct ViewStatistics {
     double mean = 0.0;
     double median = 0.0;
     double percentile99 = 0.0;
-    double percentileHalf = 0.0;    // that of 0.5 %
-    double percentile99Half = 0.0;  // that of 99.5 %
+    double percentileHalf = 0.0;    // at 0.5 %
+    double percentile99Half = 0.0;  // at 99.5 %
     // Pixels in equal steps from scale[0] to scale[1]; of a logarithmic view the steps are equal in the
-    // logarithm. The first and the last step have what is beyond the scale, too: it leaves out the outermost
+    // logarithm. The first and the last step include the pixels beyond the scale: it leaves out the outermost
     // half percent of the numbers where these are far from the others.
     std::array<double, 2> scale{};
     std::vector<std::uint64_t> histogram;
@@ -141,12 +141,12 @@ struct View {
 Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput input,
                       std::optional<std::array<double, 2>> range = {});
 
-// The same from layers that are in `input` already.
+// Makes the same view from layers that are in `input` already.
 View colorView(const ViewChoice& choice, const ViewInput& input,
                std::optional<std::array<double, 2>> range = {});
 
-// Returns the legend of a view for a picture of that width: what it shows, its colours, and its numbers. Its
-// text is larger in wide pictures.
+// Returns the legend of a view for a picture of that width: its title, its colours, and its numbers. Its text
+// is larger in wide pictures.
 image::DisplayImage makeLegend(const View& view, std::uint32_t width);
 // Returns the picture with the legend below it.
 image::DisplayImage withLegend(const View& view);

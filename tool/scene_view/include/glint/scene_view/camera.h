@@ -18,8 +18,8 @@ namespace glint::scene_view {
 // geometry. Instances whose box is not finite are left out.
 Bounds worldBounds(const SceneViewData& scene);
 
-// The same at the pose of `scene`, from which `view` was made. For meshes that follow joints or morph targets
-// it uses the deformed vertices.
+// Returns the same union at the pose of `scene`, from which `view` was made. For meshes that follow joints or
+// morph targets it uses the deformed vertices.
 Bounds posedBounds(const gltf::Scene& scene, const SceneViewData& view);
 
 // Returns the union. An empty box adds nothing.
@@ -61,14 +61,14 @@ bool framesEverything(const gltf::Scene& scene, const std::string& wanted);
 // first camera is used, or "auto" if there is none. Error "camera-unknown".
 Result<CameraChoice> chooseCamera(const gltf::Scene& scene, const SceneViewData& view,
                                   const std::string& wanted, double aspect);
-// The same, with the bounds that an automatic camera frames.
+// Does the same with the bounds that an automatic camera frames.
 Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& framed,
                                         const std::string& wanted, double aspect);
 
 // Returns the warning "nothing-seen" if no triangle can be in a picture of this camera at the pose of
 // `scene`: all are outside of the frustum, hidden, without an area, or one-sided and turned away. It stops at
 // the first triangle that may be seen. `isCertain`: the picture has no surface, and the warning looks for the
-// reasons. Returns nothing for a scene without instances, of which importScene() warns.
+// reasons. Returns nothing for a scene without instances; importScene() warns of it.
 std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewData& view,
                                       const CameraChoice& camera, bool isCertain = false);
 

@@ -1,4 +1,4 @@
-// Makes what SceneEditor takes (glint/scene_edit.h) from a glTF material: a record, keys and textures.
+// Makes the arguments of SceneEditor (glint/scene_edit.h) from a glTF material: a record, keys and textures.
 #pragma once
 
 #include "emit/material_layout.h"
@@ -24,14 +24,14 @@ struct MaterialSourceData {
     }
 };
 
-// A texture of glTF in a scene. Which of the two a material reads follows from the slot.
+// A texture of glTF in a scene. The slot decides which of the two a material reads.
 struct EditedTextures {
     TextureHandle color;  // in sRGB
     TextureHandle data;
 };
 
 // Returns the textures of a scene that was uploaded with the tables of `known`, by index into
-// Scene::textures. Those that no material has name nothing.
+// Scene::textures. Handles of textures that no material has name nothing.
 std::vector<EditedTextures> uploadedTextures(const SceneEditor& editor, const PackageScene& known,
                                              const gltf::Scene& scene);
 

@@ -1,4 +1,4 @@
-// Brings a scene and a compiled package together: whether they match, and how a fresh one is loaded.
+// Brings a scene and a compiled package together: checks whether they match, and loads a fresh package.
 #pragma once
 
 #include "emit/compile.h"
@@ -25,9 +25,9 @@ struct PackageDemand {
     bool environmentMap = false;
 };
 
-// Error "package-mismatch" unless `package` was compiled with what is required, and from this scene: it must
-// have the same materials, and for each primitive the same material and features. Error "package-tracer" if
-// it lacks the tracer. `folder` is the place that errors name.
+// Error "package-mismatch" unless `package` was compiled as required and from this scene: it must have the
+// same materials, and for each primitive the same material and features. Error "package-tracer" if it lacks
+// the tracer. `folder` is the place that errors name.
 Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
                     const gltf::Scene& scene);
 

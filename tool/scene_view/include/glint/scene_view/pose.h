@@ -1,6 +1,6 @@
-// Computes a scene at a time of its animations: where every node is, the weight of every morph target, and
-// the values of materials, lights and cameras. Times are seconds, transforms are column-major and in metres.
-// None of these functions fails.
+// Computes a scene at a time of its animations: the place of every node, the weight of every morph target,
+// and the values of materials, lights and cameras. Times are seconds, transforms are column-major and in
+// metres. None of these functions fails.
 #pragma once
 
 #include "gltf/scene.h"

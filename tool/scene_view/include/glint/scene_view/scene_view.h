@@ -1,5 +1,5 @@
-// Makes what the runtime takes (glint/scene_view.h) from a Scene that was read from glTF. A program that uses
-// both needs no other code between them:
+// Makes the runtime's view of a scene (glint/scene_view.h) from a Scene that was read from glTF. A program
+// that uses both needs no other code between them:
 //
 //     Result<Scene> scene = importScene("room.gltf", {.decodeImages = true});
 //     scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
@@ -42,15 +42,15 @@ struct SceneViewData {
     OpacityUse opacity = OpacityUse::Proved;
     VertexForm vertices = VertexForm::Compact;
     std::vector<MaterialView> materials;  // those that animations change
-    // What places are relative to. A file has them in single precision for vertices and in double precision
-    // for nodes. They are added in double precision and then rebased: those of vertices by mesh, those of the
-    // world by pose. Both origins are 0 where everything is close enough to 0. poseSceneView() is the border;
-    // cameras and bounds stay in the world.
+    // The origin to which places are relative. A file has them in single precision for vertices and in double
+    // precision for nodes. They are added in double precision and then rebased: places of vertices by mesh,
+    // places in the world by pose. Both origins are 0 where everything is close enough to 0. poseSceneView()
+    // is the border; cameras and bounds stay in the world.
     std::array<double, 3> origin{};                    // SceneView::origin, in the world
     std::vector<std::array<double, 3>> meshOrigins;    // by mesh number, in the mesh's space in the file
     std::vector<std::vector<gltf::Float3>> positions;  // of primitives whose mesh has an origin
     std::vector<Bounds> meshBoxes;                     // by mesh number, in the mesh's space in the file
-    // By instance: what places it.
+    // The node that places each instance.
     struct Source {
         std::size_t node = 0;       // index into Scene::nodes
         std::size_t placement = 0;  // index into its Instancing, if it has one
@@ -66,8 +66,8 @@ struct SceneViewData {
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;
 
-    // What GpuScene::upload() and Renderer::recordMotion() take. Both point into this object and into the
-    // Scene.
+    // The arguments of GpuScene::upload() and Renderer::recordMotion(). Both point into this object and into
+    // the Scene.
     SceneView view() const;
     MotionView motion() const;
 
@@ -81,10 +81,11 @@ struct SceneViewData {
 };
 
 // Returns every mesh that a node places, with the numbers of mesh and primitive that the Scene has.
-// Primitives without a triangle are left out, and so are instances of meshes that have no other, and nodes
-// that are never shown. Positions are in metres, lights in lux (directional) and candela (point and spot).
-// Copies no pixels, and positions only of meshes that are far from their own origin: `scene` must outlive the
-// result. Its images must have been decoded, or loadTextures() must read them, or the runtime refuses them.
+// Primitives without a triangle are left out, and so are instances of meshes without any other primitive, and
+// nodes that are never shown. Positions are in metres, lights in lux (directional) and candela (point and
+// spot). Copies no pixels, and positions only of meshes that are far from their own origin: `scene` must
+// outlive the result. Its images must have been decoded, or loadTextures() must read them, or the runtime
+// refuses them.
 SceneViewData makeSceneView(const gltf::Scene& scene);
 
 // Returns the layout of the package's material records. `model` is that of the materials which it was
@@ -96,7 +97,7 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
 void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data);
 
 // Takes the pose of `scene`, from which `data` was made: its origin, instances, joints, weights, materials
-// and lights. Lights that were added after those of the scene stay; they must be directional.
+// and lights. Lights that were added after the scene's own stay; they must be directional.
 void poseSceneView(const gltf::Scene& scene, SceneViewData& data);
 
 // Returns three rows of four of a column-major matrix.

@@ -1,4 +1,4 @@
-// Chooses how bright the sky is in a scene without an environment map: it follows the lights.
+// Chooses the brightness of the sky in a scene without an environment map: it follows the lights.
 #pragma once
 
 #include "gltf/scene.h"

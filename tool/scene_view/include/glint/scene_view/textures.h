@@ -30,13 +30,13 @@ struct TextureSet {
     std::vector<gltf::FittedImage> images;
     std::uint32_t found = 0;    // in the cache
     double milliseconds = 0.0;  // wall clock
-    // That --compress-textures changes nothing, and why.
+    // The reasons why --compress-textures changes nothing.
     std::vector<Diagnostic> notes;
 };
 
 // Reads all images of a scene that was imported with ImportOptions::keepImageFiles or decodeImages, on
-// several threads. An image that no material reads counts as colour. Error "image-decode": that of the first
-// image that can't be read.
+// several threads. An image that no material reads counts as colour. Error "image-decode" of the first image
+// that can't be read.
 Result<std::shared_ptr<const TextureSet>> loadTextures(const gltf::Scene& scene,
                                                        const TextureOptions& options);
 
