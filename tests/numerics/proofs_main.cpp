@@ -15,7 +15,7 @@
 namespace {
 
 namespace numerics = glint::numerics;
-namespace prove = glint::prove;
+namespace verify = glint::verify;
 
 struct Settings {
     std::string only;
