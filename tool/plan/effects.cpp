@@ -1,7 +1,7 @@
 #include "plan/effects.h"
 
 #include "plan/held_text.h"
-#include "plan/plan.h"
+#include "plan/key.h"
 
 #include <fmt/format.h>
 

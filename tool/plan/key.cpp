@@ -1,5 +1,6 @@
+#include "plan/key.h"
+
 #include "plan/held_text.h"
-#include "plan/plan.h"
 
 #include <fmt/format.h>
 

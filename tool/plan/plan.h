@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan/effects.h"
+#include "plan/key.h"
 #include "plan/lock_ids.h"
 #include "plan/merge.h"
 
@@ -85,21 +86,6 @@ struct Plan {
     EffectPlan effects;                         // The compiler fills this in, and the next.
     std::vector<package::LayerEntry> layers{};  // by the index of their images
 };
-
-// Returns the canonical key of one primitive. If `dropped` is not null, (feature name, reason) pairs are
-// added to it.
-materials::FeatureMask makeKey(const materials::Material& material,
-                               const materials::PrimitiveInputs& primitive,
-                               const materials::KeyOptions& options,
-                               std::vector<std::pair<std::string, std::string>>* dropped = nullptr);
-
-// Returns the same options, but with all lobes, as primary surfaces need them.
-materials::KeyOptions keepAllLobes(materials::KeyOptions options);
-
-// Returns the policy under which rays see the alpha of every surface, which is Opaque if all are. Requires
-// every PrimitiveInputs::material to index `materials`.
-package::AlphaPolicy neededAlphaPolicy(std::span<const materials::Material> materials,
-                                       std::span<const materials::PrimitiveInputs> primitives);
 
 // Returns whether the shares of hits are counted rather than expected from the primitives.
 bool countsHits(const PlanOptions& options);
