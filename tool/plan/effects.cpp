@@ -2,6 +2,7 @@
 
 #include "plan/held_text.h"
 #include "plan/key.h"
+#include "plan/key.h"
 
 #include <fmt/format.h>
 
