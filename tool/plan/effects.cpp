@@ -2,7 +2,6 @@
 
 #include "plan/held_text.h"
 #include "plan/key.h"
-#include "plan/key.h"
 
 #include <fmt/format.h>
 
