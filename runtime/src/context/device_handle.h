@@ -2,6 +2,7 @@
 #pragma once
 
 #include "context/context_state.h"
+#include "context/vulkan_error.h"
 
 #include <utility>
 
@@ -44,6 +45,21 @@ private:
     Context::State* context_ = nullptr;
     Handle handle_ = VK_NULL_HANDLE;
 };
+
+// Makes a device object with a function of the table that creates one, such as `context.vk.CreateSampler`.
+// `name` is that function's name in Vulkan, for the error.
+template <typename Unique, typename Info, typename Handle>
+Result<Unique> createHandle(Context::State& context,
+                            VkResult(VKAPI_PTR* create)(VkDevice, const Info*, const VkAllocationCallbacks*,
+                                                        Handle*),
+                            const char* name, const Info& info) {
+    Handle handle = VK_NULL_HANDLE;
+    const VkResult result = create(context.handles.device, &info, nullptr, &handle);
+    if (result != VK_SUCCESS) {
+        return vulkanError(name, result);
+    }
+    return Unique(context, handle);
+}
 
 using UniqueBuffer = DeviceHandle<VkBuffer, &DeviceTable::DestroyBuffer>;
 using UniqueImage = DeviceHandle<VkImage, &DeviceTable::DestroyImage>;

@@ -63,12 +63,7 @@ Result<UniqueImageView> createImageView(Context::State& context, VkImage image, 
     view.components = info.components;
     view.subresourceRange = wholeImage(info.aspect);
     view.subresourceRange.baseMipLevel = firstMip;
-    VkImageView handle = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateImageView(context.handles.device, &view, nullptr, &handle);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateImageView", result);
-    }
-    return UniqueImageView(context, handle);
+    return createHandle<UniqueImageView>(context, context.vk.CreateImageView, "vkCreateImageView", view);
 }
 
 Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info,

@@ -24,12 +24,8 @@ Result<Timer> Timer::create(Context::State& context, std::uint32_t capacity) {
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = timer.queries_;
-    VkQueryPool pool = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateQueryPool(context.handles.device, &info, nullptr, &pool);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateQueryPool", result);
-    }
-    timer.pool_ = UniqueQueryPool(context, pool);
+    GLINT_TRY(timer.pool_,
+              createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
     // It is not allowed to read a query that was never reset, but one without a result may be read.
     context.vk.ResetQueryPool(context.handles.device, pool, 0, timer.queries_);
     return timer;

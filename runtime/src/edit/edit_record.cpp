@@ -51,7 +51,7 @@ struct Prepared {
     AccelerationStructure tlas;
     Scratch tlasScratch;
     std::uint32_t tlasCapacity = 0;
-    std::optional<SceneSet> set;
+    std::optional<DescriptorSet> set;
     TlasBuild build;
 };
 

@@ -1,6 +1,7 @@
 #include "frame/frame_resources.h"
 
 #include "context/commands.h"
+#include "context/layouts.h"
 #include "context/vulkan_error.h"
 #include "frame/bounce_levels.h"
 
@@ -242,36 +243,12 @@ std::vector<VkDescriptorSetLayoutBinding> setBindings(const Context::State& cont
     return bindings;
 }
 
-Status createSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
-    GLINT_TRY(frame.setLayout, createFrameSetLayout(context, size));
-    const VkDescriptorSetLayout layout = frame.setLayout.get();
-    const VkDevice device = context.handles.device;
-    std::vector<VkDescriptorPoolSize> poolSizes;
-    for (const VkDescriptorSetLayoutBinding& binding : setBindings(context, size)) {
-        poolSizes.push_back({binding.descriptorType, binding.descriptorCount});
-    }
-
-    VkDescriptorPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = static_cast<std::uint32_t>(poolSizes.size());
-    poolInfo.pPoolSizes = poolSizes.data();
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    VkResult result = context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDescriptorPool", result);
-    }
-    frame.descriptorPool = UniqueDescriptorPool(context, pool);
-
-    VkDescriptorSetAllocateInfo setInfo{};
-    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    setInfo.descriptorPool = pool;
-    setInfo.descriptorSetCount = 1;
-    setInfo.pSetLayouts = &layout;
-    result = context.vk.AllocateDescriptorSets(device, &setInfo, &frame.set);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateDescriptorSets", result);
-    }
+Status createFrameSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    const std::vector<VkDescriptorSetLayoutBinding> bindings = setBindings(context, size);
+    GLINT_TRY(frame.setLayout, createSetLayout(context, bindings));
+    GLINT_TRY(auto made, createSet(context, frame.setLayout.get(), bindings, false));
+    frame.descriptorPool = std::move(made.pool);
+    frame.set = made.set;
     return okStatus();
 }
 
@@ -321,18 +298,7 @@ const DeviceImage& imageOf(const FrameResources& frame, std::uint32_t binding) {
 }
 
 Result<UniqueSetLayout> createFrameSetLayout(Context::State& context, const FrameSize& size) {
-    const std::vector<VkDescriptorSetLayoutBinding> bindings = setBindings(context, size);
-    VkDescriptorSetLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    info.bindingCount = static_cast<std::uint32_t>(bindings.size());
-    info.pBindings = bindings.data();
-    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateDescriptorSetLayout(context.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDescriptorSetLayout", result);
-    }
-    return UniqueSetLayout(context, layout);
+    return createSetLayout(context, setBindings(context, size));
 }
 
 Status createFrameResources(Context::State& context, const FrameSize& size, FrameResources& frame) {
@@ -341,7 +307,7 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
     }
     GLINT_TRY_DO(createImages(context, size, frame));
     GLINT_TRY_DO(createBuffers(context, size, frame));
-    GLINT_TRY_DO(createSet(context, size, frame));
+    GLINT_TRY_DO(createFrameSet(context, size, frame));
     fillSet(context, size, frame);
     return okStatus();
 }

@@ -1,5 +1,6 @@
 #include "motion/deformer.h"
 
+#include "context/layouts.h"
 #include "context/memory_report.h"
 #include "context/vulkan_error.h"
 #include "interop/deform.h"
@@ -119,16 +120,7 @@ Result<UniquePipelineLayout> createDeformLayout(Context::State& context) {
     VkPushConstantRange range{};
     range.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
     range.size = sizeof(gpu::DeformConstants);
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
-    }
-    return UniquePipelineLayout(context, layout);
+    return createPipelineLayout(context, {}, range);
 }
 
 Status Deformer::createPipeline(const Package& package) {

@@ -9,12 +9,8 @@ Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span
     info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
     info.codeSize = words.size_bytes();
     info.pCode = words.data();
-    VkShaderModule module = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateShaderModule(context.handles.device, &info, nullptr, &module);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateShaderModule", result);
-    }
-    return UniqueShaderModule(context, module);
+    return createHandle<UniqueShaderModule>(context, context.vk.CreateShaderModule, "vkCreateShaderModule",
+                                            info);
 }
 
 std::vector<std::uint32_t> withHalfImages(std::span<const std::uint32_t> words) {

@@ -1,4 +1,5 @@
 // Makes all pipelines of a package, for reports.
+#include "context/layouts.h"
 #include "context/vulkan_error.h"
 #include "motion/deformer.h"
 #include "renderer/pipeline_plan.h"
@@ -72,7 +73,7 @@ Result<Layout> joinSets(Context::State& context, std::vector<UniqueSetLayout> se
     for (const UniqueSetLayout& set : sets) {
         handles.push_back(set.get());
     }
-    GLINT_TRY(auto pipeline, createPipelineLayout(context, handles, pushBytes));
+    GLINT_TRY(auto pipeline, createPassLayout(context, handles, pushBytes));
     return Layout{std::move(sets), std::move(pipeline)};
 }
 
@@ -176,23 +177,7 @@ Result<UniqueSetLayout> hostSetLayout(Context::State& context,
                                                         VK_DESCRIPTOR_BINDING_PARTIALLY_BOUND_BIT
                                                   : 0);
     }
-    VkDescriptorSetLayoutBindingFlagsCreateInfo flags{};
-    flags.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO;
-    flags.bindingCount = static_cast<std::uint32_t>(bindingFlags.size());
-    flags.pBindingFlags = bindingFlags.data();
-    VkDescriptorSetLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    info.pNext = &flags;
-    info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_UPDATE_AFTER_BIND_POOL_BIT;
-    info.bindingCount = static_cast<std::uint32_t>(bindings.size());
-    info.pBindings = bindings.data();
-    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateDescriptorSetLayout(context.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDescriptorSetLayout", result);
-    }
-    return UniqueSetLayout(context, layout);
+    return createSetLayout(context, bindings, bindingFlags);
 }
 
 // A layout as a host might have, whose pipelines the package's steps join.

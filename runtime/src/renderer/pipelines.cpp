@@ -1,5 +1,6 @@
 #include "renderer/pipelines.h"
 
+#include "context/layouts.h"
 #include "context/vulkan_error.h"
 #include "frame/frame_resources.h"
 #include "package/shader_modules.h"
@@ -28,7 +29,7 @@ Status createLayout(Context::State& context, const LayoutSource& source, Pipelin
         pipelines.pushStages = source.givenPushStages;
         return okStatus();
     }
-    GLINT_TRY(auto layout, createPipelineLayout(context, source.sets, sizeof(gpu::PushConstants)));
+    GLINT_TRY(auto layout, createPassLayout(context, source.sets, sizeof(gpu::PushConstants)));
     pipelines.pushStages = pushStages(context);
     pipelines.layout = layout.get();
     pipelines.ownLayout = std::make_shared<const UniquePipelineLayout>(std::move(layout));
@@ -312,22 +313,10 @@ VkShaderStageFlags pushStages(const Context::State& context) {
     return VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
 }
 
-Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
-                                                  std::span<const VkDescriptorSetLayout> sets,
-                                                  std::uint32_t pushBytes) {
-    const VkPushConstantRange range{pushStages(context), 0, pushBytes};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = static_cast<std::uint32_t>(sets.size());
-    info.pSetLayouts = sets.data();
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
-    }
-    return UniquePipelineLayout(context, layout);
+Result<UniquePipelineLayout> createPassLayout(Context::State& context,
+                                              std::span<const VkDescriptorSetLayout> sets,
+                                              std::uint32_t pushBytes) {
+    return createPipelineLayout(context, sets, {pushStages(context), 0, pushBytes});
 }
 
 std::string pipelineName(const Package& package, const package::ModuleKey& key) {

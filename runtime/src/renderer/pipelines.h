@@ -119,9 +119,9 @@ bool runsFallback(const PipelineChoice& choice, package::ModuleRole role);
 VkShaderStageFlags pushStages(const Context::State& context);
 
 // Makes a layout with push constants for all stages. Error "vulkan-call".
-Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
-                                                  std::span<const VkDescriptorSetLayout> sets,
-                                                  std::uint32_t pushBytes);
+Result<UniquePipelineLayout> createPassLayout(Context::State& context,
+                                              std::span<const VkDescriptorSetLayout> sets,
+                                              std::uint32_t pushBytes);
 
 // Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
 std::string pipelineName(const Package& package, const package::ModuleKey& key);

@@ -1,6 +1,7 @@
 // The part of a GpuScene that the renderer sees.
 #pragma once
 
+#include "context/layouts.h"
 #include "context/resources.h"
 #include "lights/emitters.h"
 #include "lights/light_tree.h"
@@ -100,12 +101,6 @@ inline std::uint32_t textureCapacity(const GpuScene::State& state) {
 // samplers.
 Status createSceneSet(GpuScene::State& state);
 
-// The parts of set 0. Each set has a pool of its own, so that older sets can stay with the frames that use
-// them.
-struct SceneSet {
-    UniqueDescriptorPool pool;
-    VkDescriptorSet set = VK_NULL_HANDLE;
-};
 Status createSetLayout(GpuScene::State& state);
 
 // The number of textures and samplers in the arrays of set 0, and whether some of them may be absent.
@@ -117,7 +112,7 @@ struct SceneSetSize {
 // Error "vulkan-call".
 Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const SceneSetSize& size);
 // `absent` is bound where a texture has no image or there is no texture.
-Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
-                              VkImageView absent);
+Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
+                                   VkImageView absent);
 
 }  // namespace glint

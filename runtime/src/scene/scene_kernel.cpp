@@ -1,5 +1,6 @@
 #include "context/commands.h"
 #include "context/context_state.h"
+#include "context/layouts.h"
 #include "context/vulkan_error.h"
 #include "package/shader_modules.h"
 #include "scene/gpu_scene_state.h"
@@ -16,18 +17,7 @@ Result<UniquePipelineLayout> createKernelLayout(GpuScene::State& scene) {
     Context::State& context = scene.context;
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(gpu::PushConstants)};
     const VkDescriptorSetLayout sets[] = {scene.setLayout.get()};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = 1;
-    info.pSetLayouts = sets;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreatePipelineLayout(context.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
-    }
-    return UniquePipelineLayout(context, layout);
+    return createPipelineLayout(context, sets, range);
 }
 
 // The memory of one run.

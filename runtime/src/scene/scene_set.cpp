@@ -1,4 +1,5 @@
 // Descriptor set 0: the acceleration structure, textures, samplers.
+#include "context/layouts.h"
 #include "context/vulkan_error.h"
 #include "interop/frame.h"
 #include "scene/gpu_scene_state.h"
@@ -38,23 +39,7 @@ Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const Scen
     }
     const VkDescriptorBindingFlags arrays = VK_DESCRIPTOR_BINDING_UPDATE_AFTER_BIND_BIT | room;
     const VkDescriptorBindingFlags bindingFlags[kBindings] = {0, arrays, arrays};
-    VkDescriptorSetLayoutBindingFlagsCreateInfo flags{};
-    flags.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO;
-    flags.bindingCount = kBindings;
-    flags.pBindingFlags = bindingFlags;
-    VkDescriptorSetLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-    info.pNext = &flags;
-    info.flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_UPDATE_AFTER_BIND_POOL_BIT;
-    info.bindingCount = kBindings;
-    info.pBindings = bindings.data();
-    VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-    const VkResult result =
-        context.vk.CreateDescriptorSetLayout(context.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDescriptorSetLayout", result);
-    }
-    return UniqueSetLayout(context, layout);
+    return createSetLayout(context, bindings, bindingFlags);
 }
 
 Status createSetLayout(GpuScene::State& state) {
@@ -64,36 +49,8 @@ Status createSetLayout(GpuScene::State& state) {
 
 namespace {
 
-Result<SceneSet> allocateSet(const GpuScene::State& state) {
-    std::array<VkDescriptorPoolSize, kBindings> sizes{};
-    const auto bindings = makeBindings(state.context, sizeOf(state));
-    for (std::size_t i = 0; i < kBindings; ++i) {
-        sizes[i] = {bindings[i].descriptorType, bindings[i].descriptorCount};
-    }
-    VkDescriptorPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
-    poolInfo.flags = VK_DESCRIPTOR_POOL_CREATE_UPDATE_AFTER_BIND_BIT;
-    poolInfo.maxSets = 1;
-    poolInfo.poolSizeCount = kBindings;
-    poolInfo.pPoolSizes = sizes.data();
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    const VkDevice device = state.context.handles.device;
-    VkResult result = state.context.vk.CreateDescriptorPool(device, &poolInfo, nullptr, &pool);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDescriptorPool", result);
-    }
-    SceneSet set{UniqueDescriptorPool(state.context, pool), VK_NULL_HANDLE};
-    const VkDescriptorSetLayout layout = state.setLayout.get();
-    VkDescriptorSetAllocateInfo setInfo{};
-    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
-    setInfo.descriptorPool = pool;
-    setInfo.descriptorSetCount = 1;
-    setInfo.pSetLayouts = &layout;
-    result = state.context.vk.AllocateDescriptorSets(device, &setInfo, &set.set);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateDescriptorSets", result);
-    }
-    return set;
+Result<DescriptorSet> allocateSet(const GpuScene::State& state) {
+    return createSet(state.context, state.setLayout.get(), makeBindings(state.context, sizeOf(state)), true);
 }
 
 VkWriteDescriptorSet writeOf(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
@@ -137,9 +94,9 @@ void fillSet(const GpuScene::State& state, VkDescriptorSet set, VkAccelerationSt
 
 }  // namespace
 
-Result<SceneSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
-                              VkImageView absent) {
-    Result<SceneSet> set = allocateSet(state);
+Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
+                                   VkImageView absent) {
+    Result<DescriptorSet> set = allocateSet(state);
     if (set) {
         fillSet(state, set->set, tlas, absent);
     }

@@ -100,7 +100,7 @@ Status adoptViews(TextureStream::State& state, std::map<std::uint32_t, UniqueIma
         state.scene.editor->state().setDirty = true;
         retired = &state.scene.editor->state().retired;
     } else {
-        Result<SceneSet> set = makeSceneSet(state.scene, state.scene.tlas.handle.get(), VK_NULL_HANDLE);
+        Result<DescriptorSet> set = makeSceneSet(state.scene, state.scene.tlas.handle.get(), VK_NULL_HANDLE);
         if (!set) {
             exchangeViews(state, views);
             return set.error();

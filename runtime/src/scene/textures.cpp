@@ -105,12 +105,7 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
     }
     info.maxAnisotropy = anisotropyOf(context, entry);
     info.anisotropyEnable = info.maxAnisotropy > 1.0F ? VK_TRUE : VK_FALSE;
-    VkSampler sampler = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateSampler(context.handles.device, &info, nullptr, &sampler);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateSampler", result);
-    }
-    return UniqueSampler(context, sampler);
+    return createHandle<UniqueSampler>(context, context.vk.CreateSampler, "vkCreateSampler", info);
 }
 
 Status checkTextureCount(const Context::State& context, std::size_t count) {

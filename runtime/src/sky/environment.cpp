@@ -66,13 +66,8 @@ Status createSampler(Environment::State& state) {
     info.addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT;
     info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    VkSampler sampler = VK_NULL_HANDLE;
-    const VkResult result =
-        state.context.vk.CreateSampler(state.context.handles.device, &info, nullptr, &sampler);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateSampler", result);
-    }
-    state.sampler = UniqueSampler(state.context, sampler);
+    GLINT_TRY(state.sampler, createHandle<UniqueSampler>(state.context, state.context.vk.CreateSampler,
+                                                         "vkCreateSampler", info));
     return okStatus();
 }
 
