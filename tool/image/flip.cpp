@@ -1,12 +1,234 @@
 #include "image/flip.h"
 
-#include "image/flip_color.h"
-#include "image/flip_filters.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <vector>
+
+namespace glint::image::flip {
+
+using Color = std::array<double, 3>;
+
+// Converts linear Rec. 709 in [0, 1] to YCxCz and back. This is the linear opponent space in which the eye's
+// contrast sensitivity was measured: Y in [-16, 100], Cx from green to red, Cz from blue to yellow.
+Color toOpponent(const Color& rgb);
+Color fromOpponent(const Color& opponent);
+
+// Returns CIE L*a*b* of linear Rec. 709, with a* and b* times L*/100 (Hunt: colours look paler in the dark).
+Color toHuntLab(const Color& rgb);
+
+// Returns the perceived difference of two colours of toHuntLab(), from 0 to 1.
+double colorDifference(const Color& a, const Color& b);
+
+// The weights from -radius to radius.
+using Kernel = std::vector<double>;
+
+// The contrast sensitivity of the eye: a sum of Gaussians for each channel of YCxCz. The blue-yellow channel
+// has two terms, with these shares of the sum.
+struct SensitivityFilters {
+    Kernel achromatic;
+    Kernel redGreen;
+    Kernel blueYellowWide;
+    Kernel blueYellowNarrow;
+    double wideShare = 1.0;
+    double narrowShare = 0.0;
+};
+// Returns filters that have one radius and sum to 1 each.
+SensitivityFilters sensitivityFilters(double pixelsPerDegree);
+
+// The filters of edges and points: derivatives of a Gaussian in one direction, and the Gaussian in the other.
+struct FeatureFilters {
+    Kernel smooth;  // sums to 1
+    Kernel edge;    // first derivative: weights above 0 sum to 1, those below to -1
+    Kernel point;   // second derivative, normalised like the edge filter
+};
+// Returns filters that have one radius.
+FeatureFilters featureFilters(double pixelsPerDegree);
+
+inline std::size_t radiusOf(const Kernel& kernel) {
+    return kernel.size() / 2;
+}
+
+namespace {
+
+using Matrix = std::array<Color, 3>;
+
+// Matrices from linear RGB to CIE XYZ and back, derived from the chromaticities of ITU-R BT.709's primaries
+// and of D65 (0.3127, 0.3290).
+constexpr Matrix kToXyz{{{506752.0 / 1228815.0, 87881.0 / 245763.0, 12673.0 / 70218.0},
+                         {87098.0 / 409605.0, 175762.0 / 245763.0, 12673.0 / 175545.0},
+                         {7918.0 / 409605.0, 87881.0 / 737289.0, 1001167.0 / 1053270.0}}};
+constexpr Matrix kFromXyz{{{12831.0 / 3959.0, -329.0 / 214.0, -1974.0 / 3959.0},
+                           {-851781.0 / 878810.0, 1648619.0 / 878810.0, 36519.0 / 878810.0},
+                           {705.0 / 12673.0, -2585.0 / 12673.0, 705.0 / 667.0}}};
+
+// White in XYZ, which is the reference illuminant.
+constexpr Color kWhite{kToXyz[0][0] + kToXyz[0][1] + kToXyz[0][2], kToXyz[1][0] + kToXyz[1][1] + kToXyz[1][2],
+                       kToXyz[2][0] + kToXyz[2][1] + kToXyz[2][2]};
+
+// q_c, p_c and p_t of the paper: the exponent of the difference, and the bend of its range. Differences up to
+// kBend of the largest one take kBendTo of the output.
+constexpr double kExponent = 0.7;
+constexpr double kBend = 0.4;
+constexpr double kBendTo = 0.95;
+
+constexpr Color multiply(const Matrix& m, const Color& v) {
+    return {m[0][0] * v[0] + m[0][1] * v[1] + m[0][2] * v[2],
+            m[1][0] * v[0] + m[1][1] * v[1] + m[1][2] * v[2],
+            m[2][0] * v[0] + m[2][1] * v[1] + m[2][2] * v[2]};
+}
+
+// The function f of CIE 1976 L*a*b* (CIE 15:2004).
+double labCurve(double t) {
+    constexpr double kDelta = 6.0 / 29.0;
+    return t > kDelta * kDelta * kDelta ? std::cbrt(t) : t / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
+}
+
+// The HyAB distance: Abasi, Amani Tehran and Fairchild 2019, "Distance metrics for very large color
+// differences".
+double hyab(const Color& a, const Color& b) {
+    return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
+}
+
+}  // namespace
+
+// Source: Flohr, Kolpatzik, Balasubramanian, Carrara, Bouman and Allebach 1993, "Model-based color image
+// quantization".
+Color toOpponent(const Color& rgb) {
+    const Color xyz = multiply(kToXyz, rgb);
+    const double x = xyz[0] / kWhite[0];
+    const double y = xyz[1] / kWhite[1];
+    const double z = xyz[2] / kWhite[2];
+    return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
+}
+
+Color fromOpponent(const Color& opponent) {
+    const double y = (opponent[0] + 16.0) / 116.0;
+    const double x = y + opponent[1] / 500.0;
+    const double z = y - opponent[2] / 200.0;
+    return multiply(kFromXyz, {x * kWhite[0], y * kWhite[1], z * kWhite[2]});
+}
+
+// Sources: CIE 1976 L*a*b* (CIE 15:2004), and Hunt 1952, "Light and Dark Adaptation and the Perception of
+// Color", in the form of the paper.
+Color toHuntLab(const Color& rgb) {
+    const Color xyz = multiply(kToXyz, rgb);
+    const double x = labCurve(xyz[0] / kWhite[0]);
+    const double y = labCurve(xyz[1] / kWhite[1]);
+    const double z = labCurve(xyz[2] / kWhite[2]);
+    const double lightness = 116.0 * y - 16.0;
+    return {lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z)};
+}
+
+double colorDifference(const Color& a, const Color& b) {
+    // The largest difference within Rec. 709 is that between green and blue.
+    static const double kLargest =
+        std::pow(hyab(toHuntLab({0.0, 1.0, 0.0}), toHuntLab({0.0, 0.0, 1.0})), kExponent);
+    const double difference = std::pow(hyab(a, b), kExponent);
+    const double bend = kBend * kLargest;
+    if (difference < bend) {
+        return kBendTo / bend * difference;
+    }
+    return std::min(1.0, kBendTo + (difference - bend) / (kLargest - bend) * (1.0 - kBendTo));
+}
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// A term a sqrt(π / b) exp(-π² d² / b) over the distance d in degrees. These are the paper's spatial filters,
+// with the parameters of its table 1.
+struct Term {
+    double a;
+    double b;
+};
+constexpr Term kAchromatic{1.0, 0.0047};
+constexpr Term kRedGreen{1.0, 0.0053};
+constexpr Term kBlueYellowWide{34.1, 0.04};
+constexpr Term kBlueYellowNarrow{13.5, 0.025};
+
+// The number of standard deviations that a filter reaches from its middle, as in the paper.
+constexpr double kReach = 3.0;
+// The distance from the highest to the lowest weight of the edge filter, in degrees: w of the paper's feature
+// detection.
+constexpr double kEdgeWidth = 0.082;
+
+template <typename Function>
+Kernel sample(std::size_t radius, Function function) {
+    Kernel kernel(2 * radius + 1);
+    for (std::size_t i = 0; i < kernel.size(); ++i) {
+        kernel[i] = function(static_cast<double>(i) - static_cast<double>(radius));
+    }
+    return kernel;
+}
+
+// Scales the weights above 0 so that they sum to 1, and those below to -1. Returns the sum of those above
+// before scaling.
+double normalizeLobes(Kernel& kernel) {
+    double above = 0.0;
+    double below = 0.0;
+    for (const double weight : kernel) {
+        (weight > 0.0 ? above : below) += weight;
+    }
+    for (double& weight : kernel) {
+        if (weight != 0.0) {
+            weight /= weight > 0.0 ? above : -below;
+        }
+    }
+    return above;
+}
+
+// The standard deviation of exp(-π² d² / b) is sqrt(b / (2 π²)).
+std::size_t sensitivityRadius(double pixelsPerDegree) {
+    const double deviation = std::sqrt(kBlueYellowWide.b / (2.0 * kPi * kPi));
+    return static_cast<std::size_t>(std::ceil(kReach * deviation * pixelsPerDegree));
+}
+
+Kernel gaussian(const Term& term, double pixelsPerDegree) {
+    return sample(sensitivityRadius(pixelsPerDegree), [&](double x) {
+        const double degrees = x / pixelsPerDegree;
+        return std::exp(-kPi * kPi * degrees * degrees / term.b);
+    });
+}
+
+}  // namespace
+
+SensitivityFilters sensitivityFilters(double pixelsPerDegree) {
+    SensitivityFilters filters{gaussian(kAchromatic, pixelsPerDegree), gaussian(kRedGreen, pixelsPerDegree),
+                               gaussian(kBlueYellowWide, pixelsPerDegree),
+                               gaussian(kBlueYellowNarrow, pixelsPerDegree)};
+    normalizeLobes(filters.achromatic);
+    normalizeLobes(filters.redGreen);
+    // The paper normalises the sum of both terms over x and y, so each term keeps its share of that sum.
+    const auto weight = [](const Term& term, Kernel& kernel) {
+        const double sum = normalizeLobes(kernel);
+        return term.a * std::sqrt(kPi / term.b) * sum * sum;
+    };
+    const double wide = weight(kBlueYellowWide, filters.blueYellowWide);
+    const double narrow = weight(kBlueYellowNarrow, filters.blueYellowNarrow);
+    filters.wideShare = wide / (wide + narrow);
+    filters.narrowShare = narrow / (wide + narrow);
+    return filters;
+}
+
+FeatureFilters featureFilters(double pixelsPerDegree) {
+    // The extremes of a Gaussian's first derivative are one standard deviation from its middle.
+    const double deviation = 0.5 * kEdgeWidth * pixelsPerDegree;
+    const auto radius = static_cast<std::size_t>(std::ceil(kReach * deviation));
+    const auto bell = [deviation](double x) { return std::exp(-x * x / (2.0 * deviation * deviation)); };
+    FeatureFilters filters{
+        sample(radius, bell), sample(radius, [&](double x) { return -x * bell(x); }),
+        sample(radius, [&](double x) { return (x * x / (deviation * deviation) - 1.0) * bell(x); })};
+    normalizeLobes(filters.smooth);
+    normalizeLobes(filters.edge);
+    normalizeLobes(filters.point);
+    return filters;
+}
+
+}  // namespace glint::image::flip
 
 namespace glint::image {
 

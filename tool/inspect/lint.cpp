@@ -6,13 +6,211 @@
 #include <glint/package_format.h>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <set>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <system_error>
+#include <unistd.h>
+
+extern char** environ;
 
 namespace glint::inspect {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using MaliocJson = nlohmann::json;
+
+constexpr const char* kHint = "run it by hand on this file";
+
+Diagnostic maliocError(const fs::path& where, const std::string& message) {
+    return makeError("malioc", where.string(), message, kHint);
+}
+
+// Returns null if `value` has no member of that name.
+const MaliocJson& member(const MaliocJson& value, const char* name) {
+    static const MaliocJson null;
+    const auto found = value.is_object() ? value.find(name) : value.end();
+    return value.is_object() && found != value.end() ? *found : null;
+}
+
+const MaliocJson& first(const MaliocJson& list) {
+    static const MaliocJson null;
+    return list.is_array() && !list.empty() ? list.front() : null;
+}
+
+std::string textOf(const MaliocJson& value) {
+    return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+std::optional<std::int64_t> integerOf(const MaliocJson& value) {
+    constexpr double kLimit = 1e15;
+    const double number = value.is_number() ? value.get<double>() : std::nan("");
+    return std::abs(number) < kLimit ? std::optional(std::llround(number)) : std::nullopt;
+}
+
+// Returns the value of a name in a list of {"name", "value"}.
+const MaliocJson& property(const MaliocJson& properties, std::string_view name) {
+    static const MaliocJson null;
+    if (properties.is_array()) {
+        for (const MaliocJson& it : properties) {
+            if (textOf(member(it, "name")) == name) {
+                return member(it, "value");
+            }
+        }
+    }
+    return null;
+}
+
+void readCycles(const MaliocJson& performance, MaliocReport& report) {
+    const MaliocJson& pipelines = member(performance, "pipelines");
+    const MaliocJson& longest = member(performance, "longest_path_cycles");
+    const MaliocJson& counts = member(longest, "cycle_count");
+    if (pipelines.is_array() && counts.is_array()) {
+        for (std::size_t i = 0; i < std::min(pipelines.size(), counts.size()); ++i) {
+            // A path without a bound is null.
+            if (counts[i].is_number() && pipelines[i].is_string()) {
+                const auto cycles = counts[i].get<double>();
+                report.cycles[textOf(pipelines[i])] = cycles;
+                report.longestCycles = std::max(report.longestCycles.value_or(cycles), cycles);
+            }
+        }
+    }
+    if (const MaliocJson& bound = member(longest, "bound_pipelines"); bound.is_array()) {
+        for (const MaliocJson& pipeline : bound) {
+            if (pipeline.is_string()) {
+                report.boundPipelines.push_back(textOf(pipeline));
+            }
+        }
+    }
+}
+
+// The output of the program that `arguments` run, including its errors.
+struct ProgramOutput {
+    int error = 0;  // errno, where it could not be run
+    int status = 0;
+    std::string text;
+};
+
+ProgramOutput runProgram(std::vector<std::string> arguments) {
+    std::array<int, 2> pipe{};
+    if (::pipe(pipe.data()) != 0) {
+        return {errno, 0, {}};
+    }
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addclose(&actions, pipe[0]);
+    posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
+    posix_spawn_file_actions_addclose(&actions, pipe[1]);
+    std::vector<char*> pointers;
+    pointers.reserve(arguments.size() + 1);
+    for (std::string& argument : arguments) {
+        pointers.push_back(argument.data());
+    }
+    pointers.push_back(nullptr);
+    pid_t child = 0;
+    ProgramOutput output;
+    output.error = posix_spawn(&child, pointers[0], &actions, nullptr, pointers.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close(pipe[1]);
+    if (output.error == 0) {
+        std::array<char, 4096> buffer{};
+        for (ssize_t count = 1; count > 0 || (count < 0 && errno == EINTR);) {
+            count = read(pipe[0], buffer.data(), buffer.size());
+            output.text.append(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+        }
+        while (waitpid(child, &output.status, 0) < 0 && errno == EINTR) {
+        }
+    }
+    close(pipe[0]);
+    return output;
+}
+
+bool isRunnable(const fs::path& path) {
+    std::error_code error;
+    return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
+}
+
+}  // namespace
+
+std::optional<fs::path> findProgram(const std::string& program) {
+    if (program.find('/') != std::string::npos) {
+        return isRunnable(program) ? std::optional<fs::path>(program) : std::nullopt;
+    }
+    const char* const variable = std::getenv("PATH");
+    const std::string path = variable == nullptr ? "" : variable;
+    for (std::size_t begin = 0; begin <= path.size();) {
+        const std::size_t end = std::min(path.find(':', begin), path.size());
+        const std::string folder = path.substr(begin, end - begin);
+        // An empty entry stands for the current folder (POSIX, 8.3).
+        if (fs::path file = fs::path(folder.empty() ? "." : folder) / program; isRunnable(file)) {
+            return file;
+        }
+        begin = end + 1;
+    }
+    return std::nullopt;
+}
+
+Result<MaliocReport> parseMalioc(std::string_view text) {
+    const MaliocJson json = MaliocJson::parse(text, nullptr, false);
+    const MaliocJson& shader = first(member(json, "shaders"));
+    if (!shader.is_object()) {
+        const std::string line(text.substr(0, text.find('\n')));
+        return maliocError({}, "malioc printed no report: " + (line.empty() ? "nothing at all" : line));
+    }
+    if (const MaliocJson& error = first(member(shader, "errors")); error.is_string()) {
+        return maliocError({}, "malioc: " + textOf(error));
+    }
+    MaliocReport report;
+    report.core = textOf(member(member(shader, "hardware"), "core"));
+    // A compute shader has one variant.
+    const MaliocJson& variant = first(member(shader, "variants"));
+    readCycles(member(variant, "performance"), report);
+    const MaliocJson& properties = member(variant, "properties");
+    report.workRegisters = integerOf(property(properties, "work_registers_used"));
+    report.occupancy = integerOf(property(properties, "thread_occupancy"));
+    report.spillBytes = integerOf(property(properties, "stack_spill_bytes"));
+    // This list belongs to the shader as a whole.
+    for (const MaliocJson* const list : {&member(shader, "properties"), &properties}) {
+        if (const MaliocJson& slow = property(*list, "has_slow_ray_traversal"); slow.is_boolean()) {
+            report.slowRayTraversal = slow.get<bool>();
+        }
+    }
+    if (const MaliocJson& spills = property(properties, "has_stack_spilling"); spills.is_boolean()) {
+        report.spills = spills.get<bool>();
+    } else if (report.spillBytes) {
+        report.spills = *report.spillBytes > 0;
+    }
+    return report;
+}
+
+Result<MaliocReport> runMalioc(const fs::path& program, const std::string& core, const fs::path& spirv) {
+    std::vector<std::string> arguments{program.string(), "--vulkan", "--compute", "--format", "json"};
+    if (!core.empty()) {
+        arguments.insert(arguments.end(), {"--core", core});
+    }
+    // The path is absolute, so that no file is taken for an option.
+    arguments.push_back(fs::absolute(spirv).string());
+    const ProgramOutput output = runProgram(std::move(arguments));
+    if (output.error != 0) {
+        return maliocError(program, std::string("can't be run: ") + std::strerror(output.error));
+    }
+    Result<MaliocReport> report = parseMalioc(output.text);
+    if (report && (!WIFEXITED(output.status) || WEXITSTATUS(output.status) != 0)) {
+        return maliocError(spirv, "malioc failed");
+    }
+    return report ? report : maliocError(spirv, report.error().message);
+}
 
 namespace fs = std::filesystem;
 

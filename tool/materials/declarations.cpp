@@ -1,15 +1,214 @@
 #include "materials/declarations.h"
 
 #include "base/json.h"
-#include "materials/effect_reader.h"
+#include "materials/declaration_json.h"
+#include "materials/effect_declaration.h"
 #include "materials/feature_code.h"
+#include "materials/material_model.h"
 #include "materials/model_builder.h"
+
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
+#include <span>
+#include <string_view>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 namespace glint::materials {
+
+// The members that a declaration may have.
+std::vector<std::string_view> effectMembers();
+// Reads the declaration in `file`. Throws DeclarationFault.
+EffectDeclaration readEffect(const Members& members, std::string_view file, bool isOfPack);
+// Orders the effects: their place is the number of their bit. Throws DeclarationFault.
+void numberEffects(std::vector<EffectDeclaration>& effects);
+
+namespace {
+
+using package::EffectKind;
+
+constexpr std::string_view kMembers[] = {"$schema", "name",         "about",   "kind",     "order",
+                                         "glsl",    "calledFor",    "refines", "settings", "coherence",
+                                         "absent",  "sharesLights", "albedo",  "shows"};
+
+constexpr struct {
+    std::string_view name;
+    EffectKind kind;
+} kKinds[] = {{"light", EffectKind::Light}, {"surface", EffectKind::Surface}, {"rays", EffectKind::Rays}};
+
+constexpr struct {
+    std::string_view name;
+    bool all;
+    Behaviour behaviour;
+} kCalls[] = {{"lit", true, {}},
+              {"reflects", false, Behaviour::Reflects},
+              {"transmits", false, Behaviour::Transmits},
+              {"scatters", false, Behaviour::Scatters},
+              {"emits", false, Behaviour::Emits}};
+
+constexpr std::string_view kAlbedos[] = {"diffuse", "specular", "transmission"};
+constexpr std::string_view kShown[] = {"mirrored", "refracted"};
+
+// Reads a member that only effects with rays have, and whose value is one of the words.
+std::string readWord(const Members& members, std::string_view name, std::span<const std::string_view> words,
+                     EffectKind kind) {
+    if (!members.has(name)) {
+        return {};
+    }
+    std::string word = members.text(name);
+    if (kind != EffectKind::Rays) {
+        failAt(members.at(name), "only an effect of the kind rays can have it");
+    }
+    if (std::ranges::find(words, word) == words.end()) {
+        failAt(members.at(name), fmt::format("\"{}\" is none of {}", word, fmt::join(words, ", ")));
+    }
+    return word;
+}
+
+// The files of GLSL, and the kind of effect that has each.
+constexpr struct {
+    std::string_view name;
+    std::string EffectDeclaration::*file;
+    EffectKind kind;
+    bool isNeeded;
+    std::string_view extension;
+} kFiles[] = {
+    {"light", &EffectDeclaration::light, EffectKind::Light, true, ".glsl"},
+    {"apply", &EffectDeclaration::apply, EffectKind::Surface, true, ".glsl"},
+    {"sample", &EffectDeclaration::sample, EffectKind::Rays, true, ".glsl"},
+    {"compose", &EffectDeclaration::compose, EffectKind::Rays, false, ".glsl"},
+    {"start", &EffectDeclaration::start, EffectKind::Rays, false, ".glsl"},
+    {"walk", &EffectDeclaration::walk, EffectKind::Rays, false, ".comp"},
+    {"hit", &EffectDeclaration::hit, EffectKind::Rays, false, ".glsl"},
+};
+
+void readFiles(const Members& declaration, std::string_view file, EffectDeclaration& effect) {
+    std::vector<std::string_view> known;
+    for (const auto& row : kFiles) {
+        if (row.kind == effect.kind) {
+            known.push_back(row.name);
+        }
+    }
+    const Members members(declaration["glsl"], declaration.at("glsl"), known);
+    const std::string_view folder = file.substr(0, file.rfind('/') + 1);
+    for (const auto& row : kFiles) {
+        if (row.kind != effect.kind || (!row.isNeeded && !members.has(row.name))) {
+            continue;
+        }
+        const std::string name = members.text(row.name);
+        if (!isDeclaredFile(name, row.extension)) {
+            failAt(members.at(row.name),
+                   fmt::format("\"{}\" must be the name of a {} file beside the declaration", name,
+                               row.extension));
+        }
+        effect.*row.file = std::string(folder) + name;
+    }
+}
+
+EffectCall readCall(const Members& members) {
+    EffectCall call;
+    const auto& row = choose(kCalls, members, "by", members.text("by"));
+    call.byAll = row.all;
+    call.behaviour = row.behaviour;
+    call.lights = members.flag("lights", false);
+    call.because = members.text("because", "");
+    call.otherwise = members.text("otherwise", "");
+    if (call.byAll == call.because.empty() || call.byAll != call.otherwise.empty()) {
+        failAt(members.where(),
+               "\"because\" stands where \"by\" is \"lit\", and there alone; \"otherwise\" stands elsewhere");
+    }
+    return call;
+}
+
+EffectCoherence readCoherence(const Members& declaration) {
+    EffectCoherence coherence;
+    if (declaration.has("coherence") && declaration["coherence"].is_object()) {
+        const Members members(declaration["coherence"], declaration.at("coherence"), {"mirror", "glossy"});
+        coherence.mirror = Members::toNumber(members["mirror"], members.at("mirror"));
+        coherence.glossy = Members::toNumber(members["glossy"], members.at("glossy"));
+    } else {
+        coherence.mirror = declaration.number("coherence", coherence.mirror);
+        coherence.glossy = coherence.mirror;
+    }
+    for (const double value : {coherence.mirror, coherence.glossy}) {
+        if (!(value >= 0.0 && value <= 1.0)) {
+            failAt(declaration.at("coherence"), "must be from 0 to 1");
+        }
+    }
+    return coherence;
+}
+
+}  // namespace
+
+std::vector<std::string_view> effectMembers() {
+    return {std::begin(kMembers), std::end(kMembers)};
+}
+
+EffectDeclaration readEffect(const Members& members, std::string_view file, bool isOfPack) {
+    EffectDeclaration effect;
+    effect.name = members.text("name");
+    if (!isEffectName(effect.name)) {
+        failAt(
+            members.at("name"),
+            fmt::format("\"{}\" must be words of small letters and digits, joined by hyphens", effect.name));
+    }
+    effect.declaration = file;
+    effect.about = members.text("about");
+    if (!effect.about.ends_with('.')) {
+        failAt(members.at("about"), "must be a sentence, with its full stop");
+    }
+    effect.kind = choose(kKinds, members, "kind", members.text("kind")).kind;
+    effect.order = members.number("order", kUnlimited);
+    effect.isOfPack = isOfPack;
+    effect.call = readCall(
+        Members(members["calledFor"], members.at("calledFor"), {"by", "lights", "because", "otherwise"}));
+    effect.refines = members.text("refines", "");
+    effect.coherence = readCoherence(members);
+    effect.settings = members.texts("settings");
+    effect.absent = members.text("absent", "");
+    if (effect.settings.empty() != effect.absent.empty()) {
+        failAt(members.where(), "\"absent\" stands where \"settings\" are, and there alone");
+    }
+    effect.sharesLights = members.flag("sharesLights", false);
+    if (effect.sharesLights && effect.kind != EffectKind::Rays) {
+        failAt(members.at("sharesLights"), "only an effect of the kind rays can share light");
+    }
+    effect.albedo = readWord(members, "albedo", kAlbedos, effect.kind);
+    effect.shows = readWord(members, "shows", kShown, effect.kind);
+    readFiles(members, file, effect);
+    return effect;
+}
+
+void numberEffects(std::vector<EffectDeclaration>& effects) {
+    std::ranges::sort(effects, {}, [](const EffectDeclaration& effect) {
+        return std::tuple(effect.isOfPack, effect.order, effect.name);
+    });
+    bool hasLight = false;
+    for (std::size_t i = 0; i < effects.size(); ++i) {
+        const EffectDeclaration& effect = effects[i];
+        const std::string where = effect.declaration + "#/name";
+        for (std::size_t other = 0; other < i; ++other) {
+            if (effects[other].name == effect.name) {
+                failAt(where, fmt::format("\"{}\" is declared twice; {} declares it, too", effect.name,
+                                          effects[other].declaration));
+            }
+        }
+        if (effect.name == "auto" || effect.name == "all" || effect.name == "none") {
+            failAt(where, fmt::format("--effects has another meaning for \"{}\"", effect.name));
+        }
+        // The passes that light surfaces have room for one such effect.
+        if (effect.kind == EffectKind::Light && std::exchange(hasLight, true)) {
+            failAt(effect.declaration + "#/kind",
+                   "there can be one effect of the kind light; Glint has shadow");
+        }
+        if (i >= package::kMostEffects) {
+            failAt(where, fmt::format("there are more than {} effects", package::kMostEffects));
+        }
+    }
+}
 
 namespace {
 

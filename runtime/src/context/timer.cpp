@@ -27,7 +27,7 @@ Result<Timer> Timer::create(Context::State& context, std::uint32_t capacity) {
     GLINT_TRY(timer.pool_,
               createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
     // It is not allowed to read a query that was never reset, but one without a result may be read.
-    context.vk.ResetQueryPool(context.handles.device, pool, 0, timer.queries_);
+    context.vk.ResetQueryPool(context.handles.device, timer.pool_.get(), 0, timer.queries_);
     return timer;
 }
 

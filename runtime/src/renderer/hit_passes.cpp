@@ -2,10 +2,203 @@
 
 #include "renderer/tile_sort.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace glint {
+
+namespace {
+
+constexpr VkStridedDeviceAddressRegionKHR kNoCallables{};
+
+}  // namespace
+
+PassRecorder::PassRecorder(PassState& state, VkCommandBuffer commands, Timing timing)
+    : state_(state),
+      vk_(state.context.vk),
+      commands_(commands),
+      pushStages_(state.pipelines.pushStages),
+      dependencies_(stagesOf(state.choice)),
+      timesPasses_(timing == Timing::Passes),
+      rows_(state.size.height) {
+    pushed_.frame = state.frame.constants.address;
+}
+
+void PassRecorder::barrier(const MemoryDependency& dependency) {
+    recordDependency(state_.context, commands_, dependency);
+}
+
+void PassRecorder::beginLabel(const std::string& name) {
+    if (vk_.CmdBeginDebugUtilsLabelEXT != nullptr) {
+        VkDebugUtilsLabelEXT text{};
+        text.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+        text.pLabelName = name.c_str();
+        vk_.CmdBeginDebugUtilsLabelEXT(commands_, &text);
+    }
+}
+
+void PassRecorder::endLabel() {
+    if (vk_.CmdEndDebugUtilsLabelEXT != nullptr) {
+        vk_.CmdEndDebugUtilsLabelEXT(commands_);
+    }
+}
+
+void PassRecorder::beginPass(const PassLabel& label) {
+    beginLabel(label.name);
+    if (timesPasses_) {
+        state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.timed.size()));
+        state_.timed.push_back(label);
+    }
+}
+
+void PassRecorder::endPass() {
+    if (timesPasses_) {
+        state_.timer.recordEnd(commands_, static_cast<std::uint32_t>(state_.timed.size() - 1));
+    }
+    endLabel();
+}
+
+std::uint32_t PassRecorder::beginStretch(const PassLabel& label) {
+    const auto stretch = static_cast<std::uint32_t>(state_.timed.size());
+    if (!timesPasses_) {
+        state_.timer.recordBegin(commands_, stretch);
+        state_.timed.push_back(label);
+    }
+    return stretch;
+}
+
+void PassRecorder::endStretch(std::uint32_t stretch) {
+    if (!timesPasses_) {
+        state_.timer.recordEnd(commands_, stretch);
+    }
+}
+
+void PassRecorder::bindSets(VkPipelineBindPoint point, std::span<const VkDescriptorSet> sets) {
+    vk_.CmdBindDescriptorSets(commands_, point, state_.pipelines.layout, gpu::kSetScene,
+                              static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
+}
+
+void PassRecorder::push() {
+    vk_.CmdPushConstants(commands_, state_.pipelines.layout, pushStages_, state_.pushOffset, sizeof(pushed_),
+                         &pushed_);
+}
+
+void PassRecorder::beginRendering() {
+    VkRenderingAttachmentInfo color{};
+    color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    color.imageView = state_.frame.images[gpu::kBindingSurface].view.get();
+    color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    color.clearValue.color.uint32[0] = gpu::kNoSurface;
+    VkRenderingAttachmentInfo depth{};
+    depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    depth.imageView = state_.frame.depth.view.get();
+    depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
+    depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    depth.clearValue.depthStencil.depth = 0.0F;  // far, as depth is reversed
+    VkRenderingInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+    info.renderArea.extent = {state_.size.width, state_.size.height};
+    info.layerCount = 1;
+    info.colorAttachmentCount = 1;
+    info.pColorAttachments = &color;
+    info.pDepthAttachment = &depth;
+    vk_.CmdBeginRendering(commands_, &info);
+    const VkViewport viewport{
+        0.0F, 0.0F, static_cast<float>(state_.size.width), static_cast<float>(state_.size.height),
+        0.0F, 1.0F};
+    vk_.CmdSetViewport(commands_, 0, 1, &viewport);
+    vk_.CmdSetScissor(commands_, 0, 1, &info.renderArea);
+}
+
+void PassRecorder::drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets) {
+    beginPass({"gbuffer", Pass::Gbuffer});
+    recordTransition(
+        state_.context, commands_,
+        {state_.frame.depth.handle.get(),
+         VK_IMAGE_LAYOUT_UNDEFINED,
+         VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL,
+         {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, kDepthStages,
+          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT},
+         0,
+         VK_REMAINING_MIP_LEVELS,
+         VK_IMAGE_ASPECT_DEPTH_BIT});
+    beginRendering();
+    vk_.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, state_.pipelines.gbuffer);
+    bindSets(VK_PIPELINE_BIND_POINT_GRAPHICS, sets);
+    for (const DrawBatch& draw : batches) {
+        vk_.CmdSetCullMode(commands_, draw.doubleSided ? VK_CULL_MODE_NONE : VK_CULL_MODE_BACK_BIT);
+        // A front is counter-clockwise on screen in glTF, unless a mirroring transform turns it.
+        vk_.CmdSetFrontFace(commands_,
+                            draw.mirrored ? VK_FRONT_FACE_CLOCKWISE : VK_FRONT_FACE_COUNTER_CLOCKWISE);
+        pushed_.geometry = draw.geometry;
+        pushed_.geometryStride = draw.stride;
+        push();
+        vk_.CmdDraw(commands_, draw.vertexCount, draw.count, 0, 0);
+    }
+    vk_.CmdEndRendering(commands_);
+    endPass();
+}
+
+void PassRecorder::bindPass(const PassPipeline& pass) {
+    vk_.CmdBindPipeline(commands_,
+                        pass.traces ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE,
+                        pass.pipeline);
+    push();
+}
+
+void PassRecorder::bindSets(std::span<const VkDescriptorSet> sets) {
+    bindSets(VK_PIPELINE_BIND_POINT_COMPUTE, sets);
+    if (state_.choice.tracer == package::kTracerRayPipeline) {
+        bindSets(VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, sets);
+    }
+}
+
+void PassRecorder::dispatchPixels(const PassLabel& label, const PassPipeline& pass) {
+    beginPass(label);
+    bindPass(pass);
+    if (pass.traces) {
+        vk_.CmdTraceRaysKHR(commands_, &pass.rayGeneration, &pass.miss, &pass.hit, &kNoCallables,
+                            state_.size.width, rows_, 1);
+    } else {
+        constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
+        vk_.CmdDispatch(commands_, (state_.size.width + kTile - 1) / kTile, (rows_ + kTile - 1) / kTile, 1);
+    }
+    endPass();
+}
+
+void PassRecorder::dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups) {
+    beginPass(label);
+    bindPass(pass);
+    vk_.CmdDispatch(commands_, groups, 1, 1);
+    endPass();
+}
+
+void PassRecorder::dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
+                                std::uint32_t index) {
+    beginPass(label);
+    bindPass(pass);
+    const VkDeviceSize offset = index * sizeof(gpu::DispatchArguments);
+    if (pass.traces) {
+        vk_.CmdTraceRaysIndirectKHR(
+            commands_, &pass.rayGeneration, &pass.miss, &pass.hit, &kNoCallables,
+            arguments.address + offset + offsetof(gpu::DispatchArguments, traceWidth));
+    } else {
+        vk_.CmdDispatchIndirect(commands_, arguments.handle.get(), offset);
+    }
+    endPass();
+}
+
+void PassRecorder::setRows(std::uint32_t rows) {
+    rows_ = rows;
+}
+
+void PassRecorder::setBucket(std::uint32_t bucket) {
+    pushed_.bucket = bucket;
+}
 
 using package::ModuleRole;
 

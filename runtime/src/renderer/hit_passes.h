@@ -1,9 +1,69 @@
 // The passes that shade the rays of the list.
 #pragma once
 
-#include "renderer/pass_recorder.h"
+#include "renderer/draw_batches.h"
+#include "renderer/pass_dependencies.h"
+#include "renderer/pass_state.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
 
 namespace glint {
+
+class PassRecorder {
+public:
+    PassRecorder(PassState& state, VkCommandBuffer commands, Timing timing);
+
+    // Begins a stretch of several passes, which is timed if passes are not. Returns its number for
+    // endStretch().
+    std::uint32_t beginStretch(const PassLabel& label);
+    void endStretch(std::uint32_t stretch);
+
+    void barrier(const MemoryDependency& dependency);
+    // Binds descriptor sets for every kind of pass except the raster pass.
+    void bindSets(std::span<const VkDescriptorSet> sets);
+    // Draws a scene into the G-buffer's visibility image.
+    void drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets);
+    // Begins and ends a label around several passes.
+    void beginLabel(const std::string& name);
+    void endLabel();
+    // Sets the number of rows that passes over pixels have. The default is the height of the image.
+    void setRows(std::uint32_t rows);
+    // Dispatches the pass over the pixels of these rows.
+    void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
+    // Dispatches `groups` workgroups.
+    void dispatchGroups(const PassLabel& label, const PassPipeline& pass, std::uint32_t groups);
+    // Dispatches over a list whose length the device knows. `index` is the entry of the arguments.
+    void dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
+                      std::uint32_t index);
+    // Sets the bucket that the next dispatch shades.
+    void setBucket(std::uint32_t bucket);
+
+    const PassDependencies& dependencies() const {
+        return dependencies_;
+    }
+    VkCommandBuffer commands() const {
+        return commands_;
+    }
+
+private:
+    void beginPass(const PassLabel& label);
+    void endPass();
+    void bindSets(VkPipelineBindPoint point, std::span<const VkDescriptorSet> sets);
+    void bindPass(const PassPipeline& pass);
+    void push();
+    void beginRendering();
+
+    PassState& state_;
+    const DeviceTable& vk_;
+    VkCommandBuffer commands_;
+    VkShaderStageFlags pushStages_;
+    PassDependencies dependencies_;
+    gpu::PushConstants pushed_{};
+    bool timesPasses_;
+    std::uint32_t rows_;
+};
 
 class HitPasses {
 public:
