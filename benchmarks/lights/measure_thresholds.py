@@ -5,7 +5,8 @@
                                             [--tracer auto|ray-query|ray-pipeline] [--device NAME] [--json FILE]
 
 Each threshold has a generated scene for the last number below it and one for the first above it, rendered with the
-default's settings. Where a number of lights decides, it is searched with `glint compile` and `glint inspect`. Both sides
+default's settings. Where a number of lights decides, it is searched with `glint compile` and `glint inspect`; where a
+number of cases decides about the strategy, with `glint render`. Both sides
 are rendered in turn, after one round that does not count. The time is the median over the rounds of the device time of
 all passes of a sample, with quartiles. Prints a Markdown table, and writes JSON.
 """
@@ -115,7 +116,7 @@ class Threshold:
         self.settings, self.size, self.strategy = settings, size, strategy
 
 
-# By the name for --only. The numbers of lights are searched.
+# By the name for --only. Sides that are None are searched.
 THRESHOLDS = {
     "lights": Threshold("`--lights`: all, or samples", lights, None, None),
     "triangles": Threshold("`--lights`: samples of emissive triangles", triangles, 15, 16,
@@ -153,7 +154,8 @@ class Measurement:
         threshold.write(path, number)
         tracer = "all" if self.options.tracer == "auto" else self.options.tracer
         settings = threshold.settings(number)
-        run(self.options.glint, "compile", path, "-o", path.with_suffix(""), "--strategy", "uber", "--tracer", tracer,
+        strategy = "all" if threshold.strategy == "auto" else threshold.strategy
+        run(self.options.glint, "compile", path, "-o", path.with_suffix(""), "--strategy", strategy, "--tracer", tracer,
             *([] if "--effects" in settings else ["--effects", "shadow"]), *settings)
         inspected = json.loads(run(self.options.glint, "inspect", path.with_suffix(""), "--json"))
         return path, inspected["settings"]["lights"]
@@ -166,37 +168,55 @@ class Measurement:
             below, above = (middle, above) if self.prepare("lights", middle)[1] == "all" else (below, middle)
         return below, above
 
+    def search_strategy(self):
+        """The last number of cases with which another strategy is chosen than with one more."""
+        before = None
+        for number in range(1, 65):
+            path, _ = self.prepare("strategy", number)
+            self.time("strategy", number, path)
+            if before not in (None, self.strategy):
+                return number - 1, number
+            before = self.strategy
+        sys.exit(f"measure_thresholds: with 1 to 64 cases --strategy auto chooses {before}")
+
     def time(self, name, number, path):
         threshold = THRESHOLDS[name]
         stats = self.folder / "stats.json"
         bounces = [word for word in threshold.settings(number) if word != "on"]
         run(self.options.glint, "render", path, "-o", self.folder / "picture.exr", "--package", path.with_suffix(""),
-            "--strategy", "uber", "--tracer", self.options.tracer, "--size",
+            "--strategy", threshold.strategy, "--tracer", self.options.tracer, "--size",
             threshold.size(number) if threshold.size else self.options.size, "--sky", 0, "--spp", self.options.spp,
             "--stats", stats, *(bounces[bounces.index("--bounces"):] if "--bounces" in bounces else []),
             *(["--device", self.options.device] if self.options.device else []))
-        self.device = json.loads(stats.read_text())["device"]
+        told = json.loads(stats.read_text())
+        self.device, self.strategy = told["device"], told["strategy"]
         return measure_lights.times_of(stats)[1]
 
     def measure(self, name):
         threshold = THRESHOLDS[name]
-        sides = self.search() if threshold.sides[0] is None else threshold.sides
+        search = {"lights": self.search, "strategy": self.search_strategy}
+        sides = search[name]() if threshold.sides[0] is None else threshold.sides
         with concurrent.futures.ThreadPoolExecutor() as pool:
             prepared = list(pool.map(lambda number: self.prepare(name, number), sides))
-        times = [[], []]
+        times, strategies = [[], []], ["", ""]
         for turn in range(self.options.rounds + 1):
             for side in (0, 1):
                 time = self.time(name, sides[side], prepared[side][0])
+                strategies[side] = self.strategy
                 if turn > 0:
                     times[side].append(time)
         return {"name": name, "default": threshold.default, "numbers": sides, "milliseconds": times,
-                "lights": [taken for _, taken in prepared]}
+                "lights": [taken for _, taken in prepared], "strategies": strategies}
 
 
 def row_of(result):
     below, above = (statistics.median(times) for times in result["milliseconds"])
-    texts = [f"{number:,}" + (f" (`--lights` {taken})" if result["name"] in ("lights", "triangles", "apart") else "")
-             for number, taken in zip(result["numbers"], result["lights"])]
+    def text_of(number, lights, strategy):
+        if result["name"] in ("lights", "triangles", "apart"):
+            return f"{number:,} (`{lights}`)"
+        return f"{number:,} (`{strategy}`)" if result["name"] in ("strategy", "merge") else f"{number:,}"
+
+    texts = [text_of(*side) for side in zip(result["numbers"], result["lights"], result["strategies"])]
     return (f"| {result['default']} | {texts[0]} | {spread(result['milliseconds'][0])} | {texts[1]} | "
             f"{spread(result['milliseconds'][1])} | {above / below:.2f} |")
 
