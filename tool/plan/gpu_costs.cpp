@@ -149,9 +149,8 @@ std::vector<StrategyFactor> strategyFactors(const GpuCosts& gpu) {
     }
     for (const std::string_view strategy : simplestFirst()) {
         const ModuleCost* const module = findModule(base, shadingRole(strategy));
-        const double own = module == nullptr
-                               ? 0.0
-                               : costOfInstruction(*module, hasStack(strategy) ? cases->weight : 0.0);
+        const double own =
+            module == nullptr ? 0.0 : costOfInstruction(*module, hasStack(strategy) ? cases->weight : 0.0);
         if (own > 0.0) {
             factors.push_back({std::string(strategy), own / ofCases, module});
         }
@@ -166,7 +165,14 @@ DeviceCosts withGpu(DeviceCosts measured, const GpuCosts& gpu) {
     if (ofCases <= 0.0) {
         return measured;
     }
-    for (const StrategyFactor& factor : strategyFactors(gpu)) {
+    const std::vector<StrategyFactor> factors = strategyFactors(gpu);
+    if (factors.empty()) {
+        return measured;
+    }
+    std::erase_if(measured.strategies, [&factors](const StrategyCosts& row) {
+        return std::ranges::find(factors, row.strategy, &StrategyFactor::strategy) == factors.end();
+    });
+    for (const StrategyFactor& factor : factors) {
         const auto row = std::ranges::find(measured.strategies, factor.strategy, &StrategyCosts::strategy);
         if (row == measured.strategies.end()) {
             continue;
@@ -215,12 +221,15 @@ std::vector<GpuChoice> chooseSettings(const GpuCosts* gpu, double acceptedError)
 
 std::string describe(const GpuCosts& gpu) {
     const std::vector<StrategyFactor> factors = strategyFactors(gpu);
-    std::string text;
+    std::string text =
+        factors.empty() ? "The table has no numbers of strategies, so the measured ones stay. " : "";
     for (const std::string_view strategy : simplestFirst()) {
         const auto found = std::ranges::find(factors, strategy, &StrategyFactor::strategy);
         if (found == factors.end()) {
-            text += fmt::format("{}: the table has no numbers of {}, so the measured ones stay. ", strategy,
-                                shadingRole(strategy));
+            text += factors.empty()
+                        ? ""
+                        : fmt::format("{}: the table has no numbers of {}, so auto leaves it out. ", strategy,
+                                      shadingRole(strategy));
             continue;
         }
         const ModuleCost& module = *found->module;

@@ -76,7 +76,9 @@ std::vector<StrategyFactor> strategyFactors(const GpuCosts& gpu);
 
 // Returns the constants of a measured device as they should be on the GPU. Terms of instructions are those of
 // a strategy with a module a case, times the strategy's factor. Other terms stay, as nothing static says how
-// fast memory and traversal are.
+// fast memory and traversal are. Strategies that the table has no numbers of are left out, because their
+// times would be those of another GPU, or the GPU can't run them; if it has no numbers at all, nothing
+// changes.
 DeviceCosts withGpu(DeviceCosts measured, const GpuCosts& gpu);
 
 // Returns how much longer an instruction takes in a case that branches on features than in one of a single
@@ -92,8 +94,8 @@ struct GpuChoice {
     // The table has what the choice needs. If not, the value is the usual one.
     bool known = false;
 };
-// Returns the values of --shadows and of --precision, in this order. A value that costs memory or accuracy has
-// to save at least kLeastGain of the compiler's cycles. 16 bits are taken only if the user accepts their
+// Returns the values of --shadows and of --precision, in this order. A value that costs memory or accuracy
+// has to save at least kLeastGain of the compiler's cycles. 16 bits are taken only if the user accepts their
 // error: `acceptedError` is a relMSE. `gpu` may be null, which leaves the usual values.
 std::vector<GpuChoice> chooseSettings(const GpuCosts* gpu, double acceptedError);
 inline constexpr double kLeastGain = 0.1;
