@@ -51,7 +51,7 @@ double costOfInstruction(const ModuleCost& module, double hit = 0.0) {
     }
     const double spills = module.spills / module.modules / module.weight;
     const double stack = hit > 0.0 ? wordsOf(module.scratchBytes) / hit : 0.0;
-    return (1.0 + kFetchCost * (spills + stack)) / module.occupancy;
+    return (1.0 + kFetchCost * std::max(spills, stack)) / module.occupancy;
 }
 
 bool hasStack(std::string_view strategy) {

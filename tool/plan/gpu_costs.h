@@ -4,12 +4,12 @@
 // The weight of a module is the SPIR-V that it has, instructions + kFetchCost * fetches. Shading waits for
 // memory and for its own results, and the other subgroups of a processor hide that. So an instruction costs
 //
-//     k = (1 + kFetchCost * (spills / weight + stack / hit)) / occupancy
+//     k = (1 + kFetchCost * max(spills / weight, stack / hit)) / occupancy
 //
 // in a module; a spill counts as a fetch. `stack` is for pipelines of hit shaders alone: the 32-bit words of
 // scratch memory of a lane, which hold what stays alive across calls of shaders, so that each hit stores and
-// loads them. `hit` is the weight of the code of a hit, that of the cases. Scratch of other modules comes
-// from spills, which count already. Only ratios of k between modules of one GPU are used. The compiler's own
+// loads them, and what is spilled to memory. `hit` is the weight of the code of a hit, that of the cases.
+// Scratch of other modules comes from spills, which count already. Only ratios of k between modules of one GPU are used. The compiler's own
 // cycles would not do: most of them are those of the loop that traverses the scene, which compilers weigh as
 // they like, and a switch has one such loop for all of its cases.
 #pragma once

@@ -332,8 +332,8 @@ TEST(GpuCosts, WhatTheTableLacksStaysAndIsSaid) {
 // Branches that cost occupancy make --merge auto keep keys apart.
 TEST(GpuCosts, TurnAMerge) {
     const auto casesWith = [](double familyOccupancy) {
-        std::vector<compiler::WeightedKey> keys{{bit("normals"), 0.5},
-                                                {bit("normals") | bit("doubleSided"), 0.5}};
+        std::vector<compiler::WeightedKey> keys{{bit("normals"), 0.1},
+                                                {bit("normals") | bit("doubleSided"), 0.1}};
         for (compiler::WeightedKey& key : keys) {
             key.branchFactor = branchFactor(comparedGpu(familyOccupancy, 900.0, 1000.0)).value_or(1.0);
         }
