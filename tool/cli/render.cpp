@@ -260,7 +260,8 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
               const gltf::SceneList& scenes, const measure::PlanChoice& chosen,
               std::optional<Result<Package>> given, CompileCache& cache, RenderReport& report) {
     RenderArguments arguments = asked;
-    static_cast<compiler::Settings&>(arguments) = withSettings(asked, chosen.decided);
+    compiler::Settings& settings = arguments;
+    settings = withSettings(settings, chosen.decided);
     const compiler::PlanOptions& plan = chosen.options;
     GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
     GLINT_TRY(const auto compared, readReference(arguments));

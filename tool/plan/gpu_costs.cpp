@@ -209,7 +209,7 @@ std::optional<double> branchFactor(const GpuCosts& gpu) {
 
 std::vector<GpuChoice> chooseSettings(const GpuCosts* gpu, double acceptedError) {
     if (gpu == nullptr) {
-        const std::string why = "No table of a GPU is given (--gpu).";
+        const std::string why = "No table of a GPU is given (--gpu NAME or FILE).";
         return {{"shadows", "inline", why}, {"precision", "32", why}};
     }
     if (gpu->packages.empty()) {
