@@ -3,6 +3,7 @@
 
     scripts/gpu_compilers.py reduce REPORTS OUT.csv    REPORTS has GPU.PACKAGE.json of `glint inspect --pipelines`
     scripts/gpu_compilers.py tables FOLDER DOCUMENT    FOLDER has before.csv and after.csv
+    scripts/gpu_compilers.py choices GLINT DOCUMENT NAME=SCENE...    what `auto` chooses with benchmarks/data/gpus
 
 A row of the CSV is a pipeline on a GPU. The facts are those of `glint inspect --pipelines`; `valid` says whether Mesa's
 checks of its own intermediate code passed for the package, `instructions` is the driver's count.
@@ -12,6 +13,7 @@ import csv
 import json
 import pathlib
 import re
+import subprocess
 
 FACTS = ["registers", "spills", "scratchBytes", "codeBytes", "occupancy", "cost"]
 COLUMNS = ["gpu", "package", "pipeline", "tracer", "strategies", "share", "valid", "failure", "subgroup", *FACTS]
@@ -24,6 +26,7 @@ GPUS = {
     "a750": "Adreno 750",
     "dg2": "Arc A-series",
 }
+STRATEGIES = ["uber", "sorted-uber", "visibility", "hit-shaders"]
 PACKAGES = {"gallery": "gallery", "sheenchair": "SheenChair", "cases64": "64 cases"}
 # A row of the tables: its name, and the pipelines that it is of.
 GROUPS = [
@@ -197,10 +200,66 @@ def summary(before, after):
     return lines
 
 
+def explain(glint, scene, gpu):
+    """What auto chooses for a scene, with the table of a GPU or without one."""
+    command = [glint, "explain", scene, "--merge", "auto", "--json"]
+    command += ["--gpu", f"benchmarks/data/gpus/{gpu}.json"] if gpu else []
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def milliseconds(explained):
+    """The estimates of all strategies, the fastest first."""
+    estimates = sorted(explained["strategies"]["estimates"], key=lambda row: row["milliseconds"])
+    return ", ".join(f"{row['strategy']} {row['milliseconds']:.3g}" for row in estimates)
+
+
+def choice_rows(glint, scenes):
+    """A row for each GPU and scene: what auto chooses, and why. "a → b" is what the table changes."""
+    yield "| GPU | scene | shaders of `--merge auto` | strategy | shadows | precision | estimates, ms |"
+    yield "|---|---|---:|---|---|---|---|"
+    for name, scene in scenes:
+        usual = explain(glint, scene, None)
+        was = [str(usual["strategies"]["cases"]), usual["strategies"]["strategy"], "inline", "32"]
+        yield f"| none | {name} | " + " | ".join([*was, milliseconds(usual)]) + " |"
+        for gpu, title in GPUS.items():
+            explained = explain(glint, scene, gpu)
+            chosen = {choice["setting"]: choice["value"] for choice in explained["gpu"]["choices"]}
+            now = [str(explained["strategies"]["cases"]), explained["strategies"]["strategy"]]
+            now += [chosen["shadows"], chosen["precision"]]
+            cells = [b if a == b else f"{a} → {b}" for a, b in zip(was, now)]
+            yield f"| {title} | {name} | " + " | ".join([*cells, milliseconds(explained)]) + " |"
+
+
+def reason_rows(glint, scene):
+    """What each table says, and the reasons for shadows and precision, which it gives for all scenes."""
+    yield "| GPU | a case that branches | " + " | ".join(f"`{name}`" for name in STRATEGIES) + " | shadows and precision |"
+    yield "|---|---:|" + "---:|" * len(STRATEGIES) + "---|"
+    for gpu, title in GPUS.items():
+        said = explain(glint, scene, gpu)["gpu"]
+        factors = {row["strategy"]: row for row in said["strategies"]}
+        cells = ["-" if said["branchFactor"] is None else f"{said['branchFactor']:.2f}"]
+        for name in STRATEGIES:
+            row = factors.get(name)
+            stack = f", {row['scratchBytes']:.0f} B" if row and row["scratchBytes"] else ""
+            cells.append(
+                f"{row['factor']:.2f} ({percent(row['occupancy'])}, {row['spills']:.0f} spills{stack})" if row else "-"
+            )
+        yield f"| {title} | " + " | ".join(cells) + " | " + " ".join(choice["why"] for choice in said["choices"]) + " |"
+
+
+def write_choices(glint, document, scenes):
+    scenes = [scene.split("=", 1) for scene in scenes]
+    blocks = {"choices": list(choice_rows(glint, scenes)), "reasons": list(reason_rows(glint, scenes[0][1]))}
+    write_blocks(document, blocks)
+
+
 def write_tables(folder, document):
     before, after = read(folder / "before.csv"), read(folder / "after.csv")
+    write_blocks(document, {"summary": summary(before, after), **{gpu: table(gpu, before, after) for gpu in GPUS}})
+
+
+def write_blocks(document, blocks):
     text = document.read_text()
-    blocks = {"summary": summary(before, after), **{gpu: table(gpu, before, after) for gpu in GPUS}}
     for name, lines in blocks.items():
         begin, end = f"<!-- begin {name} -->\n", f"<!-- end {name} -->"
         if begin not in text:
@@ -212,11 +271,15 @@ def write_tables(folder, document):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
-    parser.add_argument("what", choices=["reduce", "tables"])
+    parser.add_argument("what", choices=["reduce", "tables", "choices"])
     parser.add_argument("source", type=pathlib.Path)
     parser.add_argument("target", type=pathlib.Path)
+    parser.add_argument("scenes", nargs="*")
     arguments = parser.parse_args()
-    (reduce if arguments.what == "reduce" else write_tables)(arguments.source, arguments.target)
+    if arguments.what == "choices":
+        write_choices(arguments.source, arguments.target, arguments.scenes)
+    else:
+        (reduce if arguments.what == "reduce" else write_tables)(arguments.source, arguments.target)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ usage() {
     cat <<'TEXT'
 usage: scripts/gpu_compilers.sh [--label NAME] [--gpu NAME]… [--glint PROGRAM] [--packages FOLDER] [--keep]
        scripts/gpu_compilers.sh --tables
+       scripts/gpu_compilers.sh --choices [--gpu NAME]… [--glint PROGRAM] [--keep]
 
 Makes the pipelines of three packages (the gallery, SheenChair, 64 synthetic cases) as
 Radeon RX 6800 (navi21), RX 7900 (navi31) and RX 9060 (gfx1200), Adreno 740 and 750
@@ -29,6 +30,9 @@ libzstd-dev and libexpat1-dev.
                      and compile none (default: build/gpu_compilers/packages)
   --keep             keep the reports of earlier runs, and make the others
   --tables           only write the tables
+  --choices          instead make the tables that `auto` goes by with --gpu
+                     (benchmarks/data/gpus, which are compiled into glint), and write what
+                     it chooses with them into docs/gpu_compilers.md
 TEXT
 }
 
@@ -133,18 +137,35 @@ JSON
 
 # --- Packages --------------------------------------------------------------------------------------
 
-# Compiles the packages with every strategy and ray queries.
-compile_packages() {
-    local models=${GLINT_MODELS:-../shared/models} chair scenes=$work/scenes
-    chair=$models/features/SheenChair/SheenChair.gltf
+chair=${GLINT_MODELS:-../shared/models}/features/SheenChair/SheenChair.gltf
+scenes=$work/scenes
+
+make_scenes() {
     [[ -e $chair ]] || fail "$chair is not there; set GLINT_MODELS to the folder that scripts/models.sh fills"
     mkdir -p "$scenes" "$packages"
     build/release/bin/gallery "$scenes/gallery" >/dev/null
     python3 -B benchmarks/make_synthetic_scene.py "$scenes/cases64" --materials 64 --keys 64 >/dev/null
+}
+
+# Compiles the packages with every strategy and ray queries.
+compile_packages() {
+    make_scenes
     local options=(--strategy all --tracer ray-query)
     "$glint" compile "$scenes/gallery/gallery.gltf" -o "$packages/gallery" "${options[@]}" >/dev/null 2>&1
     "$glint" compile "$chair" -o "$packages/sheenchair" "${options[@]}" >/dev/null 2>&1
     "$glint" compile "$scenes/cases64/scene.gltf" -o "$packages/cases64" "${options[@]}" --merge none >/dev/null 2>&1
+}
+
+# Compiles the gallery in the ways that a table of --gpu compares. Only the first is asked about strategies.
+compile_compared() {
+    make_scenes
+    local gallery=$scenes/gallery/gallery.gltf options=(--tracer ray-query)
+    "$glint" compile "$gallery" -o "$packages/none" "${options[@]}" --merge none --strategy all >/dev/null 2>&1
+    options+=(--strategy visibility)
+    "$glint" compile "$gallery" -o "$packages/family" "${options[@]}" --merge family >/dev/null 2>&1
+    "$glint" compile "$gallery" -o "$packages/deferred" "${options[@]}" --merge none --shadows deferred \
+        >/dev/null 2>&1
+    "$glint" compile "$gallery" -o "$packages/half" "${options[@]}" --merge none --precision 16 >/dev/null 2>&1
 }
 
 # --- Reports ---------------------------------------------------------------------------------------
@@ -214,6 +235,21 @@ measure() {
     done
 }
 
+# Makes the tables of --gpu, and writes what auto chooses with them.
+choose() {
+    local gpu package compared=()
+    for gpu in "${gpus[@]}"; do
+        compared=()
+        for package in "${all_packages[@]}"; do
+            compared+=("$reports/$gpu.$package.json")
+        done
+        python3 -B scripts/gpu_table.py "$gpu" "${compared[@]}" >"$work/$gpu.json"
+        mv "$work/$gpu.json" "benchmarks/data/gpus/$gpu.json"
+    done
+    python3 -B scripts/gpu_compilers.py choices "$glint" docs/gpu_compilers.md \
+        "gallery=$scenes/gallery/gallery.gltf" "SheenChair=$chair" "64 cases=$scenes/cases64/scene.gltf"
+}
+
 label=after
 gpus=()
 glint=$PWD/build/release/bin/glint
@@ -221,6 +257,7 @@ packages=$work/packages
 given_packages=0
 keep=0
 tables=0
+choices=0
 failed=0
 while [[ $# -gt 0 ]]; do
     case $1 in
@@ -239,6 +276,12 @@ while [[ $# -gt 0 ]]; do
             ;;
         --keep) keep=1 ;;
         --tables) tables=1 ;;
+        --choices)
+            choices=1
+            label=choices
+            packages=$work/compared
+            all_packages=(none family deferred half)
+            ;;
         -h | --help)
             usage
             exit 0
@@ -255,6 +298,12 @@ reports=$work/reports/$label
 if [[ $tables == 0 ]]; then
     [[ -x $glint ]] || fail "build first: cmake --preset release && cmake --build --preset release"
     case " ${gpus[*]} " in *" a"* | *" dg2 "*) build_mesa ;; esac
+    if [[ $choices == 1 ]]; then
+        compile_compared
+        measure
+        [[ $failed == 1 ]] || choose
+        exit "$failed"
+    fi
     [[ $given_packages == 1 ]] || compile_packages
     measure
     python3 -B scripts/gpu_compilers.py reduce "$reports" "benchmarks/data/gpu_compilers/$label.csv"

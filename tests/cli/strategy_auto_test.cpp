@@ -15,6 +15,32 @@ namespace {
 
 using Json = nlohmann::json;
 
+// A table of a GPU on which a case costs 1000 cycles, or `deferred` without its shadow ray, which costs 300,
+// or `half` in 16 bits.
+Json plantedTable(double deferred, double half) {
+    const auto module = [](const char* role, double cost) {
+        return Json{{"role", role},     {"tracer", "ray-query"}, {"modules", 1},  {"cost", cost},
+                    {"weight", 1000.0}, {"occupancy", 0.5},      {"spills", 0.0}, {"scratchBytes", 0.0}};
+    };
+    const auto package = [](const char* shadows, int precision, std::vector<Json> summary) {
+        return Json{{"package", "planted"},
+                    {"merge", "none"},
+                    {"shadows", shadows},
+                    {"precision", precision},
+                    {"summary", std::move(summary)}};
+    };
+    return {{"format", "glint-gpu"},
+            {"version", 1},
+            {"name", "planted"},
+            {"device", "Planted"},
+            {"driver", "none"},
+            {"subgroupSize", 32},
+            {"packages",
+             {package("inline", 32, {module("ShadeCase", 1000.0)}),
+              package("deferred", 32, {module("ShadeCase", deferred), module("ShadowTrace", 300.0)}),
+              package("inline", 16, {module("ShadeCase", half)})}}};
+}
+
 class StrategyAuto : public CommandTest {
 protected:
     void SetUp() override {
@@ -176,28 +202,88 @@ TEST_F(StrategyAuto, BadDeviceFilesAreRefused) {
 }
 
 TEST_F(StrategyAuto, GoesByTheCodeOfAGpu) {
-    const Json explained =
-        run({"explain", "scene.gltf", "--gpu", "navi31", "--merge", "auto", "--json"}).json();
-    expectFits("explain", explained);
-    const Json& gpu = explained.at("gpu");
-    EXPECT_EQ(gpu.at("name"), "navi31");
-    EXPECT_GE(gpu.at("branchFactor"), 1.0);
-    EXPECT_GE(gpu.at("strategies").size(), 3U);
-    EXPECT_NE(
-        explained.at("strategies").at("estimates"),
-        run({"explain", "scene.gltf", "--merge", "auto", "--json"}).json().at("strategies").at("estimates"));
-    EXPECT_TRUE(has(run({"explain", "scene.gltf", "--gpu", "navi31"}).out, "navi31 (")) << "says why";
+    const Json usual = run({"explain", "scene.gltf", "--merge", "auto", "--json"}).json();
+    EXPECT_TRUE(usual.at("gpu").is_null());
+    std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(GLINT_SOURCE_DIR "/benchmarks/data/gpus")) {
         expectFits("gpu", Json::parse(readText(entry.path())));
+        names.push_back(entry.path().stem().string());
     }
+    ASSERT_GE(names.size(), 6U);
+    for (const std::string& name : names) {
+        const Json explained =
+            run({"explain", "scene.gltf", "--gpu", name, "--merge", "auto", "--json"}).json();
+        expectFits("explain", explained);
+        const Json& gpu = explained.at("gpu");
+        EXPECT_EQ(gpu.at("name"), name);
+        EXPECT_GE(gpu.at("branchFactor"), 1.0) << name;
+        EXPECT_GE(gpu.at("strategies").size(), 3U) << name;
+        for (const Json& choice : gpu.at("choices")) {
+            EXPECT_TRUE(choice.at("known").get<bool>()) << name << ": " << choice;
+        }
+        EXPECT_NE(explained.at("strategies").at("estimates"), usual.at("strategies").at("estimates")) << name;
+    }
+    EXPECT_TRUE(has(run({"explain", "scene.gltf", "--gpu", "navi31"}).out, "navi31 (")) << "says why";
     const Outcome unknown = run({"explain", "scene.gltf", "--gpu", "navi3"});
     EXPECT_EQ(unknown.exit, 1);
     EXPECT_TRUE(has(unknown.err, "navi31")) << unknown.err;
     EXPECT_TRUE(has(unknown.err, "[gpu-unknown]")) << unknown.err;
-    writeText(path("gpu.json"), R"({"format": "glint-gpu", "version": 1, "name": "x"})");
-    const Outcome wrong = run({"explain", "scene.gltf", "--gpu", "gpu.json"});
-    EXPECT_EQ(wrong.exit, 1);
-    EXPECT_TRUE(has(wrong.err, "gpu.json: error: has no member \"device\"")) << wrong.err;
+}
+
+TEST_F(StrategyAuto, RefusesBrokenTablesOfGpus) {
+    const Json good = plantedTable(400.0, 700.0);
+    const auto expectBroken = [&](const Json& table, const std::string& message) {
+        writeText(path("gpu.json"), table.dump());
+        const Outcome outcome = run({"explain", "scene.gltf", "--gpu", "gpu.json"});
+        EXPECT_EQ(outcome.exit, 1);
+        EXPECT_TRUE(has(outcome.err, "[gpu-table]")) << outcome.err;
+        EXPECT_TRUE(has(outcome.err, message)) << outcome.err;
+    };
+    Json bad = good;
+    bad.erase("device");
+    expectBroken(bad, "gpu.json: error: has no member \"device\"");
+    bad = good;
+    bad["packages"] = Json::array();
+    expectBroken(bad, "gpu.json#/packages: error: is empty");
+    bad = good;
+    bad["packages"][1]["shadows"] = "late";
+    expectBroken(bad, "gpu.json#/packages/1/shadows: error: is neither \"inline\" nor \"deferred\"");
+    bad = good;
+    bad["packages"][2]["precision"] = 24;
+    expectBroken(bad, "gpu.json#/packages/2/precision: error: is neither 16 nor 32");
+    bad = good;
+    bad["packages"][0]["summary"][0]["occupancy"] = 1.5;
+    expectBroken(bad, "gpu.json#/packages/0/summary/0/occupancy: error: is no number from 0 to 1");
+}
+
+// A table by itself changes what is compiled, and each setting that it decides is told with its reason.
+TEST_F(StrategyAuto, TablesDecideAboutShadowsAndPrecision) {
+    const auto settingsWith = [&](const std::vector<std::string>& options, std::string& told) {
+        std::vector<std::string> line{"compile",   "scene.gltf", "-o",          "package",
+                                      "--shadows", "auto",       "--precision", "auto"};
+        line.insert(line.end(), options.begin(), options.end());
+        const Outcome outcome = run(line);
+        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        told = outcome.err;
+        const Json settings = manifest().at("settings");
+        return std::pair(settings.at("shadows").get<std::string>(), settings.at("precision").get<int>());
+    };
+    using Chosen = std::pair<std::string, int>;
+    std::string told;
+    EXPECT_EQ(settingsWith({}, told), Chosen("inline", 32));
+    EXPECT_TRUE(has(told, "--shadows auto is inline: No table of a GPU is given")) << told;
+    writeText(path("gpu.json"), plantedTable(400.0, 700.0).dump());
+    EXPECT_EQ(settingsWith({"--gpu", "gpu.json"}, told), Chosen("deferred", 32));
+    EXPECT_TRUE(has(told, "--shadows auto is deferred: On planted")) << told;
+    EXPECT_TRUE(has(told, "--precision-error accepts 0")) << told;
+    EXPECT_EQ(settingsWith({"--gpu", "gpu.json", "--precision-error", "1e-5"}, told), Chosen("deferred", 16));
+    writeText(path("gpu.json"), plantedTable(900.0, 990.0).dump());
+    EXPECT_EQ(settingsWith({"--gpu", "gpu.json", "--precision-error", "1e-5"}, told), Chosen("inline", 32));
+    // Settings that are no `auto` stay as they were given.
+    EXPECT_EQ(
+        run({"compile", "scene.gltf", "-o", "package", "--gpu", "gpu.json", "--shadows", "deferred"}).exit,
+        0);
+    EXPECT_EQ(manifest().at("settings").at("shadows"), "deferred");
 }
 
 }  // namespace

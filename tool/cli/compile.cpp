@@ -351,6 +351,7 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
     report(warningsOf(*scenes));
     report(plan->warnings);
     report(plan->notes);
+    arguments.settings = withSettings(std::move(arguments.settings), plan->decided);
     Result<LockChoice> lock = applyLock(arguments.lock, list, plan->options);
     if (!lock) {
         return fail(console, lock.error());

@@ -145,7 +145,7 @@ Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const 
 }
 
 // Returns what the table of --gpu says; null without one.
-base::Json gpuToJson(const measure::KnownCosts& costs) {
+base::Json gpuToJson(const measure::KnownCosts& costs, double acceptedError) {
     if (!costs.gpu) {
         return nullptr;
     }
@@ -153,30 +153,33 @@ base::Json gpuToJson(const measure::KnownCosts& costs) {
     for (const compiler::StrategyFactor& factor : strategyFactors(*costs.gpu)) {
         strategies.push_back({{"strategy", factor.strategy},
                               {"factor", factor.factor},
-                              {"occupancy", factor.module->leastOccupancy},
-                              {"spills", factor.module->spills}});
+                              {"occupancy", factor.module->occupancy},
+                              {"spills", factor.module->spills},
+                              {"scratchBytes", factor.module->scratchBytes}});
     }
     base::Json choices = base::Json::array();
-    for (const compiler::GpuChoice& choice : chooseSettings(*costs.gpu)) {
-        choices.push_back({{"setting", choice.setting}, {"value", choice.value}, {"why", choice.why}});
+    for (const compiler::GpuChoice& choice : chooseSettings(&*costs.gpu, acceptedError)) {
+        choices.push_back({{"setting", choice.setting},
+                           {"value", choice.value},
+                           {"known", choice.known},
+                           {"why", choice.why}});
     }
     return {{"name", costs.gpu->name},
             {"device", costs.gpu->device},
             {"driver", costs.gpu->driver},
-            {"branchFactor", branchFactor(*costs.gpu)},
+            {"branchFactor", base::orNull(branchFactor(*costs.gpu))},
             {"strategies", std::move(strategies)},
             {"choices", std::move(choices)}};
 }
 
-std::string gpuText(const measure::KnownCosts& costs) {
+std::string gpuText(const measure::KnownCosts& costs, double acceptedError) {
     if (!costs.gpu) {
         return {};
     }
     const compiler::GpuCosts& gpu = *costs.gpu;
-    std::string text = fmt::format("{} ({}): {} In a case that branches it costs {:.2f} times as much.",
-                                   gpu.name, gpu.device, describe(gpu), branchFactor(gpu));
-    for (const compiler::GpuChoice& choice : chooseSettings(gpu)) {
-        text += fmt::format("\n--{} {}: {}", choice.setting, choice.value, choice.why);
+    std::string text = fmt::format("{} ({}): {}", gpu.name, gpu.device, describe(gpu));
+    for (const compiler::GpuChoice& choice : chooseSettings(&gpu, acceptedError)) {
+        text += fmt::format("\n--{} auto is {}: {}", choice.setting, choice.value, choice.why);
     }
     return wrapped(text) + "\n\n";
 }
@@ -255,7 +258,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
             result["sameImages"] = sameImagesToJson(*scene);
             result["effects"] = effectsToJson(effects);
             result["strategies"] = strategyChoiceToJson(*advice);
-            result["gpu"] = gpuToJson(*costs);
+            result["gpu"] = gpuToJson(*costs, arguments.settings.precisionError);
             result["motion"] = motionToJson(*scene);
             result["materials"] = base::Json::array();
             for (const int material : *materials) {
@@ -270,7 +273,7 @@ int explain(const Console& console, const ExplainArguments& arguments) {
     if (arguments.material.empty()) {
         console.print(effectsText(effects));
         console.print(strategiesText(*advice));
-        console.print(gpuText(*costs));
+        console.print(gpuText(*costs, arguments.settings.precisionError));
         console.print(motionText(*scene));
         console.print(sameImagesText(*scene));
     }

@@ -257,9 +257,12 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
 
 // Does all the work between reading the scene and writing the files.
 Status render(const Console& console, const RenderArguments& asked, gltf::Scene& scene,
-              const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
+              const gltf::SceneList& scenes, const measure::PlanChoice& chosen,
               std::optional<Result<Package>> given, CompileCache& cache, RenderReport& report) {
     RenderArguments arguments = asked;
+    compiler::Settings& settings = arguments;
+    settings = withSettings(settings, chosen.decided);
+    const compiler::PlanOptions& plan = chosen.options;
     GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
     GLINT_TRY(const auto compared, readReference(arguments));
     const std::optional<LinearImage>& reference = compared;
@@ -410,7 +413,7 @@ int run(const Console& console, const RenderArguments& arguments) {
     if (console.refused()) {
         return kExitFailed;
     }
-    status = render(console, arguments, *scene, scenes, plan->options, std::move(given), cache, report);
+    status = render(console, arguments, *scene, scenes, *plan, std::move(given), cache, report);
     if (!status) {
         console.report(status.error());
         return kExitFailed;

@@ -299,7 +299,6 @@ compiler::ModuleCost summarize(const std::vector<const ReportedPipeline*>& pipel
     all.role = pipelines.front()->modules.front().role;
     all.tracer = pipelines.front()->tracer;
     all.modules = static_cast<std::uint32_t>(pipelines.size());
-    all.occupancy = 0.0;
     const auto sumShares = [](double sum, const ReportedPipeline* one) { return sum + shareOf(*one); };
     const double shares = std::accumulate(pipelines.begin(), pipelines.end(), 0.0, sumShares);
     for (const ReportedPipeline* const pipeline : pipelines) {
@@ -308,7 +307,7 @@ compiler::ModuleCost summarize(const std::vector<const ReportedPipeline*>& pipel
         const PipelineFacts& facts = pipeline->facts;
         all.cost += part * facts.cost.value_or(0.0);
         all.weight += part * weightOf(*pipeline);
-        all.occupancy += part * facts.occupancy.value_or(1.0);
+        all.occupancy += part * facts.occupancy.value_or(0.0);
         all.leastOccupancy = std::min(all.leastOccupancy, facts.occupancy.value_or(1.0));
         all.registers = std::max(all.registers, facts.registers.value_or(0.0));
         all.spills += facts.spills.value_or(0.0);
@@ -438,7 +437,7 @@ base::Json toJson(const PipelineFacts& facts) {
 
 namespace {
 
-// The numbers of a ModuleCost by their names in JSON.
+// The numbers of a ModuleCost by their names in reports; tables have those that choices read.
 constexpr std::pair<const char*, double compiler::ModuleCost::*> kModuleNumbers[] = {
     {"cost", &compiler::ModuleCost::cost},
     {"weight", &compiler::ModuleCost::weight},
@@ -598,14 +597,22 @@ compiler::PackageCosts readCosts(base::JsonReader& reader, const base::Json& jso
     costs.merge = reader.text(json, place, "merge");
     costs.shadows = reader.text(json, place, "shadows");
     costs.precision = static_cast<std::uint32_t>(reader.count(json, place, "precision", 32));
+    if (reader.ok() && !valueNamed<package::ShadowPlacement>(costs.shadows)) {
+        reader.fail(place + "/shadows", "is neither \"inline\" nor \"deferred\"");
+    }
+    if (reader.ok() && costs.precision != 16 && costs.precision != 32) {
+        reader.fail(place + "/precision", "is neither 16 nor 32");
+    }
     reader.each(json, place, "summary", [&](const base::Json& entry, const std::string& there) {
         compiler::ModuleCost module;
         module.role = reader.text(entry, there, "role");
         module.tracer = textOrEmpty(reader, entry, there, "tracer");
         module.modules = static_cast<std::uint32_t>(reader.count(entry, there, "modules", kMaxShaderId));
-        for (const auto& [name, member] : kModuleNumbers) {
-            module.*member = reader.number(entry, there, name, 0.0, kMostOfFact);
-        }
+        module.cost = reader.number(entry, there, "cost", 0.0, kMostOfFact);
+        module.weight = reader.number(entry, there, "weight", 0.0, kMostOfFact);
+        module.occupancy = reader.number(entry, there, "occupancy", 0.0, 1.0);
+        module.spills = reader.number(entry, there, "spills", 0.0, kMostOfFact);
+        module.scratchBytes = reader.number(entry, there, "scratchBytes", 0.0, kMostOfFact);
         costs.modules.push_back(std::move(module));
     });
     return costs;
@@ -658,9 +665,14 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
     base::JsonReader reader(
         nameOrFile, "gpu-table",
         "give a table that scripts/gpu_table.py wrote, or one of: " + base::join(builtInGpus()));
+    const auto read = [&reader](const base::Json& json) {
+        compiler::GpuCosts gpu = readGpu(reader, json);
+        return reader.ok() ? Result<compiler::GpuCosts>(std::move(gpu))
+                           : Result<compiler::GpuCosts>(reader.error());
+    };
     for (const base::BuiltinFile& file : gpuTables()) {
         if (file.name == nameOrFile + ".json") {
-            return readGpu(reader, base::Json::parse(file.text));
+            return read(base::Json::parse(file.text));
         }
     }
     constexpr std::uint64_t kMaxTableBytes = 1ULL << 24;
@@ -672,9 +684,7 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
                          "the GPUs are: " + base::join(names));
     }
     GLINT_TRY(const auto json, reader.read(kMaxTableBytes));
-    compiler::GpuCosts gpu = readGpu(reader, json);
-    return reader.ok() ? Result<compiler::GpuCosts>(std::move(gpu))
-                       : Result<compiler::GpuCosts>(reader.error());
+    return read(json);
 }
 
 const ReportedPipeline* findCounterpart(const PipelineReport& report, const ReportedPipeline& pipeline) {

@@ -175,11 +175,12 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     return bed;
 }
 
-// A bench compares with one alpha policy and one strategy. Where a setting is `auto`, it is the choice for
-// this scene.
+// A bench compares with one value of each setting. Where a setting is `auto`, it is what is chosen for this
+// scene.
 Status BenchBed::settleChoices() {
     GLINT_TRY(const auto plan, choosePlan(base_, gltf::SceneList({&scene_, 1})));
     base_.alpha = plan.options.keys.alpha;
+    base_ = withSettings(std::move(base_), plan.decided);
     if (base_.strategy) {
         return okStatus();
     }

@@ -3,6 +3,7 @@
 #include "base/suggest.h"
 #include "base/text.h"
 #include "inspect/pipelines.h"
+#include "settings/table.h"
 
 #include <glint/measure/profile.h>
 
@@ -199,6 +200,25 @@ void chooseAlpha(const compiler::Settings& settings, const gltf::SceneList& scen
     }
 }
 
+// Decides what the table of --gpu decides: how much branches cost, and settings that are `auto`. A finished
+// package has decided about these itself.
+Status chooseByGpu(const compiler::Settings& settings, PlanChoice& choice) {
+    std::optional<compiler::GpuCosts> gpu;
+    if (!settings.gpu.empty() && settings.gpu != compiler::kThisDevice) {
+        GLINT_TRY(gpu, inspect::readGpuCosts(settings.gpu));
+        choice.options.branchFactor = branchFactor(*gpu).value_or(1.0);
+    }
+    for (const compiler::GpuChoice& one : chooseSettings(gpu ? &*gpu : nullptr, settings.precisionError)) {
+        if (settings.package.empty() &&
+            compiler::sweptSetting(one.setting)->values.text(settings) == "auto") {
+            choice.decided.emplace(one.setting, one.value);
+            choice.notes.push_back({Severity::Note, "gpu-choice", "",
+                                    fmt::format("--{} auto is {}: {}", one.setting, one.value, one.why), ""});
+        }
+    }
+    return okStatus();
+}
+
 // Adds the lobes of packs that hits keep. Their bits are known only once the packs are read.
 Status keepPackLobes(const compiler::Settings& settings, const gltf::SceneList& scenes,
                      materials::KeyOptions& keys) {
@@ -277,10 +297,7 @@ Result<Profile> readProfile(const std::filesystem::path& path) {
 Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes) {
     PlanChoice choice;
     choice.options = settings.compile.plan;
-    if (!settings.gpu.empty() && settings.gpu != compiler::kThisDevice) {
-        GLINT_TRY(const auto gpu, inspect::readGpuCosts(settings.gpu));
-        choice.options.branchFactor = branchFactor(gpu);
-    }
+    GLINT_TRY_DO(chooseByGpu(settings, choice));
     chooseAlpha(settings, scenes, choice);
     GLINT_TRY_DO(keepPackLobes(settings, scenes, choice.options.keys));
     if (settings.profile.empty()) {

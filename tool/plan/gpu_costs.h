@@ -4,11 +4,14 @@
 // The weight of a module is that of its SPIR-V, instructions + kFetchCost * fetches. Shading waits for memory
 // and for its own results, and the other subgroups of a processor hide these waits. So an instruction costs
 //
-//     k = (1 + kFetchCost * spills / weight) / occupancy
+//     k = (1 + kFetchCost * max(spills / weight, stack / hit)) / occupancy
 //
-// in a module; a spill counts as a fetch. Only ratios of k between modules of one GPU are used. The
-// compiler's own cycles would be misleading. Most of them are those of the loop that traverses the scene,
-// which compilers weigh arbitrarily, and a switch has one such loop for all of its cases.
+// in a module; a spill counts as a fetch. `stack` is for pipelines of hit shaders alone: the 32-bit words of
+// scratch memory of a lane, which hold what stays alive across calls of shaders, so that each hit stores and
+// loads them, and what is spilled to memory. `hit` is the weight of the code of a hit, that of the cases.
+// Scratch of other modules comes from spills, which count already. Only ratios of k between modules of one
+// GPU are used. The compiler's own cycles would not do: most of them are those of the loop that traverses the
+// scene, which compilers weigh as they like, and a switch has one such loop for all of its cases.
 #pragma once
 
 #include "plan/strategy_cost.h"
@@ -23,22 +26,19 @@
 namespace glint::compiler {
 
 // The modules of one role and tracer. Averages are over the hits that the compiler expects; where it expects
-// none, over modules.
+// none, over modules. `cost` and `occupancy` are 0 if the compiler does not say them.
 struct ModuleCost {
     std::string role;    // as package::roleName()
     std::string tracer;  // empty: they trace nothing
     std::uint32_t modules = 0;
     double cost = 0.0;       // average
     double weight = 0.0;     // average
-    double occupancy = 1.0;  // average
+    double occupancy = 0.0;  // average
     double leastOccupancy = 1.0;
     double registers = 0.0;     // the most
     double spills = 0.0;        // sum
     double scratchBytes = 0.0;  // the most
     double codeBytes = 0.0;     // sum
-
-    // Returns k of the formula above, or 0 where the compiler does not say enough.
-    double costOfInstruction() const;
 };
 
 struct PackageCosts {
@@ -75,27 +75,34 @@ struct StrategyFactor {
 std::vector<StrategyFactor> strategyFactors(const GpuCosts& gpu);
 
 // Returns the constants of a measured device as they should be on the GPU. Terms of instructions are those of
-// a strategy with a module a case, times the strategy's factor. Other terms stay, because static numbers do
-// not show the speed of memory and traversal.
+// a strategy with a module a case, times the strategy's factor. Other terms stay, as nothing static says how
+// fast memory and traversal are. Strategies that the table has no numbers of are left out, because their
+// times would be those of another GPU, or the GPU can't run them; if it has no numbers at all, nothing
+// changes.
 DeviceCosts withGpu(DeviceCosts measured, const GpuCosts& gpu);
 
-// Returns the factor by which an instruction takes longer in a case that branches on features than in one of
-// a single key; at least 1. It is the factor of --merge family if the table has it, else that of --merge all,
-// else 1.
-double branchFactor(const GpuCosts& gpu);
+// Returns how much longer an instruction takes in a case that branches on features than in one of a single
+// key; at least 1. It is that of --merge family where the table has it, else of --merge all. Returns nothing
+// if the table has neither.
+std::optional<double> branchFactor(const GpuCosts& gpu);
 
-// A choice among the values of a setting.
+// What `auto` stands for in a setting.
 struct GpuChoice {
-    std::string setting;  // "shadows"
+    std::string setting;  // "shadows" or "precision"
     std::string value;
-    std::string why;  // a full sentence
+    std::string why;  // full sentences
+    // The table has what the choice needs. If not, the value is the usual one.
+    bool known = false;
 };
-// Returns the choices that the compiler's numbers suggest for the settings of which the table has several
-// values. A value that costs memory or accuracy has to save at least kLeastGain.
-std::vector<GpuChoice> chooseSettings(const GpuCosts& gpu);
+// Returns the values of --shadows and of --precision, in this order. A value that costs memory or accuracy
+// has to save at least kLeastGain of the compiler's cycles. 16 bits are taken only if the user accepts their
+// error: `acceptedError` is a relMSE. `gpu` may be null, which leaves the usual values.
+std::vector<GpuChoice> chooseSettings(const GpuCosts* gpu, double acceptedError);
 inline constexpr double kLeastGain = 0.1;
+// relMSE of pictures with --precision 16: above the largest of the scenes in docs/numerics.md.
+inline constexpr double kHalfError = 4e-6;
 
-// Describes the modules that limit the GPU, for people: full sentences.
+// Says what the table has about strategies and merging, and what it lacks, for people: full sentences.
 std::string describe(const GpuCosts& gpu);
 
 }  // namespace glint::compiler

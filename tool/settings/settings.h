@@ -40,6 +40,10 @@ struct Settings {
     std::optional<package::Strategy> strategy = package::kDefaultStrategy;
     // A package also gets the strategy that should be fastest, besides compile.strategies.
     bool advisesStrategy = false;
+    // The table of `gpu` decides about the member of `compile`, which has the usual value until then.
+    bool choosesShadows = false;
+    bool choosesPrecision = false;
+    double precisionError = 0.0;                  // relMSE that the choice of a precision may cost
     std::optional<package::AlphaPolicy> alpha{};  // none: as the scene needs
     Sun sun = Sun::Auto;
     std::optional<double> sky{};       // factor of the default sky's radiance; none: as bright as the lights

@@ -356,8 +356,9 @@ constexpr Descriptor kRows[] = {
      .stage = SettingStage::Package,
      .group = kShaders,
      .what = "bits of float in shading",
-     .values = enumerator<&Settings::compile, &CompileSettings::precision>(),
-     .bench = approximates("32", {}, {},
+     .values = decided<&Settings::choosesPrecision, &Settings::compile, &CompileSettings::precision>(
+         "16 if the table of --gpu says that it is worth it and --precision-error accepts it, else 32"),
+     .bench = approximates("32", "32 16", {},
                            [](std::string_view value, const BenchFacts& facts, const Configuration&) {
                                return std::string(
                                    value == "16" && !facts.float16
@@ -366,13 +367,24 @@ constexpr Descriptor kRows[] = {
                            }),
      .document = "numerics.md#shading-in-16-bits",
      .recorded = true},
+    {.name = "precision-error",
+     .commands = kPlanners,
+     .stage = SettingStage::Package,
+     .group = kShaders,
+     .what = "the relMSE that --precision auto may cost; 16 bits need 4e-6; 0: none",
+     .values = number<&Settings::precisionError>(0.0, 1.0),
+     .bench = kNoPicture,
+     .document = "numerics.md#shading-in-16-bits",
+     .idle = neverIdle},
     {.name = "shadows",
      .commands = kMakers,
      .stage = SettingStage::Package,
      .group = kShaders,
      .what = "where shadow rays of hits are traced",
-     .values = enumerator<&Settings::compile, &CompileSettings::shadows>(),
-     .bench = changesTime(withoutRays),
+     .values = decided<&Settings::choosesShadows, &Settings::compile, &CompileSettings::shadows>(
+         "deferred if the table of --gpu says that it is worth it, else inline"),
+     .bench = changesTime(withoutRays, "inline deferred"),
+     .document = "performance.md#the-code-of-a-gpu",
      .recorded = true},
     {.name = "hit-record",
      .commands = kMakers,

@@ -117,6 +117,24 @@ constexpr SettingValues optional(std::string_view automatic, std::string_view ty
             .type = type};
 }
 
+// An enumerator whose member has the value 0 where `Automatic` is set, until something decides.
+template <auto Automatic, auto... Path>
+constexpr SettingValues decided(std::string_view automatic) {
+    using Value = std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>;
+    return {.form = ValueForm::Word,
+            .text =
+                [](const Settings& settings) {
+                    return std::string(settings.*Automatic ? kAuto : nameOf(memberOf<Path...>(settings)));
+                },
+            .set =
+                [](Settings& settings, std::string_view text) {
+                    settings.*Automatic = text == kAuto;
+                    memberOf<Path...>(settings) = valueNamed<Value>(text).value_or(Value{});
+                },
+            .words = [] { return withAuto(namesOf(Value{})); },
+            .automatic = automatic};
+}
+
 template <auto... Path>
 constexpr SettingValues number(double min, double max) {
     using Value = std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>;

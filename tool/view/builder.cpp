@@ -247,6 +247,7 @@ Status Builder::makePackage(const BuildOrder& order, Build& build) {
     }
     GLINT_TRY(auto plan, measure::choosePlan(planned, scenes));
     build.options = std::move(plan.options);
+    settings = withSettings(std::move(settings), plan.decided);
     std::vector<Diagnostic> messages = std::move(plan.warnings);
     messages.insert(messages.end(), plan.notes.begin(), plan.notes.end());
     if (!settings.strategy) {

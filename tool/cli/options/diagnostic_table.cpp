@@ -160,6 +160,8 @@ constexpr DiagnosticInfo kTable[] = {
     {"glb-version", kError, "A GLB is of another version."},
     {"glsl", kError, "A generated shader does not compile: a defect of Glint."},
     {"gltf", kError, "A scene can't be read, for a reason that has no id of its own."},
+    {"gpu-choice", kNote,
+     "A table of `--gpu` decided, or could not decide, what a setting that is `auto` stands for."},
     {"gpu-device", kWarning, "`--gpu device` can't ask the device's compiler."},
     {"gpu-table", kError, "The table of `--gpu` is not valid."},
     {"gpu-unknown", kError, "`--gpu` names neither a file nor a GPU that Glint has a table of."},

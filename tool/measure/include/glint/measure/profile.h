@@ -4,6 +4,7 @@
 
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
+#include "settings/configuration.h"
 
 #include <glint/measure/render_settings.h>
 #include <glint/result.h>
@@ -54,13 +55,15 @@ Status writeProfile(const std::string& file, const gltf::SceneList& scenes,
 
 struct PlanChoice {
     compiler::PlanOptions options;
+    // The values of settings that are `auto` and that the table of --gpu decides, for withSettings().
+    compiler::Configuration decided;
     std::vector<Diagnostic> warnings;
     std::vector<Diagnostic> notes;
 };
 
-// Returns the options of the command line, with the hits of its profile if it names one, and with the alpha
-// policy that is chosen for `auto`. Notes report the choice. Warns of keys that the scene has and the profile
-// lacks, and of a profile that was made with other settings. Has the errors of readProfile().
+// Returns the options of the command line, with the hits of its profile if it names one, and with what `auto`
+// stands for. Notes say what was chosen. Warns of keys that the scene has and the profile lacks, and of a
+// profile that was made with other settings. Has the errors of readProfile() and of inspect::readGpuCosts().
 Result<PlanChoice> choosePlan(const compiler::Settings& settings, const gltf::SceneList& scenes);
 
 }  // namespace glint::measure
