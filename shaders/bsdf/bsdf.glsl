@@ -287,8 +287,14 @@ float bentLight(Bsdf b, vec3 l, float eta) {
 
 // specularTransmission() with what a volume's facets block.
 float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
-    return keepsBlocked(b, features, eta) ? bentLight(b, l, eta) + bentLight(b, vec3(l.xy, -l.z), eta)
-                                          : specularTransmission(b, features, l, eta);
+    if (!keepsBlocked(b, features, eta)) {
+        return specularTransmission(b, features, l, eta);
+    }
+    float bent = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        bent += bentLight(b, vec3(l.xy, side == 0 ? l.z : -l.z), eta);
+    }
+    return bent;
 }
 
 // Light that the base passes, times |n·l|; l.z < 0.
