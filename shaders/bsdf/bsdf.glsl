@@ -220,9 +220,11 @@ vec3 metalReflection(Bsdf b, Features features, vec3 l) {
 
 // Light that the base reflects, times n·l; l.z > 0.
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
-    Facet facet = facetBetween(b, features, l);
+    // One lobe after the other, so that what one needs does not wait in registers while another is computed.
+    GLINT_RELAXED float fresnel =
+        GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : largest(facetBetween(b, features, l).dielectricFresnel);
     GLINT_RELAXED vec3 diffuse = diffuseLobe(b.layers, features, b.diffuse, b.view, l) *
-                                 (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
+                                 (kInversePi * diffuseShare(b, features, l, fresnel));
     if (seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y)) {
         vec3 within = facetReflection(b, l) + facetReflection(b, vec3(l.xy, -l.z));
         if (hasInput(features, GLINT_PARTIAL_METAL)) {
@@ -230,15 +232,17 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         }
         return diffuse * l.z + within;
     }
+    vec3 reflected = diffuse;
+    if (GLINT_ENERGY_COMPENSATION != 0) {
+        float lightLoss = lobeAlbedo(b, features, l).x;
+        reflected += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
+    }
+    Facet facet = facetBetween(b, features, l);
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
 #if GLINT_SHARED_LIGHTS
     specular *= b.mirrored;
 #endif
-    if (GLINT_ENERGY_COMPENSATION != 0) {
-        float lightLoss = lobeAlbedo(b, features, l).x;
-        specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
-    }
-    return (diffuse + specular) * l.z;
+    return (reflected + specular) * l.z;
 }
 
 // Light that the microfacets pass, at the index of one channel, times |n·l|; l.z < 0.

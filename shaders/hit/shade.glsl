@@ -192,7 +192,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
     vec3 chosen = vec3(0.0);  // light with the weight 1
     for (uint i = 0u; i < lights; ++i) {
         DrawnLight light = lightOfSurface(hit, features, i);
-        Surface lit = surface;
+        Surface lit = surfaceAgain(surface, features, i);
 #if GLINT_SHARED_LIGHTS
         // All kinds of lights share one evaluation of the BSDF, which is most of the code.
         bool shares = light.emitter != kNoEmitter;

@@ -43,7 +43,7 @@ float sheenHorizon(float nDotV, float alpha) {
 // precision is off by at most 9e-7 max(1, truth).
 float sheenAlbedo(float nDotV, float alpha) {
     float x = clamp(nDotV, kMinViewCosine, 1.0);
-    alpha = forDirection(alpha, x);
+    alpha = forDirection(alpha, nDotV);
     float a2 = alpha * alpha;
     float r = sqrt(alpha);
     // What masks the view is that of the lobe. The fractions are what the light's masking and the azimuths leave.
