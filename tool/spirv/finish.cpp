@@ -7,7 +7,6 @@
 #include <glslang/SPIRV/spirv.hpp>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <set>
 #include <span>
@@ -364,7 +363,7 @@ Words trim(const ParsedModule& module) {
 }  // namespace
 
 Status finishSpirv(std::vector<std::uint32_t>& words, const std::string& name) {
-    if (Status status = std::getenv("GLINT_NARROW") ? okStatus() : widenLoads(words, name); !status) {
+    if (Status status = widenLoads(words, name); !status) {
         return status;
     }
     Result<ParsedModule> module = parseModule(words, name);

@@ -266,14 +266,17 @@ private:
     void addIndex(std::uint32_t index, std::uint32_t stride, Place& place) const {
         const ParsedInstruction* definition = definitions_[index];
         while (definition != nullptr && definition->opcode == spv::OpIAdd) {
-            const std::uint32_t left = module_.words[definition->at + 3];
-            const std::uint32_t right = module_.words[definition->at + 4];
-            const std::optional<std::uint32_t> added = types_.constant(right);
+            std::uint32_t rest = module_.words[definition->at + 3];
+            std::optional<std::uint32_t> added = types_.constant(module_.words[definition->at + 4]);
+            if (!added) {
+                added = types_.constant(rest);
+                rest = module_.words[definition->at + 4];
+            }
             if (!added) {
                 break;
             }
             place.offset += *added * stride;
-            index = left;
+            index = rest;
             definition = definitions_[index];
         }
         if (const std::optional<std::uint32_t> number = types_.constant(index)) {
