@@ -642,15 +642,11 @@ private:
 }  // namespace
 
 Status widenLoads(std::vector<std::uint32_t>& words, const std::string& name) {
-    const Result<ParsedModule> module = parseModule(words, name);
-    if (!module) {
-        return module.error();
+    GLINT_TRY(const ParsedModule module, parseModule(words, name));
+    if (!module.functions.empty()) {
+        Words wide = WideLoads(module).make();
+        words = std::move(wide);
     }
-    if (module->functions.empty()) {
-        return okStatus();
-    }
-    Words wide = WideLoads(*module).make();
-    words = std::move(wide);
     return okStatus();
 }
 
