@@ -226,10 +226,14 @@ private:
     };
 
     void noteUser(std::uint32_t id, const ParsedInstruction& user) {
-        const std::uint32_t type = types_.opcodeOf(typeOf(id));
-        if (user.result != id && (type == spv::OpTypeStruct || type == spv::OpTypeArray)) {
+        if (user.result != id && isComposite(typeOf(id))) {
             users_[id].push_back(&user);
         }
+    }
+
+    bool isComposite(std::uint32_t type) const {
+        const std::uint32_t opcode = types_.opcodeOf(type);
+        return opcode == spv::OpTypeStruct || opcode == spv::OpTypeArray;
     }
 
     std::uint32_t typeOf(std::uint32_t id) const {
@@ -368,7 +372,7 @@ private:
                                 order};
                 if (load.words > 0) {
                     add(load, stretch);
-                } else {
+                } else if (isComposite(instruction.type)) {
                     split(load, stretch);
                 }
             }

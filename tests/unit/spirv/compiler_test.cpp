@@ -310,6 +310,22 @@ TEST(WideLoads, LeaveWhatIsApartOrMayHaveChanged) {
               (std::vector<std::uint32_t>{1, 1}));
 }
 
+TEST(WideLoads, LeaveOtherTypes) {
+    const std::string glsl = R"(#version 460
+        #extension GL_EXT_buffer_reference : require
+        #extension GL_EXT_shader_16bit_storage : require
+        #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
+        layout(local_size_x = 64) in;
+        layout(buffer_reference, std430, buffer_reference_align = 8) buffer Halves { f16vec4 data[]; };
+        layout(push_constant) uniform Push { Halves from; Halves to; } pushed;
+        void main() {
+            uint i = gl_GlobalInvocationID.x;
+            pushed.to.data[i] = pushed.from.data[i] + pushed.from.data[i + 1u];
+        })";
+    const auto words = compiler::compileShader({"halves.comp", compiler::ShaderStage::Compute, glsl}, {});
+    EXPECT_TRUE(words) << toString(words.error());
+}
+
 TEST(WideLoads, ReadTheSameOnce) {
     EXPECT_EQ(loadedComponents(R"(
         float size = pushed.records.data[i].size;
