@@ -253,9 +253,49 @@ def write_choices(glint, document, scenes):
     write_blocks(document, blocks)
 
 
+# The aims of a case: GPU, fact, whether a value reaches it.
+AIMS = [
+    ("Adreno 740: occupancy, 50 %", "a740", "occupancy", percent, lambda value: value >= 0.5),
+    ("RX 7900: occupancy, 60 %", "navi31", "occupancy", percent, lambda value: value >= 0.6),
+    ("Arc: spills, 0", "dg2", "spills", whole, lambda value: value == 0),
+]
+
+
+def cases_of(measured, gpu, package):
+    rows = measured.get((gpu, package), {}).get("cases (visibility)", [])
+    return {row["pipeline"].split(" ", 1)[1]: row for row in rows}
+
+
+def cases(before, after):
+    """Each case of the smaller packages, and how many of the 64, with the aims that it reaches."""
+    lines = ["| package | case | " + " | ".join(aim[0] for aim in AIMS) + " |"]
+    lines.append("|---|---|" + "---:|" * len(AIMS))
+    for package, title in PACKAGES.items():
+        names = sorted({name for aim in AIMS for name in cases_of(after, aim[1], package)})
+        if len(names) > 20:
+            cells = []
+            for _, gpu, fact, show, reaches in AIMS:
+                now = cases_of(after, gpu, package).values()
+                then = cases_of(before, gpu, package).values()
+                text = cell(list(then), list(now), fact, show)
+                cells.append(f"{text}; {sum(reaches(row[fact]) for row in now)} of {len(now)} reach it")
+            lines.append(f"| {title} | all {len(names)} | " + " | ".join(cells) + " |")
+            continue
+        for name in names:
+            cells = []
+            for _, gpu, fact, show, reaches in AIMS:
+                row = cases_of(after, gpu, package).get(name)
+                old = cases_of(before, gpu, package).get(name)
+                text = "-" if row is None else cell([old] if old else None, [row], fact, show)
+                cells.append(text + (" ✓" if row and reaches(row[fact]) else ""))
+            short = re.sub(r"_.*", "", name)
+            lines.append(f"| {title} | {short} | " + " | ".join(cells) + " |")
+    return lines
+
+
 def write_tables(folder, document):
     before, after = read(folder / "before.csv"), read(folder / "after.csv")
-    write_blocks(document, {"summary": summary(before, after), **{gpu: table(gpu, before, after) for gpu in GPUS}})
+    write_blocks(document, {"summary": summary(before, after), "cases": cases(before, after), **{gpu: table(gpu, before, after) for gpu in GPUS}})
 
 
 def write_blocks(document, blocks):

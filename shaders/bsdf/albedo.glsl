@@ -3,9 +3,16 @@
 // the high side, so that the terms that take the rest add no light.
 #include "bsdf/constants.glsl"
 
+// Returns alpha. Compilers do not see that it is the same for all directions, so they compute what follows from it for
+// each of them. Otherwise they keep up to 20 coefficients of the fits below in registers from one light to the next.
+// The sign of a cosine above 0 changes nothing; that of another changes the last digit.
+float forDirection(float alpha, float cosine) {
+    return uintBitsToFloat(floatBitsToUint(alpha) | floatBitsToUint(cosine) >> 31);
+}
+
 // The share that white microfacets lose by single scattering: ggxAlbedo().x.
 float ggxLoss(float nDotV, float alpha) {
-    float a = alpha;
+    float a = forDirection(alpha, nDotV);
     float a2 = a * a;
     float n2 = nDotV * nDotV;
     // The lowest terms of each fraction have the same degree in nDotV and alpha, because the loss of a smooth lobe is a
@@ -20,7 +27,7 @@ float ggxLoss(float nDotV, float alpha) {
 
 // The cosine between view and half vector at which Schlick's weight is the mean weight, minus nDotV.
 float ggxShift(float nDotV, float alpha) {
-    float a = alpha;
+    float a = forDirection(alpha, nDotV);
     float a2 = a * a;
     float roughness = sqrt(a);
     return a2 *
@@ -68,6 +75,7 @@ float likeIsotropic(float larger, float ratio) {
 // a cosine of 0.04 by at most 1.8e-2, and falls short by at most 3e-3. y exceeds the truth by at most 6e-2 and falls
 // short by at most 7e-3, both for oblique views of strong anisotropy.
 vec2 anisotropicGgxAlbedo(vec3 v, vec2 alpha) {
+    alpha = vec2(forDirection(alpha.x, v.z), forDirection(alpha.y, v.z));
     float larger = alpha.x;
     float ratio = alpha.y / alpha.x;
     float shortened = ratio * v.y;

@@ -73,36 +73,31 @@ GLINT_RELAXED vec3 specularAlbedo(Bsdf b, Features features, GLINT_RELAXED float
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b, features) * loss : single;
 }
 
-// The share of the light that single scattering loses and that passes the dielectric's microfacets in the end: 1 -
-// multiScatterFresnel(), or all of it without compensation.
-GLINT_RELAXED vec3 passedAgain(Bsdf b) {
+// What of the light that single scattering loses passes the dielectric's microfacets in the end: 1 -
+// multiScatterFresnel(), or all of it without compensation. It is that of the channel that reflects most, of which the
+// least passes.
+GLINT_RELAXED float passedAgain(Bsdf b) {
     if (GLINT_ENERGY_COMPENSATION == 0) {
-        return vec3(1.0);
+        return 1.0;
     }
-    GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
-    GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
-    GLINT_RELAXED vec3 mean = meanFresnel(b.f0, b.f90);
+    GLINT_RELAXED float f0 = largest(b.f0);
+    GLINT_RELAXED float mean = f0 + (b.f90 - f0) * (1.0 / 21.0);
     GLINT_RELAXED float meanLoss = b.meanLoss;
-    GLINT_RELAXED vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
-    return rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
+    GLINT_RELAXED float rest = (1.0 - f0) * (20.0 / 21.0) + (1.0 - b.f90) * (1.0 / 21.0);
+    return rest * (1.0 + mean * (1.0 - meanLoss)) / (1.0 - mean * meanLoss);
 }
 
-// The share that the microfacets of the dielectric do not reflect: 1 - specularAlbedo() without metal. It is a sum of
-// positive terms; the difference would lose its digits where nearly all light is reflected.
-GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
-    GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
-    GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
-    return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + passedAgain(b) * loss;
+// What the microfacets of the dielectric do not reflect, in the channel of which the least passes: 1 -
+// largest(specularAlbedo()) without metal. It is a sum of positive terms; the difference would lose its digits where
+// nearly all light is reflected.
+GLINT_RELAXED float specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    return (1.0 - largest(b.f0)) * (1.0 - loss - bias) + (1.0 - b.f90) * bias + passedAgain(b) * loss;
 }
 
 // The part of specularPassed() that a white lobe lets through at the first bounce: the albedo of thinTransmission()
 // with Fresnel.
 GLINT_RELAXED float passedOnce(Bsdf b) {
     return (1.0 - largest(b.f0)) * (1.0 - b.viewLoss - b.viewBias) + (1.0 - b.f90) * b.viewBias;
-}
-
-GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
-    return min(v.x, min(v.y, v.z));
 }
 
 // The loss 1 - E and the bias of the microfacets in a direction of the upper hemisphere.
@@ -167,10 +162,10 @@ GLINT_RELAXED float diffuseShare(Bsdf b, Features features, vec3 l, GLINT_RELAXE
         return 1.0 - fresnel;
     }
     vec2 light = lobeAlbedo(b, features, l);
-    float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));
-    float out1 = smallest(specularPassed(b, light.x, light.y));
+    float in1 = specularPassed(b, b.viewLoss, b.viewBias);
+    float out1 = specularPassed(b, light.x, light.y);
     // If all light is reflected, both factors vanish together with the mean.
-    float mean = max(smallest(specularPassed(b, b.meanLoss, b.meanBias)), 1e-6);
+    float mean = max(specularPassed(b, b.meanLoss, b.meanBias), 1e-6);
     return max(in1, 0.0) * max(out1, 0.0) / mean;
 }
 
@@ -227,9 +222,11 @@ vec3 metalReflection(Bsdf b, Features features, vec3 l) {
 
 // Light that the base reflects, times n·l; l.z > 0.
 vec3 baseReflection(Bsdf b, Features features, vec3 l) {
-    Facet facet = facetBetween(b, features, l);
+    // One lobe after the other, so that what one needs does not wait in registers while another is computed.
+    GLINT_RELAXED float fresnel =
+        GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : largest(facetBetween(b, features, l).dielectricFresnel);
     GLINT_RELAXED vec3 diffuse = diffuseLobe(b.layers, features, b.diffuse, b.view, l) *
-                                 (kInversePi * diffuseShare(b, features, l, largest(facet.dielectricFresnel)));
+                                 (kInversePi * diffuseShare(b, features, l, fresnel));
     if (seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y)) {
         vec3 within = facetReflection(b, l) + facetReflection(b, vec3(l.xy, -l.z));
         if (hasInput(features, GLINT_PARTIAL_METAL)) {
@@ -237,15 +234,17 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         }
         return diffuse * l.z + within;
     }
+    vec3 reflected = diffuse;
+    if (GLINT_ENERGY_COMPENSATION != 0) {
+        float lightLoss = lobeAlbedo(b, features, l).x;
+        reflected += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
+    }
+    Facet facet = facetBetween(b, features, l);
     vec3 specular = facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha));
 #if GLINT_SHARED_LIGHTS
     specular *= b.mirrored;
 #endif
-    if (GLINT_ENERGY_COMPENSATION != 0) {
-        float lightLoss = lobeAlbedo(b, features, l).x;
-        specular += multiScatterFresnel(b, features) * (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12));
-    }
-    return (diffuse + specular) * l.z;
+    return (reflected + specular) * l.z;
 }
 
 // Light that the microfacets pass, at the index of one channel, times |n·l|; l.z < 0.
@@ -278,7 +277,7 @@ GLINT_RELAXED float passedShare(Bsdf b) {
     float rest = 1.0 - min(sqrt(dot(blocked, blocked)), 1.0);
     float mean = b.viewBias + b.viewLoss * rest * rest * rest * rest * rest;
     GLINT_RELAXED float reflected = mix(largest(b.f0), b.f90, mean);
-    return max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0) / max(1.0 - reflected, 1e-3);
+    return max(specularPassed(b, b.viewLoss, b.viewBias), 0.0) / max(1.0 - reflected, 1e-3);
 }
 
 // The density with which visible facets bend the view to l, for the index of one channel, times their transmittance.
@@ -294,8 +293,14 @@ float bentLight(Bsdf b, vec3 l, float eta) {
 
 // specularTransmission() with the light that a volume's facets block.
 float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
-    return keepsBlocked(b, features, eta) ? bentLight(b, l, eta) + bentLight(b, vec3(l.xy, -l.z), eta)
-                                          : specularTransmission(b, features, l, eta);
+    if (!keepsBlocked(b, features, eta)) {
+        return specularTransmission(b, features, l, eta);
+    }
+    float bent = 0.0;
+    for (int side = 0; side < 2; ++side) {
+        bent += bentLight(b, vec3(l.xy, side == 0 ? l.z : -l.z), eta);
+    }
+    return bent;
 }
 
 // Light that the base passes, times |n·l|; l.z < 0.
@@ -311,7 +316,7 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
         if (scattersPassage(features)) {
             // Kulla and Conty's lobe of several bounces, on the far side.
             float lightLoss = lobeAlbedo(b, features, vec3(l.xy, -l.z)).x;
-            result += b.transmitted * (smallest(passedAgain(b)) * -l.z *
+            result += b.transmitted * (passedAgain(b) * -l.z *
                                        (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12)));
         }
     }

@@ -65,13 +65,15 @@ float refractedCosine2(vec2 cosine2, float eta) {
 
 // Returns dot(a, b) as a float and its error.
 vec2 exactDot(vec3 a, vec3 b) {
+    // One component after the other, so that the halves of few numbers wait in registers.
     precise float x = a.x * b.x;
+    precise float errors = productError(a.x, b.x, x);
     precise float y = a.y * b.y;
-    precise float z = a.z * b.z;
     precise float xy = x + y;
+    errors += productError(a.y, b.y, y) + sumError(x, y, xy);
+    precise float z = a.z * b.z;
     precise float sum = xy + z;
-    precise float errors = sumError(x, y, xy) + sumError(xy, z, sum) + productError(a.x, b.x, x) +
-                           productError(a.y, b.y, y) + productError(a.z, b.z, z);
+    errors += productError(a.z, b.z, z) + sumError(xy, z, sum);
     return exactSum(sum, errors);
 }
 

@@ -52,8 +52,8 @@ bool refractionHalfVector(vec3 v, vec3 l, float eta, out RefractingFacet facet) 
     float squared = dot(sum, sum);
     float scale = inversesqrt(squared) * (sum.z < 0.0 ? -1.0 : 1.0);
     facet.h = sum * scale;
-    facet.cosineV = min((accurateDot(v, sum) + dot(v, errors)) * scale, 1.0);
     facet.cosineL = min(-(accurateDot(l, sum) + dot(l, errors)) * scale, 1.0);
+    facet.cosineV = min((accurateDot(v, sum) + dot(v, errors)) * scale, 1.0);
     facet.spread = eta * eta / squared;
     return squared > 0.0 && facet.cosineV > 0.0 && facet.cosineL > 0.0;
 }

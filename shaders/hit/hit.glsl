@@ -5,12 +5,9 @@
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
+#include "hit/triangle.glsl"
 #if GLINT_PATHS
 #include "hit/path.glsl"
-#endif
-
-#ifndef GLINT_CORNER
-#define GLINT_CORNER(i) hostPosition(geometry, triangle.vertices[i])
 #endif
 
 struct Hit {
@@ -60,15 +57,13 @@ vec3 rayOrigin(Hit hit, vec3 direction) {
 
 // Returns a point of a triangle in the world.
 vec3 trianglePosition(HostGeometry geometry, uint primitive, vec2 barycentrics) {
-    vec3 p0 = hostPosition(geometry, hostVertex(geometry, 3u * primitive));
-    vec3 p1 = hostPosition(geometry, hostVertex(geometry, 3u * primitive + 1u));
-    vec3 p2 = hostPosition(geometry, hostVertex(geometry, 3u * primitive + 2u));
+    vec3 p[3];
+    hostPositions(geometry, hostTriangle(geometry, primitive), p);
     return transformPoint(hostInstance(geometry).objectToWorld,
-                          p0 + (barycentrics.x * (p1 - p0) + barycentrics.y * (p2 - p0)));
+                          p[0] + (barycentrics.x * (p[1] - p[0]) + barycentrics.y * (p[2] - p[0])));
 }
 
-// The corners of a triangle in its mesh's space, with the numbers of their vertices. Positions may have several forms,
-// and the code that reads them is long, so it stands here once.
+// The corners of a triangle in its mesh's space, with the numbers of their vertices.
 struct TriangleCorners {
     uvec3 vertices;
     vec3 corners[3];
@@ -76,10 +71,8 @@ struct TriangleCorners {
 
 TriangleCorners vertexPositions(HostGeometry geometry, uint primitive) {
     TriangleCorners triangle;
-    for (uint i = 0u; i < 3u; ++i) {
-        triangle.vertices[i] = hostVertex(geometry, 3u * primitive + i);
-        triangle.corners[i] = hostPosition(geometry, triangle.vertices[i]);
-    }
+    triangle.vertices = hostTriangle(geometry, primitive);
+    hostPositions(geometry, triangle.vertices, triangle.corners);
     return triangle;
 }
 
@@ -128,16 +121,18 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
 
     hit.normal = front;
     if (hasInput(features, GLINT_NORMALS)) {
-        vec3 n = weights.x * hostNormal(geometry, corner.x) + weights.y * hostNormal(geometry, corner.y) +
-                 weights.z * hostNormal(geometry, corner.z);
+        vec3 normals[3];
+        hostNormals(geometry, corner, normals);
+        vec3 n = weights.x * normals[0] + weights.y * normals[1] + weights.z * normals[2];
         hit.normal = directionOr(transformNormal(instance.normalToWorld, n), front);
     }
     hit.tangent = vec4(0.0);
     if (hasInput(features, GLINT_TANGENTS)) {
-        vec4 t0 = hostTangent(geometry, corner.x);
-        vec4 t = weights.x * t0 + weights.y * hostTangent(geometry, corner.y) +
-                 weights.z * hostTangent(geometry, corner.z);
-        hit.tangent = vec4(transformVector(instance.objectToWorld, t.xyz), mirrored ? -t0.w : t0.w);
+        vec4 tangents[3];
+        hostTangents(geometry, corner, tangents);
+        vec4 t = weights.x * tangents[0] + weights.y * tangents[1] + weights.z * tangents[2];
+        float handedness = tangents[0].w;
+        hit.tangent = vec4(transformVector(instance.objectToWorld, t.xyz), mirrored ? -handedness : handedness);
     }
 
     // The UV sets, with their edges for derived frames and for the level of detail.
@@ -146,23 +141,22 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
     hit.uvEdges[0] = vec4(0.0);
     hit.uvEdges[1] = vec4(0.0);
     if (hasInput(features, GLINT_TEX_COORD_0)) {
-        vec2 uv0 = hostTexCoord0(geometry, corner.x);
-        vec2 uv1 = hostTexCoord0(geometry, corner.y);
-        vec2 uv2 = hostTexCoord0(geometry, corner.z);
-        hit.texCoords[0] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
-        hit.uvEdges[0] = vec4(uv1 - uv0, uv2 - uv0);
+        vec2 uv[3];
+        hostTexCoords0(geometry, corner, uv);
+        hit.texCoords[0] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
+        hit.uvEdges[0] = vec4(uv[1] - uv[0], uv[2] - uv[0]);
     }
     if (hasInput(features, GLINT_TEX_COORD_1)) {
-        vec2 uv0 = hostTexCoord1(geometry, corner.x);
-        vec2 uv1 = hostTexCoord1(geometry, corner.y);
-        vec2 uv2 = hostTexCoord1(geometry, corner.z);
-        hit.texCoords[1] = weights.x * uv0 + weights.y * uv1 + weights.z * uv2;
-        hit.uvEdges[1] = vec4(uv1 - uv0, uv2 - uv0);
+        vec2 uv[3];
+        hostTexCoords1(geometry, corner, uv);
+        hit.texCoords[1] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
+        hit.uvEdges[1] = vec4(uv[1] - uv[0], uv[2] - uv[0]);
     }
     hit.color = vec4(1.0);
     if (hasInput(features, GLINT_VERTEX_COLOR)) {
-        hit.color = weights.x * hostColor(geometry, corner.x) + weights.y * hostColor(geometry, corner.y) +
-                    weights.z * hostColor(geometry, corner.z);
+        vec4 colors[3];
+        hostColors(geometry, corner, colors);
+        hit.color = weights.x * colors[0] + weights.y * colors[1] + weights.z * colors[2];
     }
 
 #if GLINT_VERTEX_ATTRIBUTES
@@ -187,11 +181,12 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
 // Does the same for the triangle that was hit, whose corners a module may know already.
 Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
              uint target, Features features) {
+#ifdef GLINT_CORNER
     TriangleCorners triangle;
-    triangle.vertices = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
-                              hostVertex(geometry, 3u * primitive + 2u));
-    triangle.corners[0] = GLINT_CORNER(0);
-    triangle.corners[1] = GLINT_CORNER(1);
-    triangle.corners[2] = GLINT_CORNER(2);
+    triangle.vertices = hostTriangle(geometry, primitive);
+    triangle.corners = vec3[3](GLINT_CORNER(0), GLINT_CORNER(1), GLINT_CORNER(2));
+#else
+    TriangleCorners triangle = vertexPositions(geometry, primitive);
+#endif
     return fetchHitAt(geometry, barycentrics, rayDirection, coneWidth, target, features, triangle);
 }

@@ -190,11 +190,10 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
     float random = hostRandom(hit.target, shadingDimension(kDimensionLight));
     uint lights = hostLightCount(hit.position);
     float total = 0.0;
-    float chosenWeight = 1.0;
-    vec3 chosen = vec3(0.0);
+    vec3 chosen = vec3(0.0);  // light with the weight 1
     for (uint i = 0u; i < lights; ++i) {
         DrawnLight light = lightOfSurface(hit, features, i);
-        Surface lit = surface;
+        Surface lit = surfaceAgain(surface, features, i);
 #if GLINT_SHARED_LIGHTS
         // All kinds of lights share one evaluation of the BSDF, which is most of the code.
         bool shares = light.emitter != kNoEmitter;
@@ -222,8 +221,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
         float probability = weight / total;
         if (random < probability) {
             random /= probability;
-            chosen = contribution;
-            chosenWeight = weight;
+            chosen = contribution / weight;
             result.shadowDirection = light.aim.direction;
             result.shadowDistance = light.aim.distance;
 #if GLINT_SHARED_LIGHTS
@@ -246,8 +244,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
         float probability = weight / total;
         if (random < probability) {
             random /= probability;
-            chosen = point.irradiance;
-            chosenWeight = weight;
+            chosen = point.irradiance / weight;
             result.shadowDirection = point.direction;
             result.shadowDistance = point.distance;
             result.shadowSees = kShadowOfLight;
@@ -256,7 +253,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
         }
     }
 #endif
-    result.direct = chosen * (total / chosenWeight);
+    result.direct = chosen * total;
 #if GLINT_EFFECT_SHADOW
     // Nothing is between the surface and a light around it.
     if (result.shadowDistance <= 0.0) {

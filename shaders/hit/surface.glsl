@@ -15,6 +15,16 @@ struct Surface {
 #endif
 };
 
+// Returns the surface for light number `light`. A compiler does not see that the frame is the same for all lights, so
+// it computes the frame from the normal instead of keeping it: the highest bit of the number is 0.
+Surface surfaceAgain(Surface surface, Features features, uint light) {
+    if (!hasLobe(features, GLINT_ANISOTROPY)) {
+        vec3 normal = vec3(surface.normal.xy, uintBitsToFloat(floatBitsToUint(surface.normal.z) | light >> 31));
+        buildBasis(normal, surface.tangent, surface.bitangent);
+    }
+    return surface;
+}
+
 vec3 toSurface(Surface surface, vec3 direction) {
     return vec3(dot(surface.tangent, direction), dot(surface.bitangent, direction), dot(surface.normal, direction));
 }
@@ -40,5 +50,5 @@ GLINT_RELAXED float baseShare(Surface surface, Features features) {
 
 // The share of a uniform sky's light that the microfacets let through to the diffuse lobes.
 GLINT_RELAXED float diffusePassed(Surface surface) {
-    return max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
+    return max(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias), 0.0);
 }

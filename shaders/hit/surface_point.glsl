@@ -6,6 +6,7 @@
 #include "bsdf/features.glsl"
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
+#include "hit/triangle.glsl"
 
 struct SurfacePoint {
     vec3 position;  // world
@@ -18,28 +19,28 @@ struct SurfacePoint {
 
 // Fetches the attributes that `features` may need and that only they read. The features may be of any key.
 SurfacePoint surfacePoint(HostGeometry geometry, uint primitive, vec2 barycentrics, Features features) {
-    uvec3 corner = uvec3(hostVertex(geometry, 3u * primitive), hostVertex(geometry, 3u * primitive + 1u),
-                         hostVertex(geometry, 3u * primitive + 2u));
+    uvec3 corner = hostTriangle(geometry, primitive);
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     SurfacePoint point;
     point.material = geometry.materialIndex;
     point.position = vec3(0.0);
 #if GLINT_MASK_STAGES
-    vec3 place = weights.x * hostPosition(geometry, corner.x) + weights.y * hostPosition(geometry, corner.y) +
-                 weights.z * hostPosition(geometry, corner.z);
+    vec3 places[3];
+    hostPositions(geometry, corner, places);
+    vec3 place = weights.x * places[0] + weights.y * places[1] + weights.z * places[2];
     point.position = transformPoint(hostInstance(geometry).objectToWorld, place);
 #endif
     point.texCoords[0] = vec2(0.0);
     point.texCoords[1] = vec2(0.0);
     if (inputOfKey(features, GLINT_TEX_COORD_0)) {
-        point.texCoords[0] = weights.x * hostTexCoord0(geometry, corner.x) +
-                             weights.y * hostTexCoord0(geometry, corner.y) +
-                             weights.z * hostTexCoord0(geometry, corner.z);
+        vec2 uv[3];
+        hostTexCoords0(geometry, corner, uv);
+        point.texCoords[0] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
     }
     if (inputOfKey(features, GLINT_TEX_COORD_1)) {
-        point.texCoords[1] = weights.x * hostTexCoord1(geometry, corner.x) +
-                             weights.y * hostTexCoord1(geometry, corner.y) +
-                             weights.z * hostTexCoord1(geometry, corner.z);
+        vec2 uv[3];
+        hostTexCoords1(geometry, corner, uv);
+        point.texCoords[1] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
     }
 #if GLINT_VERTEX_ATTRIBUTES && GLINT_MASK_STAGES
     point.attributes = fetchAttributes(geometry, corner, weights, features);
@@ -49,10 +50,9 @@ SurfacePoint surfacePoint(HostGeometry geometry, uint primitive, vec2 barycentri
 
 // Returns the alpha of the vertices' colours.
 float vertexAlpha(HostGeometry geometry, uint primitive, vec2 barycentrics) {
-    return dot(vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics),
-               vec3(hostColor(geometry, hostVertex(geometry, 3u * primitive)).a,
-                    hostColor(geometry, hostVertex(geometry, 3u * primitive + 1u)).a,
-                    hostColor(geometry, hostVertex(geometry, 3u * primitive + 2u)).a));
+    vec4 colors[3];
+    hostColors(geometry, hostTriangle(geometry, primitive), colors);
+    return dot(vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics), vec3(colors[0].a, colors[1].a, colors[2].a));
 }
 
 // Returns the coordinates at which a texture slot is read.

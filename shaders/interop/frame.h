@@ -277,10 +277,16 @@ GLINT_CONSTANT(kMostHalf, 65504u);
 // The constants of one frame of one sample.
 struct FrameConstants {
     vec4 worldToClip[4];  // rows; Vulkan clip space, y down, reversed depth (1 near, 0 far), jittered
-    vec3 cameraPosition;
+    // What finds the place of a sample stands together, so that one load reads it.
     uint width;  // pixels
-    vec3 cameraForward;  // unit vector
     uint height;
+    // The band of rows that the passes over pixels are at:
+    uint bandFirst;     // the number of its first pixel
+    uint outsideBands;  // pixels of the frame that samples of a band have no memory for
+    uint firstRow;
+    uint endRow;        // the row after its last one
+    vec3 cameraPosition;
+    vec3 cameraForward;  // unit vector
     vec3 cameraRight;  // from the image centre to its right edge, on the plane at distance 1 (perspective) or in world
                        // units (orthographic)
     uint orthographic;  // 1: rays are parallel
@@ -368,11 +374,6 @@ struct FrameConstants {
     GLINT_ADDRESS(LobeRay) lobeRays;    // of every sample, in the order of the samples
     uint emitterCount;
     uint accumulates;  // kPicture*
-    // The band of rows that the passes over pixels are at:
-    uint firstRow;
-    uint endRow;        // the row after its last one
-    uint bandFirst;     // the number of its first pixel
-    uint outsideBands;  // pixels of the frame that samples of a band have no memory for
 #if GLINT_SKY_LIGHT_MEMBERS
     // The members for packages whose sky is a light:
     GLINT_ADDRESS(SkyShare) skyShares;  // of every sample, in the order of the samples: the share of the sky's light

@@ -45,9 +45,9 @@ vec4 pointColor(HostGeometry geometry, SurfacePoint point, PassageCandidate cand
     }
     if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
         vec2 b = candidate.barycentrics;
-        color *= (1.0 - b.x - b.y) * hostColor(geometry, hostVertex(geometry, 3u * candidate.primitive)) +
-                 b.x * hostColor(geometry, hostVertex(geometry, 3u * candidate.primitive + 1u)) +
-                 b.y * hostColor(geometry, hostVertex(geometry, 3u * candidate.primitive + 2u));
+        vec4 colors[3];
+        hostColors(geometry, hostTriangle(geometry, candidate.primitive), colors);
+        color *= (1.0 - b.x - b.y) * colors[0] + b.x * colors[1] + b.y * colors[2];
     }
     return color;
 }
@@ -116,9 +116,10 @@ bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
     bool passes = coverage > 0.0 && (geometry.flags & kGeometryPassesLight) != 0u &&
                   lobeOfKey(features, GLINT_TRANSMISSION);
     if (passes) {
-        vec3 corner = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive));
-        vec3 edge1 = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive + 1u)) - corner;
-        vec3 edge2 = hostPosition(geometry, hostVertex(geometry, 3u * candidate.primitive + 2u)) - corner;
+        vec3 corners[3];
+        hostPositions(geometry, hostTriangle(geometry, candidate.primitive), corners);
+        vec3 edge1 = corners[1] - corners[0];
+        vec3 edge2 = corners[2] - corners[0];
         vec3 front = directionOr(transformNormal(hostInstance(geometry).normalToWorld, cross(edge1, edge2)),
                                  -candidate.direction);
         float cosine = dot(front, candidate.direction);

@@ -31,9 +31,10 @@ EmitterTriangle emitterTriangle(uint emitter) {
     EmitterTriangle triangle;
     triangle.geometry = geometry;
     triangle.primitive = record.primitive;
+    vec3 corners[3];
+    hostPositions(geometry, hostTriangle(geometry, record.primitive), corners);
     for (uint i = 0u; i < 3u; ++i) {
-        triangle.corners[i] = transformPoint(
-            instance.objectToWorld, hostPosition(geometry, hostVertex(geometry, 3u * record.primitive + i)));
+        triangle.corners[i] = transformPoint(instance.objectToWorld, corners[i]);
     }
     return triangle;
 }

@@ -2,6 +2,7 @@
 
 #include "spirv/join/parsed_module.h"
 #include "spirv/reader.h"
+#include "spirv/wide_loads.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 
@@ -362,23 +363,18 @@ Words trim(const ParsedModule& module) {
 }  // namespace
 
 Status finishSpirv(std::vector<std::uint32_t>& words, const std::string& name) {
-    Result<ParsedModule> module = parseModule(words, name);
-    if (!module) {
-        return module.error();
-    }
-    if (std::ranges::any_of(module->functions, [](const ParsedFunction& function) {
+    GLINT_TRY_DO(widenLoads(words, name));
+    GLINT_TRY(ParsedModule module, parseModule(words, name));
+    if (std::ranges::any_of(module.functions, [](const ParsedFunction& function) {
             return std::ranges::any_of(function.body, [](const ParsedInstruction& it) {
                 return it.opcode == spv::OpRayQueryInitializeKHR;
             });
         })) {
-        Words fresh = FreshLoads(*module).make();
+        Words fresh = FreshLoads(module).make();
         words = std::move(fresh);
-        module = parseModule(words, name);
-        if (!module) {
-            return module.error();
-        }
+        GLINT_TRY(module, parseModule(words, name));
     }
-    words = trim(*module);
+    words = trim(module);
     return okStatus();
 }
 

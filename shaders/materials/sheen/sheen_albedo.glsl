@@ -1,6 +1,7 @@
 // The directional albedo of the sheen lobe in closed form. Constants and bounds come from
 // benchmarks/fit_directional_albedo.py, which checks them in single precision against quadrature. The fit errs on the
-// high side, so that the base's share adds no light.
+// high side, so that what the base has adds no light.
+#include "bsdf/albedo.glsl"
 #include "bsdf/constants.glsl"
 
 // 0.07². Below alpha = 0.068 the lobe of KHR_materials_sheen reflects more than it receives near grazing, up to 2.94
@@ -42,6 +43,7 @@ float sheenHorizon(float nDotV, float alpha) {
 // precision is off by at most 9e-7 max(1, truth).
 float sheenAlbedo(float nDotV, float alpha) {
     float x = clamp(nDotV, kMinViewCosine, 1.0);
+    alpha = forDirection(alpha, nDotV);
     float a2 = alpha * alpha;
     float r = sqrt(alpha);
     // The masking of the view is the lobe's own. The fractions stand for the light's masking and the azimuths.

@@ -6,9 +6,11 @@
 
 #include <glint/package_modules.h>
 
+#include <glslang/SPIRV/spirv.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <thread>
 #include <vector>
@@ -245,6 +247,91 @@ TEST(CompileShader, GivesTheSameWordsOnEveryThread) {
     for (const auto& result : results) {
         EXPECT_EQ(result, *expected);
     }
+}
+
+// Records behind an address, as the shaders of packages read them.
+constexpr const char* kRecords = R"(#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+layout(local_size_x = 64) in;
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Words { uint data[]; };
+struct Record { uint kind; vec3 place; Words words; float size; uint flags; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Records { Record data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Results { float data[]; };
+layout(push_constant, scalar) uniform Push { Records records; Results results; Words words; } pushed;
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+)";
+
+// The result's components of the loads behind addresses, in the order of the module.
+std::vector<std::uint32_t> loadedComponents(const std::string& body) {
+    const auto words = compiler::compileShader(
+        {"records.comp", compiler::ShaderStage::Compute, kRecords + body + "}\n"}, {});
+    EXPECT_TRUE(words) << toString(words.error());
+    std::map<std::uint32_t, std::uint32_t> components;
+    std::vector<std::uint32_t> loaded;
+    EXPECT_TRUE(compiler::visitSpirv(*words, [&](const compiler::SpirvInstruction& it) {
+        if (it.opcode == spv::OpTypeInt || it.opcode == spv::OpTypeFloat) {
+            components[it.operands[0]] = 1;
+        } else if (it.opcode == spv::OpTypeVector) {
+            components[it.operands[0]] = it.operands[2];
+        } else if (it.opcode == spv::OpLoad && it.operands.size() == 5) {  // with its alignment
+            loaded.push_back(components[it.operands[0]]);
+        }
+    }));
+    return loaded;
+}
+
+TEST(WideLoads, ReadNeighboursTogether) {
+    // The members of a structure, in their order: 1 + 3 words, then an address, a float and a uint.
+    EXPECT_EQ(loadedComponents(R"(
+        Record r = pushed.records.data[i];
+        pushed.results.data[i] = r.place.x + r.place.y * r.place.z + r.size + float(r.kind + r.flags + r.words.data[0]);
+    )"),
+              (std::vector<std::uint32_t>{4, 4, 1}));
+    // Elements of an array at an index that is not known, with the constant on either side.
+    EXPECT_EQ(loadedComponents(R"(
+        pushed.results.data[i] = float(pushed.words.data[3u * i + 1u] + pushed.words.data[3u * i] +
+                                       pushed.words.data[2u + 3u * i]);
+    )"),
+              (std::vector<std::uint32_t>{3}));
+}
+
+TEST(WideLoads, LeaveWhatIsApartOrMayHaveChanged) {
+    EXPECT_EQ(loadedComponents(R"(
+        pushed.results.data[i] = float(pushed.words.data[i] + pushed.words.data[i + 3u]);
+    )"),
+              (std::vector<std::uint32_t>{1, 1}));
+    EXPECT_EQ(loadedComponents(R"(
+        uint first = pushed.words.data[i];
+        pushed.results.data[i] = 1.0;
+        pushed.results.data[i + 9u] = float(first + pushed.words.data[i + 1u]);
+    )"),
+              (std::vector<std::uint32_t>{1, 1}));
+}
+
+TEST(WideLoads, LeaveOtherTypes) {
+    const std::string glsl = R"(#version 460
+        #extension GL_EXT_buffer_reference : require
+        #extension GL_EXT_shader_16bit_storage : require
+        #extension GL_EXT_shader_explicit_arithmetic_types_float16 : require
+        layout(local_size_x = 64) in;
+        layout(buffer_reference, std430, buffer_reference_align = 8) buffer Halves { f16vec4 data[]; };
+        layout(push_constant) uniform Push { Halves from; Halves to; } pushed;
+        void main() {
+            uint i = gl_GlobalInvocationID.x;
+            pushed.to.data[i] = pushed.from.data[i] + pushed.from.data[i + 1u];
+        })";
+    const auto words = compiler::compileShader({"halves.comp", compiler::ShaderStage::Compute, glsl}, {});
+    EXPECT_TRUE(words) << toString(words.error());
+}
+
+TEST(WideLoads, ReadTheSameOnce) {
+    EXPECT_EQ(loadedComponents(R"(
+        float size = pushed.records.data[i].size;
+        pushed.results.data[i] = size * pushed.records.data[i].size;
+    )"),
+              (std::vector<std::uint32_t>{1}));
 }
 
 TEST(ValidateSpirv, RefusesWhatIsNotValid) {
