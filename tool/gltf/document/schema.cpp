@@ -51,7 +51,7 @@ std::optional<SchemaError> checkRange(const Json& value, const Rule& rule, const
     return std::nullopt;
 }
 
-// Turns 3.0 into 3. JSON has one type of number, but the parsers behind this check distinguish two.
+// Turns 3.0 into 3. JSON has one type of number, but tinygltf distinguishes three.
 bool makeInteger(Json& value) {
     // Above this value, a double need not represent every integer.
     constexpr double kExact = 9007199254740992.0;
@@ -60,6 +60,9 @@ bool makeInteger(Json& value) {
         if (std::trunc(number) == number && std::abs(number) <= kExact) {
             value = static_cast<std::int64_t>(number);
         }
+    }
+    if (value.is_number_integer() && !value.is_number_unsigned() && value.get<std::int64_t>() >= 0) {
+        value = value.get<std::uint64_t>();
     }
     return value.is_number_integer();
 }
@@ -203,24 +206,12 @@ T memberOr(const Json& object, std::string_view name, T fallback) {
 
 }  // namespace
 
-int indexMember(const Json& object, std::string_view name) {
-    return memberOr(object, name, -1);
-}
-
 std::uint64_t sizeMember(const Json& object, std::string_view name) {
     return memberOr<std::uint64_t>(object, name, 0);
 }
 
 std::string textMember(const Json& object, std::string_view name) {
     return memberOr<std::string>(object, name, {});
-}
-
-std::vector<double> numbersMember(const Json& object, std::string_view name) {
-    return memberOr<std::vector<double>>(object, name, {});
-}
-
-int integerMember(const Json& object, std::string_view name, int fallback) {
-    return memberOr(object, name, fallback);
 }
 
 bool boolMember(const Json& object, std::string_view name, bool fallback) {

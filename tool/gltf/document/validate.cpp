@@ -1,11 +1,11 @@
 #include "gltf/document/validate.h"
 
-#include "gltf/document/material_rules.h"
-#include "gltf/document/rules.h"
-
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -111,6 +111,86 @@ constexpr std::array kVariants{objects("variants", kVariant, true)};
 constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
                                      object("KHR_materials_variants", kVariants)};
 
+// ---- Rules of materials ----
+
+constexpr std::array kTransformRules{numbers("offset", 2), number("rotation"), numbers("scale", 2),
+                                     integer("texCoord", 0.0, kMaxInt)};
+constexpr std::array kTextureInfoExtensions{object("KHR_texture_transform", kTransformRules)};
+
+Rule parameterRule(const materials::Parameter& parameter, std::string_view name) {
+    Rule rule =
+        parameter.channels == 1 ? number(name) : numbers(name, static_cast<std::size_t>(parameter.channels));
+    if (std::isinf(parameter.high)) {
+        // Exporters write the largest number they know for an infinite one. A float need not be able to hold
+        // it.
+        rule.min = std::numeric_limits<double>::lowest();
+        rule.max = std::numeric_limits<double>::max();
+    }
+    return rule;
+}
+
+// Rules for the JSON of a material, as the declarations give them. They check only types, because values out
+// of range are clamped while reading. The model must outlive the rules.
+class MaterialRules {
+public:
+    explicit MaterialRules(const materials::MaterialModel& model);
+    MaterialRules(const MaterialRules&) = delete;
+    MaterialRules& operator=(const MaterialRules&) = delete;
+
+    std::span<const Rule> rules() const {
+        return material_;
+    }
+
+private:
+    std::vector<Rule> rulesOf(const materials::MaterialModel& model, int object);
+
+    std::deque<std::vector<Rule>> nested_;  // Rule::rules point into it.
+    std::vector<Rule> material_;
+};
+
+MaterialRules::MaterialRules(const materials::MaterialModel& model) {
+    std::vector<Rule> extensions;
+    material_ = rulesOf(model, 0);
+    for (std::size_t i = 1; i < model.objects.size(); ++i) {
+        const materials::MaterialObject& object = model.objects[i];
+        nested_.push_back(rulesOf(model, static_cast<int>(i)));
+        (object.isExtension ? extensions : material_).push_back(rules::object(object.name, nested_.back()));
+    }
+    nested_.push_back(std::move(extensions));
+    for (const Rule& rule :
+         {text("name"), text("alphaMode"), boolean("doubleSided"), object("extensions", nested_.back())}) {
+        material_.push_back(rule);
+    }
+}
+
+std::vector<Rule> MaterialRules::rulesOf(const materials::MaterialModel& model, int object) {
+    std::vector<Rule> found;
+    for (const materials::Parameter& parameter : model.parameters) {
+        if (parameter.object == object && parameter.place.find('/') == std::string::npos) {
+            found.push_back(parameterRule(parameter, parameter.place));
+        }
+    }
+    for (const materials::MaterialTexture& texture : model.textures) {
+        for (const materials::MaterialTexture::Place& place : texture.places) {
+            if (place.object != object) {
+                continue;
+            }
+            std::vector<Rule>& info = nested_.emplace_back();
+            info = {index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
+                    rules::object("extensions", kTextureInfoExtensions)};
+            for (const materials::Parameter& parameter : model.parameters) {
+                // A parameter beside a texture: "normalTexture/scale".
+                const std::string_view where = parameter.place;
+                if (parameter.object == object && where.starts_with(place.member + "/")) {
+                    info.push_back(parameterRule(parameter, where.substr(place.member.size() + 1)));
+                }
+            }
+            found.push_back(rules::object(place.member, info));
+        }
+    }
+    return found;
+}
+
 // The rules of a whole document whose materials are made as `model` says.
 class RootRules {
 public:
@@ -203,6 +283,92 @@ std::optional<SchemaError> checkCameras(const Json& root) {
     return std::nullopt;
 }
 
+// ---- Extensions that compress geometry or replace the image of a texture ----
+
+constexpr double kMaxAttributeId = 4294967295.0;
+// The size in bytes of the largest vertex that the extension allows.
+constexpr double kMaxStride = 256.0;
+
+constexpr std::array kMeshopt{index("buffer", "/buffers", true),
+                              size("byteOffset"),
+                              size("byteLength", 0.0, true),
+                              integer("byteStride", 1.0, kMaxStride, true),
+                              size("count", 0.0, true),
+                              text("mode", true),
+                              text("filter")};
+
+constexpr std::array kDracoRules{index("bufferView", "/bufferViews", true), object("attributes", {}, true)};
+
+constexpr std::array kSource{index("source", "/images", true)};
+
+// Checks the extension of that name if `owner` has it.
+std::optional<SchemaError> checkExtension(const Json& root, Json& owner, const char* name,
+                                          std::span<const Rule> rules, const std::string& pointer) {
+    if (findExtension(owner, name) == nullptr) {
+        return std::nullopt;
+    }
+    Json& extension = owner["extensions"][name];
+    return checkObject(root, extension, rules, fmt::format("{}/extensions/{}", pointer, name));
+}
+
+std::optional<SchemaError> checkDraco(const Json& root, Json& primitive, const std::string& pointer) {
+    constexpr const char* kName = "KHR_draco_mesh_compression";
+    if (auto error = checkExtension(root, primitive, kName, kDracoRules, pointer)) {
+        return error;
+    }
+    if (findExtension(primitive, kName) == nullptr) {
+        return std::nullopt;
+    }
+    Json& attributes = primitive["extensions"][kName]["attributes"];
+    for (const auto& [attribute, id] : attributes.items()) {
+        const std::array rule{integer(attribute, 0.0, kMaxAttributeId, true)};
+        if (auto error = checkObject(root, attributes, rule,
+                                     fmt::format("{}/extensions/{}/attributes", pointer, kName))) {
+            return error;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<SchemaError> checkDracoPrimitives(const Json& root, Json& meshes) {
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const std::size_t count = arrayMember(meshes[i], "primitives").size();
+        for (std::size_t k = 0; k < count; ++k) {
+            if (auto error = checkDraco(root, meshes[i]["primitives"][k],
+                                        fmt::format("/meshes/{}/primitives/{}", i, k))) {
+                return error;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+// Checks the extensions of those names in every element of the root's array.
+template <std::size_t N>
+std::optional<SchemaError> checkInEach(Json& root, const char* array, const char* const (&names)[N],
+                                       std::span<const Rule> rules) {
+    for (std::size_t i = 0; i < arrayMember(root, array).size(); ++i) {
+        Json& element = root[array][i];
+        for (const char* const name : names) {
+            if (auto error = checkExtension(root, element, name, rules, fmt::format("/{}/{}", array, i))) {
+                return error;
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+// Checks the extensions that compress geometry or replace the image of a texture.
+std::optional<SchemaError> checkCompression(Json& root) {
+    if (auto error = checkInEach(root, "bufferViews", kMeshoptExtensions, kMeshopt)) {
+        return error;
+    }
+    if (auto error = checkInEach(root, "textures", kImageExtensions, kSource)) {
+        return error;
+    }
+    return arrayMember(root, "meshes").empty() ? std::nullopt : checkDracoPrimitives(root, root["meshes"]);
+}
+
 }  // namespace
 
 std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model) {
@@ -221,7 +387,7 @@ std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialMo
             }
         }
     }
-    return std::nullopt;
+    return checkCompression(root);
 }
 
 void visitAccessors(const Json& root, const materials::MaterialModel& model, const AccessorVisitor& visit) {
