@@ -82,6 +82,9 @@ Status Document::parse(const std::string& name) {
         return error("gltf", "", std::move(problem),
                      "export the scene again; the Khronos glTF validator explains the rules");
     }
+    if (!binary_) {
+        file_ = {};  // it was text, and nobody reads it any more
+    }
     buffers_.resize(arrayMember(json_, "buffers").size());
     unpackedViews_.resize(model_.bufferViews.size());
     return okStatus();

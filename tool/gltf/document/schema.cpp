@@ -24,6 +24,7 @@ std::string_view describe(Kind kind) {
             return "a string";
         case Kind::Indices:
             return "an array of integers";
+        case Kind::Integers:
         case Kind::Object:
             return "an object";
         case Kind::Objects:
@@ -102,6 +103,22 @@ std::optional<SchemaError> checkNumbers(Json& value, const Rule& rule, const std
     return std::nullopt;
 }
 
+std::optional<SchemaError> checkIntegers(Json& value, const Rule& rule, const std::string& pointer) {
+    if (!value.is_object()) {
+        return typeError(value, pointer, describe(rule.kind));
+    }
+    for (auto member = value.begin(); member != value.end(); ++member) {
+        const std::string place = fmt::format("{}/{}", pointer, member.key());
+        if (!makeInteger(*member)) {
+            return typeError(*member, place, describe(Kind::Integer));
+        }
+        if (auto error = checkRange(*member, rule, place)) {
+            return error;
+        }
+    }
+    return std::nullopt;
+}
+
 // Checks every element of an array by `check(element, pointer)`.
 template <typename Check>
 std::optional<SchemaError> checkElements(Json& value, Kind kind, const std::string& pointer,
@@ -139,6 +156,8 @@ std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule&
             return checkElements(value, rule.kind, pointer, [&](Json& element, const std::string& where) {
                 return checkIndex(root, element, rule, where);
             });
+        case Kind::Integers:
+            return checkIntegers(value, rule, pointer);
         case Kind::Object:
             return checkObject(root, value, rule.rules, pointer);
         case Kind::Objects:

@@ -23,8 +23,9 @@ enum class Kind : std::uint8_t {
     Numbers,  // array of Rule::length numbers, or of any number of them if the length is 0
     Bool,
     Text,
-    Index,    // integer that indexes the array at Rule::target
-    Indices,  // array of such integers
+    Index,     // integer that indexes the array at Rule::target
+    Indices,   // array of such integers
+    Integers,  // object whose members are integers of any names
     Object,
     Objects,  // array of objects
 };
@@ -34,7 +35,8 @@ struct Rule {
     std::string_view name;
     Kind kind = Kind::Number;
     bool required = false;
-    // Range of Integer, Number and Numbers. A number that does not fit into a float would become an infinity.
+    // Range of Integer, Integers, Number and Numbers. A number that does not fit into a float would become an
+    // infinity.
     double min = -static_cast<double>(std::numeric_limits<float>::max());
     double max = static_cast<double>(std::numeric_limits<float>::max());
     std::size_t length = 0;
@@ -70,6 +72,9 @@ constexpr Rule numbers(std::string_view name, std::size_t length) {
 }
 constexpr Rule integer(std::string_view name, double min, double max, bool required = false) {
     return {.name = name, .kind = Kind::Integer, .required = required, .min = min, .max = max};
+}
+constexpr Rule integers(std::string_view name, double min, double max, bool required = false) {
+    return {.name = name, .kind = Kind::Integers, .required = required, .min = min, .max = max};
 }
 constexpr Rule size(std::string_view name, double min = 0.0, bool required = false) {
     return integer(name, min, kMaxSize, required);

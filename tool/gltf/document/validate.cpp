@@ -15,10 +15,30 @@ namespace {
 
 using namespace rules;
 
+// Makes a rule of each name for an object with those members.
+template <std::size_t N>
+constexpr std::array<Rule, N> objectsOf(const char* const (&names)[N], std::span<const Rule> members) {
+    std::array<Rule, N> rules{};
+    for (std::size_t i = 0; i < N; ++i) {
+        rules[i] = object(names[i], members);
+    }
+    return rules;
+}
+
 // These are the rules of buffers, views and accessors.
 constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
+// The largest vertex that the extension allows has 256 bytes.
+constexpr std::array kMeshopt{index("buffer", "/buffers", true),
+                              size("byteOffset"),
+                              size("byteLength", 0.0, true),
+                              integer("byteStride", 1.0, 256.0, true),
+                              size("count", 0.0, true),
+                              text("mode", true),
+                              text("filter")};
+constexpr std::array kBufferViewExtensions = objectsOf(kMeshoptExtensions, kMeshopt);
 constexpr std::array kBufferView{index("buffer", "/buffers", true), size("byteOffset"),
-                                 size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0)};
+                                 size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0),
+                                 object("extensions", kBufferViewExtensions)};
 constexpr std::array kSparseIndices{index("bufferView", "/bufferViews", true),
                                     integer("byteOffset", 0.0, kMaxInt),
                                     integer("componentType", 0.0, kMaxInt, true)};
@@ -48,7 +68,11 @@ constexpr std::array kTargetRules = accessorIndices(kTargetAttributes);
 constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materials_variants/variants", true),
                                      index("material", "/materials", true)};
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
-constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
+constexpr double kMaxAttributeId = 4294967295.0;
+constexpr std::array kDraco{index("bufferView", "/bufferViews", true),
+                            integers("attributes", 0.0, kMaxAttributeId, true)};
+constexpr std::array kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDraco),
+                                          object("KHR_materials_variants", kVariantMappings)};
 // The rules of the attributes come before these, because packs add to them.
 constexpr std::array kPrimitive{index("indices", "/accessors"), index("material", "/materials"),
                                 integer("mode", 0.0, kMaxInt), objects("targets", kTargetRules),
@@ -71,8 +95,10 @@ constexpr std::array kSkin{text("name"), index("inverseBindMatrices", "/accessor
                            index("skeleton", "/nodes"), indices("joints", "/nodes", true)};
 
 // These are the rules of textures.
+constexpr std::array kTextureSource{index("source", "/images", true)};
+constexpr std::array kTextureExtensions = objectsOf(kImageExtensions, kTextureSource);
 constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
-                              object("extensions", {})};
+                              object("extensions", kTextureExtensions)};
 constexpr std::array kSampler{integer("magFilter", 0.0, kMaxInt), integer("minFilter", 0.0, kMaxInt),
                               integer("wrapS", 0.0, kMaxInt), integer("wrapT", 0.0, kMaxInt)};
 constexpr std::array kImage{text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
@@ -283,92 +309,6 @@ std::optional<SchemaError> checkCameras(const Json& root) {
     return std::nullopt;
 }
 
-// ---- Extensions that compress geometry or replace the image of a texture ----
-
-constexpr double kMaxAttributeId = 4294967295.0;
-// The size in bytes of the largest vertex that the extension allows.
-constexpr double kMaxStride = 256.0;
-
-constexpr std::array kMeshopt{index("buffer", "/buffers", true),
-                              size("byteOffset"),
-                              size("byteLength", 0.0, true),
-                              integer("byteStride", 1.0, kMaxStride, true),
-                              size("count", 0.0, true),
-                              text("mode", true),
-                              text("filter")};
-
-constexpr std::array kDracoRules{index("bufferView", "/bufferViews", true), object("attributes", {}, true)};
-
-constexpr std::array kSource{index("source", "/images", true)};
-
-// Checks the extension of that name if `owner` has it.
-std::optional<SchemaError> checkExtension(const Json& root, Json& owner, const char* name,
-                                          std::span<const Rule> rules, const std::string& pointer) {
-    if (findExtension(owner, name) == nullptr) {
-        return std::nullopt;
-    }
-    Json& extension = owner["extensions"][name];
-    return checkObject(root, extension, rules, fmt::format("{}/extensions/{}", pointer, name));
-}
-
-std::optional<SchemaError> checkDraco(const Json& root, Json& primitive, const std::string& pointer) {
-    constexpr const char* kName = "KHR_draco_mesh_compression";
-    if (auto error = checkExtension(root, primitive, kName, kDracoRules, pointer)) {
-        return error;
-    }
-    if (findExtension(primitive, kName) == nullptr) {
-        return std::nullopt;
-    }
-    Json& attributes = primitive["extensions"][kName]["attributes"];
-    for (const auto& [attribute, id] : attributes.items()) {
-        const std::array rule{integer(attribute, 0.0, kMaxAttributeId, true)};
-        if (auto error = checkObject(root, attributes, rule,
-                                     fmt::format("{}/extensions/{}/attributes", pointer, kName))) {
-            return error;
-        }
-    }
-    return std::nullopt;
-}
-
-std::optional<SchemaError> checkDracoPrimitives(const Json& root, Json& meshes) {
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const std::size_t count = arrayMember(meshes[i], "primitives").size();
-        for (std::size_t k = 0; k < count; ++k) {
-            if (auto error = checkDraco(root, meshes[i]["primitives"][k],
-                                        fmt::format("/meshes/{}/primitives/{}", i, k))) {
-                return error;
-            }
-        }
-    }
-    return std::nullopt;
-}
-
-// Checks the extensions of those names in every element of the root's array.
-template <std::size_t N>
-std::optional<SchemaError> checkInEach(Json& root, const char* array, const char* const (&names)[N],
-                                       std::span<const Rule> rules) {
-    for (std::size_t i = 0; i < arrayMember(root, array).size(); ++i) {
-        Json& element = root[array][i];
-        for (const char* const name : names) {
-            if (auto error = checkExtension(root, element, name, rules, fmt::format("/{}/{}", array, i))) {
-                return error;
-            }
-        }
-    }
-    return std::nullopt;
-}
-
-// Checks the extensions that compress geometry or replace the image of a texture.
-std::optional<SchemaError> checkCompression(Json& root) {
-    if (auto error = checkInEach(root, "bufferViews", kMeshoptExtensions, kMeshopt)) {
-        return error;
-    }
-    if (auto error = checkInEach(root, "textures", kImageExtensions, kSource)) {
-        return error;
-    }
-    return arrayMember(root, "meshes").empty() ? std::nullopt : checkDracoPrimitives(root, root["meshes"]);
-}
-
 }  // namespace
 
 std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model) {
@@ -387,7 +327,7 @@ std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialMo
             }
         }
     }
-    return checkCompression(root);
+    return std::nullopt;
 }
 
 void visitAccessors(const Json& root, const materials::MaterialModel& model, const AccessorVisitor& visit) {
