@@ -139,7 +139,7 @@ check_program() {
 
 # These are Debian's packages of the linked libraries. Their copyright files are included.
 kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libimath-dev libopenexr-dev
-    libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
+    libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
     libcli11-dev libkainjow-mustache-dev libglm-dev libvulkan-dev)
 
 pack() {

@@ -39,6 +39,7 @@ kNeeds=(
     "file /usr/include/spirv-tools/optimizer.hpp|spirv-tools-dev libspirv-tools-dev spirv-tools"
     "command spirv-val|spirv-tools"
     "file /usr/include/spirv/unified1/spirv.hpp|spirv-headers"
+    "file /usr/include/tiny_gltf.h|libtinygltf-dev"
     "file /usr/include/draco/compression/decode.h|libdraco-dev"
     "file /usr/include/meshoptimizer.h|libmeshoptimizer-dev"
     "file /usr/include/webp/decode.h|libwebp-dev"

@@ -1,6 +1,5 @@
 // Tests scenes that move: each pose must give the picture of the same scene uploaded in that pose.
 #include "gltf/motion/animatable.h"
-#include "gltf/motion/animated_values.h"
 #include "gltf/motion/transform.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"

@@ -3,8 +3,7 @@
 #include "gltf/codecs/draco.h"
 #include "gltf/document/accessor.h"
 #include "gltf/document/validate.h"
-#include "gltf/motion/skinning.h"
-#include "gltf/triangles.h"
+#include "gltf/motion/deformation.h"
 
 #include <fmt/format.h>
 
@@ -25,10 +24,10 @@ constexpr const char* kExportMesh = "export the mesh again";
 struct Reader {
     const PrimitiveSource& source;
     Primitive& primitive;
-    std::vector<std::string>& unlikeCounts;  // accessors with other counts than the Draco data
-    const DracoMesh* draco = nullptr;        // null for a primitive that is not compressed
-    const Json* dracoAttributes = nullptr;
-    std::vector<std::string> missing{};  // attributes that the Draco data lack
+    std::vector<std::string>& unlikeCounts;   // accessors with other counts than the Draco data
+    const DracoMesh* draco = nullptr;         // null for a primitive that is not compressed
+    const Value::Object* dracoIds = nullptr;  // by attribute
+    std::vector<std::string> missing{};       // attributes that the Draco data lack
 
     Document& document() const {
         return source.document;
@@ -42,11 +41,19 @@ std::string dracoPointer(const Reader& reader) {
     return fmt::format("{}/extensions/{}", reader.primitive.pointer, kDraco);
 }
 
+// tinygltf keeps 32 bits of an integer, which are all that an identifier has.
+std::uint32_t idOf(const Value& value) {
+    return static_cast<std::uint32_t>(value.GetNumberAsInt());
+}
+
 // Returns the identifier that the attribute has in the Draco data, or nothing if it is read from its
 // accessor.
 std::optional<std::uint32_t> packedId(const Reader& reader, const char* attribute) {
-    const Json* const id = reader.draco == nullptr ? nullptr : find(*reader.dracoAttributes, attribute);
-    return id == nullptr ? std::nullopt : std::optional(id->get<std::uint32_t>());
+    if (reader.draco == nullptr) {
+        return std::nullopt;
+    }
+    const auto id = reader.dracoIds->find(attribute);
+    return id == reader.dracoIds->end() ? std::nullopt : std::optional(idOf(id->second));
 }
 
 void noteUnlikeCount(const Reader& reader, const char* what, std::size_t count, std::size_t packed) {
@@ -55,25 +62,24 @@ void noteUnlikeCount(const Reader& reader, const char* what, std::size_t count, 
     }
 }
 
-// Returns the accessor of an attribute that the primitive has, or -1.
+// Returns the accessor of an attribute that the primitive has, or -1. The name is one of kAttributes or of
+// the model's attributes, as only their accessors have been checked.
 int readableAccessor(const Reader& reader, const std::string& attribute) {
     return std::ranges::find(reader.missing, attribute) == reader.missing.end()
-               ? attributeAccessor(reader.source, attribute.c_str())
+               ? accessorOf(reader.source.file.attributes, attribute)
                : -1;
 }
 
 // Lists attributes that the Draco data should have and lack. Without POSITION there is nothing to draw, so
 // its lack is an error where it is read.
 void findMissing(Reader& reader) {
-    const Json& listed = reader.source.json["attributes"];
-    for (const auto& [attribute, id] : reader.dracoAttributes->items()) {
-        if (attribute != "POSITION" && find(listed, attribute) != nullptr &&
-            !reader.draco->has(id.get<std::uint32_t>())) {
+    for (const auto& [attribute, id] : *reader.dracoIds) {
+        if (attribute != "POSITION" && reader.source.file.attributes.contains(attribute) &&
+            !reader.draco->has(idOf(id))) {
             reader.missing.push_back(attribute);
             reader.document().warn(
                 "draco-attribute", fmt::format("{}/attributes/{}", dracoPointer(reader), attribute),
-                fmt::format("is {}, but the Draco data has no such attribute; it is left out",
-                            id.get<std::uint32_t>()),
+                fmt::format("is {}, but the Draco data has no such attribute; it is left out", idOf(id)),
                 kExportMesh);
         }
     }
@@ -139,8 +145,8 @@ Status readColors(const Reader& reader) {
     if (accessor < 0) {
         return okStatus();
     }
-    const Accessor& source = reader.document().accessor(accessor);
-    if (source.componentType != ComponentType::Float && !source.normalized) {
+    const tinygltf::Accessor& source = reader.document().accessor(accessor);
+    if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized) {
         reader.document().warn("color-normalized", reader.pointer("COLOR_0"),
                                "integer colours are not marked as normalised; they are read as if they were",
                                kExportMesh);
@@ -149,9 +155,9 @@ Status readColors(const Reader& reader) {
 }
 
 bool hasJointNumbers(const Document& document, int accessor) {
-    const Accessor& source = document.accessor(accessor);
-    return !source.normalized && (source.componentType == ComponentType::UnsignedByte ||
-                                  source.componentType == ComponentType::UnsignedShort);
+    const tinygltf::Accessor& source = document.accessor(accessor);
+    return !source.normalized && (source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                                  source.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
 }
 
 Status readInfluences(const Reader& reader) {
@@ -182,7 +188,7 @@ Status readInfluences(const Reader& reader) {
         GLINT_TRY_DO(readAttribute(reader, weights.c_str(), 4, Integers::Normalized, read.weights));
     }
     const std::string beyond = fmt::format("JOINTS_{}", sets.size());
-    if (find(reader.source.json["attributes"], beyond) != nullptr) {
+    if (reader.source.file.attributes.contains(beyond)) {
         reader.document().warn(
             "skin-influences", reader.pointer(beyond.c_str()),
             fmt::format("only {} sets of joints are read; the others are left out", sets.size()),
@@ -243,7 +249,7 @@ Status readAttributes(const Reader& reader) {
 Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
     Document& document = reader.document();
     const std::size_t vertices = reader.primitive.positions.size();
-    const int accessor = indexMember(reader.source.json, "indices");
+    const int accessor = reader.source.file.indices;
     if (accessor < 0) {
         std::vector<std::uint32_t> order(vertices);
         std::iota(order.begin(), order.end(), 0U);
@@ -280,8 +286,8 @@ Result<std::vector<std::uint32_t>> readOrder(const Reader& reader) {
 
 // Draco merges points and drops degenerate triangles. Not every exporter corrects the accessors afterwards.
 void warnOfUnlikeCounts(const Reader& reader) {
-    const int indices = indexMember(reader.source.json, "indices");
-    if (indices >= 0 && modeOf(reader.source) == static_cast<int>(PrimitiveMode::Triangles)) {
+    const int indices = reader.source.file.indices;
+    if (indices >= 0 && reader.source.file.mode == TINYGLTF_MODE_TRIANGLES) {
         noteUnlikeCount(reader, "indices", reader.document().accessor(indices).count,
                         reader.draco->indices().size());
     }
@@ -296,23 +302,15 @@ void warnOfUnlikeCounts(const Reader& reader) {
 
 }  // namespace
 
-int modeOf(const PrimitiveSource& source) {
-    return integerMember(source.json, "mode", static_cast<int>(PrimitiveMode::Triangles));
-}
-
-int attributeAccessor(const PrimitiveSource& source, const char* attribute) {
-    return indexMember(source.json["attributes"], attribute);
-}
-
 Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
                                                 bool& isList) {
     std::vector<std::string> unlikeCounts;
     Reader reader{source, primitive, unlikeCounts};
     std::optional<DracoMesh> draco;
-    if (const Json* extension = findExtension(source.json, kDraco)) {
+    if (const Value* const extension = extensionOf(source.file.extensions, kDraco)) {
         GLINT_TRY(draco, DracoMesh::decode(source.document, *extension, dracoPointer(reader)));
         reader.draco = &*draco;
-        reader.dracoAttributes = find(*extension, "attributes");
+        reader.dracoIds = &objectMember(*extension, "attributes");
         findMissing(reader);
     }
     GLINT_TRY_DO(readAttributes(reader));

@@ -14,15 +14,8 @@ namespace glint::gltf {
 // One primitive while it is imported.
 struct PrimitiveSource {
     Document& document;
-    const Json& json;
+    const tinygltf::Primitive& file;
 };
-
-// Returns how the primitive uses its vertices, as glTF's number. 4, a list of triangles, is the default.
-int modeOf(const PrimitiveSource& source);
-
-// Returns the accessor of the attribute with that name, or -1 if the primitive has no such attribute. The
-// name is one of kAttributes or of the model's attributes, as only their accessors have been checked.
-int attributeAccessor(const PrimitiveSource& source, const char* attribute);
 
 // Fills the attribute arrays of `primitive`, whose pointer is set. The values are those of the file, before
 // repairs. Returns the order in which the primitive's mode uses the vertices; each index is below the number

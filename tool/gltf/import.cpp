@@ -1,32 +1,177 @@
 #include "gltf/import.h"
 
-#include "gltf/derived_tangents.h"
 #include "gltf/document/document.h"
-#include "gltf/expected_hits.h"
-#include "gltf/losses.h"
 #include "gltf/materials.h"
 #include "gltf/meshes.h"
 #include "gltf/motion/animations.h"
+#include "gltf/motion/deformation.h"
 #include "gltf/motion/instancing.h"
-#include "gltf/motion/morphs.h"
 #include "gltf/motion/nodes.h"
-#include "gltf/motion/skinning.h"
+#include "gltf/planning_inputs.h"
 #include "gltf/texture_content.h"
 #include "gltf/trusted_textures.h"
-#include "gltf/variants.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <exception>
+#include <map>
 #include <new>
+#include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 namespace glint::gltf {
 
+// ---- What the file asks for and a picture can't show ----
+
 namespace {
 
-using gltf::Document;
+const Mesh& meshOf(const Scene& scene, const Node& node) {
+    return scene.meshes[static_cast<std::size_t>(node.mesh)];
+}
+
+// Lists the first few primitives without triangles, with their reasons.
+std::string leftOutText(const Scene& scene) {
+    constexpr std::size_t kShown = 3;
+    std::string text;
+    std::size_t count = 0;
+    for (const Mesh& mesh : scene.meshes) {
+        for (const std::string& reason : mesh.leftOut) {
+            text += ++count > kShown ? "" : (count > 1 ? "; " : "") + reason;
+        }
+    }
+    return count > kShown ? fmt::format("{}; and {} more", text, count - kShown) : text;
+}
+
+// Returns an empty text if a node draws a triangle.
+std::string whyNothingIsDrawn(const Scene& scene) {
+    bool hasMesh = false;
+    bool isShown = false;
+    bool isPlaced = false;
+    for (const Node& node : scene.nodes) {
+        const bool has = node.mesh >= 0;
+        const bool shows = has && node.canShow;
+        const bool places = shows && (node.instancing < 0 ||
+                                      scene.instancings[static_cast<std::size_t>(node.instancing)].count > 0);
+        if (places && !meshOf(scene, node).primitives.empty()) {
+            return {};
+        }
+        hasMesh = hasMesh || has;
+        isShown = isShown || shows;
+        isPlaced = isPlaced || places;
+    }
+    if (scene.nodes.empty()) {
+        return "it has no nodes";
+    }
+    if (!hasMesh) {
+        return fmt::format("none of its {} nodes has a mesh", scene.nodes.size());
+    }
+    if (!isShown) {
+        return "each node with a mesh is hidden at all times (KHR_node_visibility)";
+    }
+    return isPlaced ? "no primitive has a triangle: " + leftOutText(scene) : "its nodes have no instances";
+}
+
+// Returns whether a scene of the file has a node with a mesh.
+bool hasMeshes(const Document& document, std::size_t scene) {
+    const tinygltf::Model& model = document.model();
+    std::vector<bool> known(model.nodes.size());
+    std::vector<std::size_t> open;
+    for (const int node : model.scenes[scene].nodes) {
+        open.push_back(static_cast<std::size_t>(node));
+    }
+    while (!open.empty()) {
+        const std::size_t node = open.back();
+        open.pop_back();
+        if (known[node]) {
+            continue;
+        }
+        known[node] = true;
+        if (model.nodes[node].mesh >= 0) {
+            return true;
+        }
+        for (const int child : model.nodes[node].children) {
+            open.push_back(static_cast<std::size_t>(child));
+        }
+    }
+    return false;
+}
+
+// One texture or lobe of a material that primitives lack the input of.
+struct Loss {
+    std::string reason;
+    std::string primitive;  // the first
+    std::size_t count = 0;
+};
+
+// Warns if no node draws a triangle, and says why: "nothing-drawn". Meshes and animations must have been
+// imported.
+void warnOfNothingDrawn(Document& document, const Scene& scene) {
+    const std::string why = whyNothingIsDrawn(scene);
+    if (why.empty()) {
+        return;
+    }
+    std::string hint = "export the scene again, with triangles that a node draws";
+    for (std::size_t i = scene.scenesInFile.size(); i-- > 0;) {
+        if (static_cast<int>(i) != scene.sceneInFile && hasMeshes(document, i)) {
+            hint = fmt::format("choose the scene {} by --scene {}", sceneLabel(scene, i), i);
+        }
+    }
+    document.warn("nothing-drawn", scene.sceneInFile < 0 ? "" : fmt::format("/scenes/{}", scene.sceneInFile),
+                  "a picture shows no surface: " + why, hint);
+}
+
+// Warns of each texture and lobe that a material asks for and a drawn primitive lacks the input of:
+// "input-missing".
+void warnOfMissingInputs(Document& document, const Scene& scene) {
+    std::vector<bool> drawn(scene.meshes.size());
+    for (const Node& node : scene.nodes) {
+        if (node.mesh >= 0 && node.canShow) {
+            drawn[static_cast<std::size_t>(node.mesh)] = true;
+        }
+    }
+    std::map<std::pair<int, std::size_t>, Loss> losses;  // by material and feature
+    // Primitives of one material with the same attributes lack the same.
+    using Attributes = std::tuple<int, bool, bool, bool, bool, std::uint64_t>;
+    std::map<Attributes, std::vector<std::pair<std::size_t, std::string>>> known;
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        for (std::size_t i = 0; drawn[mesh] && i < scene.meshes[mesh].primitives.size(); ++i) {
+            const materials::PrimitiveInputs inputs = inputsOf(scene, mesh, i);
+            const materials::Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
+            const auto [found, isNew] =
+                known.try_emplace({inputs.material, inputs.hasNormals, inputs.hasTangents,
+                                   inputs.hasTexCoords0, inputs.hasTexCoords1, inputs.attributes});
+            const std::vector<materials::Feature>& features = material.model().features;
+            for (std::size_t feature = 0; isNew && feature < features.size(); ++feature) {
+                std::string reason = materials::lostInput(material, inputs, features[feature]);
+                if (!reason.empty()) {
+                    found->second.emplace_back(feature, std::move(reason));
+                }
+            }
+            for (const auto& [feature, reason] : found->second) {
+                Loss& loss = losses[{inputs.material, feature}];
+                if (loss.count++ == 0) {
+                    loss.reason = reason;
+                    loss.primitive = scene.meshes[mesh].primitives[i].pointer;
+                }
+            }
+        }
+    }
+    for (const auto& [place, loss] : losses) {
+        const auto& [material, feature] = place;
+        const std::string more = loss.count > 1 ? fmt::format(" and {} more", loss.count - 1) : "";
+        document.warn(
+            "input-missing", fmt::format("/materials/{}", material),
+            fmt::format("{} is left out on {}{}: {}",
+                        scene.materials[static_cast<std::size_t>(material)].model().features[feature].name,
+                        loss.primitive, more, loss.reason),
+            "give the mesh what it lacks, or let the material read what the mesh has");
+    }
+}
+
+// ---- The import ----
 
 bool usesMaterial(const Scene& scene, std::size_t material) {
     return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
@@ -39,7 +184,7 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
 Status fillScene(Document& document, Scene& scene) {
     GLINT_TRY_DO(importMaterials(document, scene));
     GLINT_TRY_DO(importNodes(document, scene));
-    std::vector<bool> placed(gltf::arraySize(document.json(), "/meshes"));
+    std::vector<bool> placed(document.model().meshes.size());
     for (const Node& node : scene.nodes) {
         if (node.mesh >= 0) {
             placed[static_cast<std::size_t>(node.mesh)] = true;
@@ -91,64 +236,6 @@ Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions
         return makeError("gltf", path.string(), exception.what(),
                          "export the scene again; the Khronos glTF validator explains the rules");
     }
-}
-
-std::string sceneLabel(const Scene& scene, std::size_t number) {
-    const std::string& name = scene.scenesInFile[number];
-    return name.empty() ? std::to_string(number) : fmt::format("{} \"{}\"", number, name);
-}
-
-SceneInFile sceneInFile(const Scene& scene) {
-    const int index = scene.sceneInFile;
-    return {index, index < 0 ? "" : scene.scenesInFile[static_cast<std::size_t>(index)]};
-}
-
-namespace {
-
-// Returns a bit for each of the model's attributes that the primitive has.
-std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
-    if (primitive.attributes.empty()) {
-        return 0;
-    }
-    const std::vector<materials::VertexAttribute>& known =
-        scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &VertexValues::name) !=
-                           primitive.attributes.end();
-        bits |= std::uint64_t{given} << i;
-    }
-    return bits;
-}
-
-}  // namespace
-
-materials::PrimitiveInputs inputsOf(const Scene& scene, std::size_t mesh, std::size_t index) {
-    const Primitive& primitive = scene.meshes[mesh].primitives[index];
-    materials::PrimitiveInputs input;
-    input.mesh = static_cast<int>(mesh);
-    input.primitive = static_cast<int>(index);
-    input.material = primitive.material;
-    input.hasNormals = !primitive.normals.empty();
-    input.hasTangents = !primitive.tangents.empty();
-    input.hasTexCoords0 = !primitive.texCoords0.empty();
-    input.hasTexCoords1 = !primitive.texCoords1.empty();
-    input.colors = primitive.colorContent;
-    input.attributes = attributesOf(scene, primitive);
-    input.seen = primitive.seen;
-    input.derivesTangents = primitive.derivesTangents;
-    return input;
-}
-
-std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene) {
-    std::vector<materials::PrimitiveInputs> inputs;
-    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-        for (std::size_t i = 0; i < scene.meshes[mesh].primitives.size(); ++i) {
-            inputs.push_back(inputsOf(scene, mesh, i));
-        }
-    }
-    expectHits(scene, inputs);
-    return inputs;
 }
 
 }  // namespace glint::gltf

@@ -1,13 +1,15 @@
 #include "gltf/materials.h"
 
-#include "gltf/document/extensions.h"
-#include "gltf/document/object_reader.h"
+#include "base/suggest.h"
+#include "gltf/document/conformance.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -15,6 +17,79 @@
 namespace glint::gltf {
 
 namespace {
+
+// One object of a checked document, and its JSON pointer.
+class ObjectReader {
+public:
+    ObjectReader(Document& document, const Json& object, std::string pointer)
+        : document_(document), object_(object), pointer_(std::move(pointer)) {}
+
+    const Json& json() const {
+        return object_;
+    }
+    // Returns the JSON pointer of a member.
+    std::string pointerTo(std::string_view member) const;
+    // Reads the texture info of that name into `info`. If there is none, or none that can be used, `info`
+    // stays as it is.
+    Status texture(std::string_view member, TextureTable& textures, materials::TextureInfo& info) const;
+    void warn(std::string_view member, std::string message, std::string hint) const;
+
+private:
+    Document& document_;
+    const Json& object_;
+    std::string pointer_;
+};
+
+std::array<float, 2> pairAt(const Json& object, std::string_view name, std::array<float, 2> fallback) {
+    const Json* member = find(object, name);
+    return member == nullptr ? fallback
+                             : std::array{static_cast<float>((*member)[0].get<double>()),
+                                          static_cast<float>((*member)[1].get<double>())};
+}
+
+std::string ObjectReader::pointerTo(std::string_view member) const {
+    return fmt::format("{}/{}", pointer_, member);
+}
+
+void ObjectReader::warn(std::string_view member, std::string message, std::string hint) const {
+    document_.warn("material-range", pointerTo(member), std::move(message), std::move(hint));
+}
+
+Status ObjectReader::texture(std::string_view member, TextureTable& textures,
+                             materials::TextureInfo& info) const {
+    const Json* json = find(object_, member);
+    if (json == nullptr) {
+        return okStatus();
+    }
+    const Json* texCoord = find(*json, "texCoord");
+    materials::TextureInfo read;
+    if (const Json* transform = findExtension(*json, "KHR_texture_transform")) {
+        read.hasTransform = true;
+        read.transform.offset = pairAt(*transform, "offset", read.transform.offset);
+        read.transform.scale = pairAt(*transform, "scale", read.transform.scale);
+        if (const Json* rotation = find(*transform, "rotation")) {
+            read.transform.rotation = static_cast<float>(rotation->get<double>());
+        }
+        if (const Json* override = find(*transform, "texCoord")) {
+            texCoord = override;
+        }
+    }
+    read.texCoord = texCoord == nullptr ? 0 : texCoord->get<int>();
+    if (read.texCoord > 1) {
+        document_.warn("texture-uv-set", pointerTo(member),
+                       fmt::format("uses UV set {}; Glint reads sets 0 and 1, and leaves the texture out",
+                                   read.texCoord),
+                       "move the coordinates to TEXCOORD_0 or TEXCOORD_1");
+        info.texCoord = read.texCoord;  // planning says why there is no texture
+        return okStatus();
+    }
+    GLINT_TRY(const auto texture, textures.use((*json)["index"].get<int>()));
+    if (texture >= 0) {
+        read.texture = texture;
+        info = read;
+    }
+    return okStatus();
+}
 
 // Returns an object of a material's JSON, or null if the material does not have it.
 const Json* objectOf(const Json& json, const materials::MaterialObject& object) {
@@ -197,6 +272,100 @@ Status importMaterials(Document& document, Scene& scene) {
         GLINT_TRY_DO(readTextures(document, textures, json, pointer, material));
         checkTransfer(document, scene, material, pointer);
         scene.materials.push_back(std::move(material));
+    }
+    return okStatus();
+}
+
+// ---- KHR_materials_variants ----
+
+namespace {
+
+constexpr const char* kName = "KHR_materials_variants";
+
+Diagnostic unknownVariant(const Document& document, const Scene& scene) {
+    const std::string& wanted = document.options().variant;
+    if (scene.variants.empty()) {
+        return document.error("variant-unknown", "",
+                              fmt::format("has no variant \"{}\": it has no {}", wanted, kName),
+                              "leave the variant out");
+    }
+    return document.error(
+        "variant-unknown", fmt::format("/extensions/{}/variants", kName),
+        fmt::format("has no variant \"{}\"{}", wanted, base::suggestion(wanted, scene.variants)),
+        fmt::format("use one of: {}", fmt::join(scene.variants, ", ")));
+}
+
+// Returns the material that a primitive has in a variant.
+std::optional<int> materialIn(const tinygltf::Primitive& primitive, std::size_t variant) {
+    const Value* const extension = extensionOf(primitive.extensions, kName);
+    if (extension == nullptr) {
+        return std::nullopt;
+    }
+    for (const Value& mapping : arrayMember(*extension, "mappings")) {
+        for (const Value& one : arrayMember(mapping, "variants")) {
+            if (one.GetNumberAsInt() == static_cast<int>(variant)) {
+                return indexMember(mapping, "material");
+            }
+        }
+    }
+    return std::nullopt;
+}
+
+// Warns of primitives that map one variant to several materials, of which the first holds.
+void checkMappings(Document& document) {
+    const std::vector<tinygltf::Mesh>& meshes = document.model().meshes;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const std::vector<tinygltf::Primitive>& primitives = meshes[i].primitives;
+        for (std::size_t k = 0; k < primitives.size(); ++k) {
+            const Value* const extension = extensionOf(primitives[k].extensions, kName);
+            std::set<int> seen;
+            if (extension == nullptr) {
+                continue;
+            }
+            for (const Value& mapping : arrayMember(*extension, "mappings")) {
+                for (const Value& variant : arrayMember(mapping, "variants")) {
+                    if (!seen.insert(variant.GetNumberAsInt()).second) {
+                        document.warn("variant-repeated",
+                                      fmt::format("/meshes/{}/primitives/{}/extensions/{}", i, k, kName),
+                                      fmt::format("maps variant {} more than once; the first material is "
+                                                  "used",
+                                                  variant.GetNumberAsInt()),
+                                      "give the primitive one material for each variant");
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+
+Status applyVariant(Document& document, Scene& scene) {
+    if (const Json* extension = findExtension(document.json(), kName)) {
+        for (const Json& variant : arrayMember(*extension, "variants")) {
+            scene.variants.push_back(variant["name"].get<std::string>());
+        }
+    }
+    checkMappings(document);
+    scene.variant = document.options().variant;
+    if (scene.variant.empty()) {
+        return okStatus();
+    }
+    const auto found = std::ranges::find(scene.variants, scene.variant);
+    if (found == scene.variants.end()) {
+        return unknownVariant(document, scene);
+    }
+    const auto index = static_cast<std::size_t>(found - scene.variants.begin());
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        // The scene's mesh lacks the primitives that have nothing to draw.
+        auto primitive = scene.meshes[m].primitives.begin();
+        const std::vector<tinygltf::Primitive>& inFile = document.model().meshes[m].primitives;
+        for (std::size_t i = 0; i < inFile.size() && primitive != scene.meshes[m].primitives.end(); ++i) {
+            if (primitive->pointer == fmt::format("/meshes/{}/primitives/{}", m, i)) {
+                primitive->material = materialIn(inFile[i], index).value_or(primitive->material);
+                ++primitive;
+            }
+        }
     }
     return okStatus();
 }

@@ -1,4 +1,5 @@
-// Imports materials: core metallic-roughness and the extensions that Glint shades.
+// Imports materials: core metallic-roughness, the extensions that Glint shades, and the choice between
+// variants (KHR_materials_variants).
 #pragma once
 
 #include "gltf/document/document.h"
@@ -11,5 +12,9 @@ namespace glint::gltf {
 // Fills materials, textures, samplers and images of the scene. Factors out of range are clamped with a
 // warning.
 Status importMaterials(Document& document, Scene& scene);
+
+// Fills Scene::variants. Primitives get the materials of ImportOptions::variant if they have one for it. The
+// error is "variant-unknown".
+Status applyVariant(Document& document, Scene& scene);
 
 }  // namespace glint::gltf

@@ -1,21 +1,226 @@
 #include "gltf/meshes.h"
 
+#include "base/vectors.h"
 #include "gltf/attributes.h"
-#include "gltf/document/repair.h"
-#include "gltf/motion/morphs.h"
-#include "gltf/triangles.h"
+#include "gltf/motion/deformation.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 
 namespace glint::gltf {
 
+// ---- Primitive modes as triangle lists ----
+
 namespace {
+
+struct TriangleList {
+    std::vector<std::uint32_t> indices;  // 3 for each triangle
+    std::size_t leftOver = 0;            // number of indices at the end that form no triangle
+};
+
+// The mode must be one of triangles. The winding is kept, so every second triangle of a strip is turned.
+TriangleList makeTriangles(int mode, std::vector<std::uint32_t> indices) {
+    if (mode == TINYGLTF_MODE_TRIANGLES) {
+        const std::size_t leftOver = indices.size() % 3;
+        indices.resize(indices.size() - leftOver);
+        return {std::move(indices), leftOver};
+    }
+    if (indices.size() < 3) {
+        return {{}, indices.size()};
+    }
+    TriangleList list;
+    list.indices.reserve((indices.size() - 2) * 3);
+    for (std::size_t i = 0; i + 2 < indices.size(); ++i) {
+        // The specification orders the vertices in this way (glTF 2.0, section 3.7.2.1).
+        const std::size_t odd = i % 2;
+        if (mode == TINYGLTF_MODE_TRIANGLE_STRIP) {
+            list.indices.insert(list.indices.end(), {indices[i], indices[i + 1 + odd], indices[i + 2 - odd]});
+        } else {
+            list.indices.insert(list.indices.end(), {indices[i + 1], indices[i + 2], indices[0]});
+        }
+    }
+    return list;
+}
+
+// ---- Attributes that are finite and of unit length ----
+
+constexpr const char* kRepairHint = "repair the mesh, or export it again";
+
+glm::dvec3 subtract(const Float3& a, const Float3& b) {
+    return base::toVector(a) - base::toVector(b);
+}
+
+// Returns a vector of unit length, or nothing if the vector is zero or not finite. Doubles can hold the
+// squares of all floats. Products of two squared floats underflow only far below what a float can hold.
+std::optional<Float3> unitVector(const glm::dvec3& v) {
+    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+    if (!std::isfinite(largest) || largest == 0.0) {
+        return std::nullopt;
+    }
+    const Float3 unit = base::toFloat3(glm::normalize(v / largest));
+    return base::isFinite(unit) ? std::optional(unit) : std::nullopt;
+}
+
+void dropBrokenTriangles(Document& document, Primitive& primitive) {
+    std::vector<bool> broken(primitive.positions.size());
+    std::size_t brokenCount = 0;
+    for (std::size_t i = 0; i < primitive.positions.size(); ++i) {
+        if (!base::isFinite(primitive.positions[i])) {
+            broken[i] = true;
+            primitive.positions[i] = {};
+            ++brokenCount;
+        }
+    }
+    if (brokenCount == 0) {
+        return;
+    }
+    std::vector<std::uint32_t> kept;
+    kept.reserve(primitive.indices.size());
+    const auto& indices = primitive.indices;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        if (!broken[indices[i]] && !broken[indices[i + 1]] && !broken[indices[i + 2]]) {
+            kept.insert(kept.end(), {indices[i], indices[i + 1], indices[i + 2]});
+        }
+    }
+    const std::size_t dropped = (indices.size() - kept.size()) / 3;
+    primitive.indices = std::move(kept);
+    document.warn("position-not-finite", primitive.pointer + "/attributes/POSITION",
+                  fmt::format("{} positions are not finite; {} triangles that use them are dropped",
+                              brokenCount, dropped),
+                  kRepairHint);
+}
+
+// Returns the geometric normal of one triangle around each vertex that `wanted` marks, or +Z if there is
+// none.
+std::vector<Float3> adjacentNormals(const Primitive& primitive, const std::vector<bool>& wanted) {
+    std::vector<Float3> normals(primitive.positions.size(), Float3{0.0F, 0.0F, 1.0F});
+    std::vector<bool> found(primitive.positions.size());
+    const auto& indices = primitive.indices;
+    for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
+        const Float3& origin = primitive.positions[indices[i]];
+        const auto normal = unitVector(glm::cross(subtract(primitive.positions[indices[i + 1]], origin),
+                                                  subtract(primitive.positions[indices[i + 2]], origin)));
+        for (std::size_t corner = i; normal && corner < i + 3; ++corner) {
+            const std::uint32_t vertex = indices[corner];
+            if (wanted[vertex] && !found[vertex]) {
+                found[vertex] = true;
+                normals[vertex] = *normal;
+            }
+        }
+    }
+    return normals;
+}
+
+void repairNormals(Document& document, Primitive& primitive) {
+    std::vector<bool> broken(primitive.normals.size());
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < primitive.normals.size(); ++i) {
+        const auto unit = unitVector(base::toVector(primitive.normals[i]));
+        broken[i] = !unit;
+        count += unit ? 0 : 1;
+        primitive.normals[i] = unit.value_or(Float3{});
+    }
+    if (count == 0) {
+        return;
+    }
+    const std::vector<Float3> substitutes = adjacentNormals(primitive, broken);
+    for (std::size_t i = 0; i < broken.size(); ++i) {
+        if (broken[i]) {
+            primitive.normals[i] = substitutes[i];
+        }
+    }
+    document.warn("normal-invalid", primitive.pointer + "/attributes/NORMAL",
+                  fmt::format("{} normals are zero or not finite; that of a triangle beside is used", count),
+                  kRepairHint);
+}
+
+// Returns a unit vector at right angles to `normal`.
+Float3 anyTangent(const Float3& normal) {
+    const glm::dvec3 n = base::toVector(normal);
+    const glm::dvec3 axis = std::abs(n[0]) < 0.5 ? glm::dvec3{1.0, 0.0, 0.0} : glm::dvec3{0.0, 1.0, 0.0};
+    return unitVector(glm::cross(axis, n)).value_or(Float3{1.0F, 0.0F, 0.0F});
+}
+
+void repairTangents(Document& document, Primitive& primitive) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < primitive.tangents.size(); ++i) {
+        const Float4 stored = primitive.tangents[i];
+        const auto unit = unitVector({stored[0], stored[1], stored[2]});
+        const Float3 tangent = unit ? *unit : anyTangent(primitive.normals[i]);
+        const bool valid = unit.has_value() && std::abs(stored[3]) == 1.0F;
+        count += valid ? 0 : 1;
+        primitive.tangents[i] = {tangent[0], tangent[1], tangent[2], stored[3] < 0.0F ? -1.0F : 1.0F};
+    }
+    if (count > 0) {
+        document.warn(
+            "tangent-invalid", primitive.pointer + "/attributes/TANGENT",
+            fmt::format("{} tangents are zero or not finite, or have a w other than 1 and -1; others in the "
+                        "surface are used, and the sign of w",
+                        count),
+            kRepairHint);
+    }
+}
+
+template <std::size_t N>
+void replaceNonFinite(Document& document, const Primitive& primitive,
+                      std::vector<std::array<float, N>>& values, float substitute, const char* attribute) {
+    std::size_t count = 0;
+    for (std::array<float, N>& value : values) {
+        if (!base::isFinite(value)) {
+            value.fill(substitute);
+            ++count;
+        }
+    }
+    if (count > 0) {
+        document.warn("attribute-not-finite", fmt::format("{}/attributes/{}", primitive.pointer, attribute),
+                      fmt::format("{} values are not finite; {} is used", count, substitute), kRepairHint);
+    }
+}
+
+// Values of packs' attributes, one by one.
+void repairDeclared(Document& document, Primitive& primitive) {
+    for (VertexValues& attribute : primitive.attributes) {
+        std::size_t count = 0;
+        for (float& value : attribute.values) {
+            count += std::isfinite(value) ? 0 : 1;
+            value = std::isfinite(value) ? value : 0.0F;
+        }
+        if (count > 0) {
+            document.warn("attribute-not-finite",
+                          fmt::format("{}/attributes/{}", primitive.pointer, attribute.name),
+                          fmt::format("{} values are not finite; 0 is used", count), kRepairHint);
+        }
+    }
+}
+
+// Drops triangles that use a position that is not finite, and moves such positions to the origin. Normalises
+// normals and tangents. A normal that is zero or not finite becomes the geometric normal of a triangle around
+// it, or +Z if there is none; such a tangent becomes any direction in the surface. Texture coordinates that
+// are not finite become 0, and such colours become 1. Warns once about each kind and states the count.
+void repairPrimitive(Document& document, Primitive& primitive) {
+    dropBrokenTriangles(document, primitive);
+    repairNormals(document, primitive);
+    repairTangents(document, primitive);
+    replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
+    replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
+    replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
+    repairDeclared(document, primitive);
+    for (MorphTarget& target : primitive.targets) {
+        replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");
+        replaceNonFinite(document, primitive, target.normals, 0.0F, "NORMAL of a morph target");
+        replaceNonFinite(document, primitive, target.tangents, 0.0F, "TANGENT of a morph target");
+        replaceNonFinite(document, primitive, target.colors, 0.0F, "COLOR_0 of a morph target");
+    }
+}
+
+// ---- Meshes ----
 
 constexpr std::string_view kNoData = "buffer-external";
 
@@ -31,17 +236,17 @@ materials::ColorContent contentOf(const std::vector<Float4>& colors) {
 
 // Returns whether the mode of the primitive makes triangles. Otherwise it warns or fails.
 Result<bool> isDrawable(const PrimitiveSource& source, const std::string& pointer) {
-    const int mode = modeOf(source);
-    if (mode < 0 || mode > static_cast<int>(PrimitiveMode::TriangleFan)) {
+    const int mode = source.file.mode;
+    if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
         return source.document.error("primitive-mode", pointer + "/mode", fmt::format("{} is no mode", mode),
                                      "export the mesh again");
     }
-    if (mode < static_cast<int>(PrimitiveMode::Triangles)) {
+    if (mode < TINYGLTF_MODE_TRIANGLES) {
         source.document.warn("primitive-skipped", pointer,
                              "points and lines have no surface that a ray can hit; they are skipped");
         return false;
     }
-    if (attributeAccessor(source, "POSITION") < 0) {
+    if (!source.file.attributes.contains("POSITION")) {
         return source.document.error("position-missing", pointer + "/attributes", "has no POSITION",
                                      "export the mesh again, or delete the primitive");
     }
@@ -56,7 +261,7 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
     }
     bool isList = false;
     GLINT_TRY(auto order, readVertices(source, primitive, isList));
-    const auto mode = isList ? PrimitiveMode::Triangles : static_cast<PrimitiveMode>(modeOf(source));
+    const int mode = isList ? TINYGLTF_MODE_TRIANGLES : source.file.mode;
     TriangleList list = makeTriangles(mode, std::move(order));
     if (list.leftOver > 0) {
         source.document.warn(
@@ -64,7 +269,7 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
             fmt::format("the last {} vertices make no triangle and are dropped", list.leftOver));
     }
     primitive.indices = std::move(list.indices);
-    GLINT_TRY_DO(readTargets(source, primitive));
+    GLINT_TRY_DO(readTargets(source.document, source.file, primitive));
     repairPrimitive(source.document, primitive);
     if (primitive.indices.empty()) {
         source.document.warn("primitive-empty", primitive.pointer, "has no triangle and is skipped");
@@ -74,16 +279,15 @@ Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) 
 }
 
 Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial) {
-    const Json& json = document.json()["meshes"][index];
-    const Json& primitives = arrayMember(json, "primitives");
+    const tinygltf::Mesh& file = document.model().meshes[index];
     Mesh mesh;
-    mesh.name = textMember(json, "name");
+    mesh.name = file.name;
     compareTargets(document, index);
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
+    for (std::size_t i = 0; i < file.primitives.size(); ++i) {
         Primitive primitive;
         primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
-        primitive.material = integerMember(primitives[i], "material", defaultMaterial);
-        const Result<bool> drawn = readPrimitive({document, primitives[i]}, primitive);
+        primitive.material = file.primitives[i].material < 0 ? defaultMaterial : file.primitives[i].material;
+        const Result<bool> drawn = readPrimitive({document, file.primitives[i]}, primitive);
         // A file may leave it to others to provide data (glTF 2.0, section 3.6.1.1), so this is not the
         // file's fault.
         if (!drawn && drawn.error().id == kNoData) {
@@ -162,7 +366,7 @@ void settleColors(Document& document, Scene& scene) {
 Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene) {
     const int defaultMaterial = static_cast<int>(scene.materials.size());
     bool usesDefault = false;
-    for (std::size_t i = 0; i < arraySize(document.json(), "/meshes"); ++i) {
+    for (std::size_t i = 0; i < document.model().meshes.size(); ++i) {
         Result<Mesh> mesh = readMesh(document, i, defaultMaterial);
         if (!mesh && placed[i]) {
             return mesh.error();
@@ -172,7 +376,7 @@ Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, S
             warning.severity = Severity::Warning;
             warning.message += "; no node draws the mesh, and it is left empty";
             document.warnings().push_back(std::move(warning));
-            scene.meshes.emplace_back().name = textMember(document.json()["meshes"][i], "name");
+            scene.meshes.emplace_back().name = document.model().meshes[i].name;
             continue;
         }
         for (const Primitive& primitive : mesh->primitives) {

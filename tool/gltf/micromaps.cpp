@@ -35,7 +35,7 @@ std::optional<std::size_t> numberOf(const Json& json, const char* name) {
     return found == json.end() || !isCount(*found) ? std::nullopt : std::optional(found->get<std::size_t>());
 }
 
-const Json* extensionOf(const Json& json) {
+const Json* micromapsOf(const Json& json) {
     const auto extensions = json.find("extensions");
     if (extensions == json.end()) {
         return nullptr;
@@ -55,7 +55,7 @@ public:
         for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
             const Json primitives = meshes[mesh].value("primitives", Json::array());
             for (std::size_t i = 0; i < primitives.size(); ++i) {
-                const Json* const extension = extensionOf(primitives[i]);
+                const Json* const extension = micromapsOf(primitives[i]);
                 if (extension == nullptr) {
                     continue;
                 }
@@ -70,7 +70,7 @@ public:
 
 private:
     Status readArrays() {
-        const Json* const root = extensionOf(json_);
+        const Json* const root = micromapsOf(json_);
         const Json list = root == nullptr ? Json::array() : root->value("micromaps", Json::array());
         for (std::size_t i = 0; i < list.size(); ++i) {
             const std::string pointer = fmt::format("/extensions/{}/micromaps/{}", kMicromapExtension, i);

@@ -1,6 +1,6 @@
 #include "gltf/scene_list.h"
 
-#include "gltf/import.h"
+#include "gltf/planning_inputs.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,9 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
-#include "gltf/codecs/images.h"
-#include "gltf/image_content.h"
 #include "gltf/texels/texel_bounds.h"
 #include "gltf/texels/texture_use.h"
+#include "gltf/textures.h"
 
 #include <fmt/format.h>
 

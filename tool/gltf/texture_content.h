@@ -1,7 +1,7 @@
 // Finds what the textures of a scene hold where its primitives show them.
 #pragma once
 
-#include "gltf/import.h"
+#include "gltf/import_options.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>

@@ -1,5 +1,5 @@
 // Tests areas in the world, and the hits that are expected from them.
-#include "gltf/expected_hits.h"
+#include "gltf/planning_inputs.h"
 
 #include "gltf/import.h"
 

@@ -1,5 +1,5 @@
 // Tests files: containers, buffers, URIs, JSON.
-#include "gltf/document/uri.h"
+#include "gltf/document/files.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>

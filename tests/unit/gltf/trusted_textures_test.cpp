@@ -1,5 +1,6 @@
 // Tests what an import with ImportOptions::trustTextures knows of textures and tangents, and what it changes.
-#include "gltf/derived_tangents.h"
+#include "gltf/trusted_textures.h"
+
 #include "gltf/texels/texture_use.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"

@@ -1,19 +1,169 @@
 #include "gltf/codecs/block_file.h"
 
-#include "gltf/codecs/basisu.h"
-#include "gltf/codecs/codecs.h"
-#include "gltf/codecs/dds.h"
-#include "gltf/codecs/ktx2.h"
-#include "gltf/texels/block_decode.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <limits>
 #include <utility>
 
 namespace glint::gltf {
+
+namespace {
+
+constexpr std::uint64_t kHeaderEnd = 128;  // the magic word and DDS_HEADER
+constexpr std::uint64_t kDx10End = 148;    // and DDS_HEADER_DXT10
+constexpr std::uint32_t kHeaderSize = 124;
+constexpr std::uint32_t kPixelFormatSize = 32;
+constexpr std::uint32_t kHasFourCc = 0x4;    // DDPF_FOURCC
+constexpr std::uint32_t kCubeMap = 0x200;    // DDSCAPS2_CUBEMAP
+constexpr std::uint32_t kVolume = 0x200000;  // DDSCAPS2_VOLUME
+constexpr std::uint32_t kTexture2d = 3;      // D3D10_RESOURCE_DIMENSION_TEXTURE2D
+constexpr std::uint32_t kMiscCube = 0x4;     // D3D10_RESOURCE_MISC_TEXTURECUBE
+constexpr std::uint32_t kAlphaModeBits = 7;
+constexpr std::uint32_t kAlphaPremultiplied = 2;  // DDS_ALPHA_MODE_PREMULTIPLIED
+constexpr const char* kPremultipliedText = "its alpha is premultiplied; it is read as if it were not";
+
+constexpr std::uint32_t fourCc(const char (&text)[5]) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) {
+        value = value << 8U | static_cast<std::uint8_t>(text[i]);
+    }
+    return value;
+}
+
+struct FourCcRow {
+    std::uint32_t code;
+    TexelFormat format;
+    bool isPremultiplied;
+};
+constexpr auto kFourCcs = std::to_array<FourCcRow>({
+    {fourCc("DXT1"), TexelFormat::Bc1, false},
+    {fourCc("DXT2"), TexelFormat::Bc2, true},
+    {fourCc("DXT3"), TexelFormat::Bc2, false},
+    {fourCc("DXT4"), TexelFormat::Bc3, true},
+    {fourCc("DXT5"), TexelFormat::Bc3, false},
+    {fourCc("ATI1"), TexelFormat::Bc4, false},
+    {fourCc("BC4U"), TexelFormat::Bc4, false},
+    {fourCc("ATI2"), TexelFormat::Bc5, false},
+    {fourCc("BC5U"), TexelFormat::Bc5, false},
+});
+constexpr std::uint32_t kDx10 = fourCc("DX10");
+
+struct DxgiRow {
+    std::uint32_t code;
+    TexelFormat format;
+    Transfer transfer;
+};
+constexpr auto kDxgiFormats = std::to_array<DxgiRow>({
+    {70, TexelFormat::Bc1, Transfer::Unknown},
+    {71, TexelFormat::Bc1, Transfer::Linear},
+    {72, TexelFormat::Bc1, Transfer::Srgb},
+    {73, TexelFormat::Bc2, Transfer::Unknown},
+    {74, TexelFormat::Bc2, Transfer::Linear},
+    {75, TexelFormat::Bc2, Transfer::Srgb},
+    {76, TexelFormat::Bc3, Transfer::Unknown},
+    {77, TexelFormat::Bc3, Transfer::Linear},
+    {78, TexelFormat::Bc3, Transfer::Srgb},
+    {79, TexelFormat::Bc4, Transfer::Unknown},
+    {80, TexelFormat::Bc4, Transfer::Linear},
+    {82, TexelFormat::Bc5, Transfer::Unknown},
+    {83, TexelFormat::Bc5, Transfer::Linear},
+    {97, TexelFormat::Bc7, Transfer::Unknown},
+    {98, TexelFormat::Bc7, Transfer::Linear},
+    {99, TexelFormat::Bc7, Transfer::Srgb},
+});
+
+// Each of these functions returns what is wrong, or an empty text.
+
+std::string readDx10(const FileReader& reader, BlockFile& file) {
+    if (!reader.has(kHeaderEnd, kDx10End - kHeaderEnd)) {
+        return "it ends within its header";
+    }
+    const std::uint32_t code = reader.word(kHeaderEnd);
+    const auto* const row = std::ranges::find(kDxgiFormats, code, &DxgiRow::code);
+    if (row == kDxgiFormats.end()) {
+        return fmt::format("it holds data of DXGI_FORMAT {}; Glint reads BC1 to BC5 and BC7, unsigned", code);
+    }
+    if (reader.word(kHeaderEnd + 4) != kTexture2d || (reader.word(kHeaderEnd + 8) & kMiscCube) != 0 ||
+        reader.word(kHeaderEnd + 12) > 1) {
+        return "it is no single two-dimensional image, but has a depth, layers or faces";
+    }
+    if ((reader.word(kHeaderEnd + 16) & kAlphaModeBits) == kAlphaPremultiplied) {
+        file.deviations.emplace_back(kPremultipliedText);
+    }
+    file.format = row->format;
+    file.transfer = row->transfer;
+    return "";
+}
+
+std::string readFourCc(const FileReader& reader, BlockFile& file) {
+    const std::uint32_t code = reader.word(84);
+    const bool hasCode = (reader.word(80) & kHasFourCc) != 0;
+    const auto* const row = std::ranges::find(kFourCcs, code, &FourCcRow::code);
+    if (!hasCode || row == kFourCcs.end()) {
+        return hasCode
+                   ? fmt::format("it holds data of the FourCC 0x{:08x}; Glint reads BC1 to BC5 and BC7", code)
+                   : "it holds texels without block compression; Glint reads BC1 to BC5 and BC7";
+    }
+    if (row->isPremultiplied) {
+        file.deviations.emplace_back(kPremultipliedText);
+    }
+    file.format = row->format;
+    return "";
+}
+
+std::string readHeader(const FileReader& reader, BlockFile& file, std::uint64_t& data) {
+    if (!reader.has(0, kHeaderEnd)) {
+        return "it ends within its header";
+    }
+    if (reader.word(4) != kHeaderSize || reader.word(76) != kPixelFormatSize) {
+        return "its header is damaged";
+    }
+    if ((reader.word(112) & (kCubeMap | kVolume)) != 0) {
+        return "it is no single two-dimensional image, but has a depth, layers or faces";
+    }
+    const bool isDx10 = (reader.word(80) & kHasFourCc) != 0 && reader.word(84) == kDx10;
+    data = isDx10 ? kDx10End : kHeaderEnd;
+    return isDx10 ? readDx10(reader, file) : readFourCc(reader, file);
+}
+
+// Levels follow each other, the largest first.
+std::string placeLevels(const FileReader& reader, std::uint64_t data, BlockFile& file) {
+    const std::uint32_t height = reader.word(12);
+    const std::uint32_t width = reader.word(16);
+    // Files without mips may say 0.
+    const std::uint32_t levels = std::max(reader.word(28), 1U);
+    if (std::string problem = checkImageShape(width, height, levels); !problem.empty()) {
+        return problem;
+    }
+    file.width = static_cast<int>(width);
+    file.height = static_cast<int>(height);
+    file.levels = static_cast<int>(levels);
+    for (std::uint32_t level = 0; level < levels; ++level) {
+        const std::uint64_t bytes = bytesOfLevel(*file.format, width, height, level);
+        if (!reader.has(data, bytes)) {
+            return fmt::format("it ends within its level {}", level);
+        }
+        file.places.push_back({data, bytes});
+        data += bytes;
+    }
+    return "";
+}
+
+}  // namespace
+
+std::optional<BlockFile> readDds(ByteView bytes, std::string& problem) {
+    BlockFile file;
+    const FileReader reader(bytes);
+    std::uint64_t data = 0;
+    problem = readHeader(reader, file, data);
+    if (problem.empty()) {
+        problem = placeLevels(reader, data, file);
+    }
+    return problem.empty() ? std::optional(std::move(file)) : std::nullopt;
+}
 
 std::string checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels) {
     constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
@@ -26,85 +176,5 @@ std::string checkImageShape(std::uint64_t width, std::uint64_t height, std::uint
     }
     return "";
 }
-
-std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem) {
-    return findCodec(bytes) == &kDds ? readDds(bytes, problem) : readKtx2(bytes, problem);
-}
-
-std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
-                                                  std::string& problem) {
-    const auto width = static_cast<std::uint32_t>(file.width);
-    const auto height = static_cast<std::uint32_t>(file.height);
-    std::vector<std::uint8_t> blocks(static_cast<std::size_t>(
-        bytesOfLevels(*file.format, width, height, static_cast<std::uint32_t>(file.levels))));
-    std::span<std::uint8_t> rest(blocks);
-    for (std::uint32_t level = 0; level < file.places.size(); ++level) {
-        const BlockFile::Level& place = file.places[level];
-        const ByteView from =
-            bytes.subspan(static_cast<std::size_t>(place.offset), static_cast<std::size_t>(place.bytes));
-        const std::span<std::uint8_t> to =
-            rest.first(static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, level)));
-        if (!file.isZstandard) {
-            std::ranges::copy(from, to.begin());
-        } else if (!unpackZstandard(from, to)) {
-            problem = fmt::format("the data of level {} are damaged", level);
-            return std::nullopt;
-        }
-        rest = rest.subspan(to.size());
-    }
-    return blocks;
-}
-
-bool readBlockHeader(ByteView bytes, Image& image, std::string& problem) {
-    const std::optional<BlockFile> file = readBlockFile(bytes, problem);
-    if (!file) {
-        return false;
-    }
-    image.width = file->width;
-    image.height = file->height;
-    image.levels = file->levels;
-    image.transfer = file->transfer;
-    image.storage = file->format ? Storage::Blocks : Storage::Transcoded;
-    image.format = PixelFormat::Rgba8;
-    return true;
-}
-
-bool decodeBlockFile(ByteView bytes, Image& image, std::string& problem) {
-    const std::optional<BlockFile> file = readBlockFile(bytes, problem);
-    if (!file) {
-        return false;
-    }
-    if (!file->format) {
-        return decodeBasis(bytes, image, problem);
-    }
-    std::optional<std::vector<std::uint8_t>> blocks = blocksOf(*file, bytes, problem);
-    if (!blocks) {
-        return false;
-    }
-    image.pixels.clear();
-    std::span<const std::uint8_t> rest(*blocks);
-    for (int level = 0; level < file->levels; ++level) {
-        const auto width =
-            sizeAtLevel(static_cast<std::uint32_t>(file->width), static_cast<std::uint32_t>(level));
-        const auto height =
-            sizeAtLevel(static_cast<std::uint32_t>(file->height), static_cast<std::uint32_t>(level));
-        const auto bytesHere = static_cast<std::size_t>(bytesOfLevel(*file->format, width, height, 0));
-        std::optional<std::vector<std::uint8_t>> pixels = decodeBlocks(
-            *file->format, file->transfer == Transfer::Srgb, width, height, rest.first(bytesHere), problem);
-        if (!pixels) {
-            image.pixels.clear();
-            return false;
-        }
-        for (std::size_t i = 3; !file->hasAlpha && i < pixels->size(); i += 4) {
-            (*pixels)[i] = 255;
-        }
-        image.pixels.insert(image.pixels.end(), pixels->begin(), pixels->end());
-        rest = rest.subspan(bytesHere);
-    }
-    return true;
-}
-
-const Codec kBasisu{"KTX2", "image/ktx2", readBlockHeader, decodeBlockFile};
-const Codec kDds{"DDS", "image/vnd-ms.dds", readBlockHeader, decodeBlockFile};
 
 }  // namespace glint::gltf

@@ -1,7 +1,7 @@
 // Images in block formats, as KTX2 and DDS files hold them.
 #pragma once
 
-#include "gltf/document/document.h"
+#include "gltf/document/files.h"
 #include "gltf/scene.h"
 
 #include <glint/texel_format.h>
@@ -62,17 +62,8 @@ struct BlockFile {
 // The size and the number of levels of an image, checked. Returns what is wrong, or an empty text.
 std::string checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels);
 
-// Reads the file by its first bytes. Returns nothing for a damaged file or one whose data Glint does not
-// read, and `problem` says why. Allocates nothing that depends on the file's sizes.
-std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem);
-
-// Returns all levels in their block format, one after the other. `file` must have been read from `bytes` and
-// have a format. Returns nothing if Zstandard data are damaged, and `problem` says so.
-std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
-                                                  std::string& problem);
-
-// These are Codec::readHeader and Codec::decode for block formats.
-bool readBlockHeader(ByteView bytes, Image& image, std::string& problem);
-bool decodeBlockFile(ByteView bytes, Image& image, std::string& problem);
+// Accepts one two-dimensional image in BC1 to BC5 or BC7 with unsigned values: by the header's FourCC (DXT1
+// to DXT5, ATI1, ATI2, BC4U, BC5U) or by a DX10 header. Source: Microsoft, "Programming Guide for DDS".
+std::optional<BlockFile> readDds(ByteView bytes, std::string& problem);
 
 }  // namespace glint::gltf

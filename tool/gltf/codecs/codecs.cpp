@@ -1,8 +1,70 @@
 #include "gltf/codecs/codecs.h"
 
+#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/ktx2.h"
+#include "gltf/texels/block_decode.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <span>
 #include <string_view>
+#include <utility>
+#include <webp/decode.h>
 
 namespace glint::gltf {
+
+// ---- WebP ----
+
+namespace {
+
+const char* describe(VP8StatusCode code) {
+    switch (code) {
+        case VP8_STATUS_OUT_OF_MEMORY:
+            return "out of memory";
+        case VP8_STATUS_UNSUPPORTED_FEATURE:
+            return "a feature that libwebp does not decode";
+        case VP8_STATUS_NOT_ENOUGH_DATA:
+            return "not enough data";
+        default:
+            return "bitstream error";
+    }
+}
+
+bool readWebpHeader(ByteView bytes, Image& image, std::string& problem) {
+    WebPBitstreamFeatures features;
+    if (const VP8StatusCode code = WebPGetFeatures(bytes.data(), bytes.size(), &features);
+        code != VP8_STATUS_OK) {
+        problem = describe(code);
+        return false;
+    }
+    if (features.has_animation != 0) {
+        problem = "an animation, which EXT_texture_webp forbids";
+        return false;
+    }
+    image.width = features.width;
+    image.height = features.height;
+    image.format = PixelFormat::Rgba8;
+    return true;
+}
+
+bool decodeWebp(ByteView bytes, Image& image, std::string& problem) {
+    const int stride = 4 * image.width;
+    image.pixels.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(image.height));
+    if (WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.pixels.data(), image.pixels.size(), stride) ==
+        nullptr) {
+        problem = "the data is damaged or ends early";
+        image.pixels.clear();
+        return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+const Codec kWebp{"WebP", "image/webp", readWebpHeader, decodeWebp};
+
+// ---- All codecs ----
 
 namespace {
 
@@ -40,5 +102,91 @@ const char* foreignFormat(ByteView bytes) {
     }
     return text.size() >= 12 && text.substr(4).starts_with("ftypavif") ? "AVIF" : "";
 }
+
+// ---- KTX2 and DDS ----
+
+std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem) {
+    return findCodec(bytes) == &kDds ? readDds(bytes, problem) : readKtx2(bytes, problem);
+}
+
+std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
+                                                  std::string& problem) {
+    const auto width = static_cast<std::uint32_t>(file.width);
+    const auto height = static_cast<std::uint32_t>(file.height);
+    std::vector<std::uint8_t> blocks(static_cast<std::size_t>(
+        bytesOfLevels(*file.format, width, height, static_cast<std::uint32_t>(file.levels))));
+    std::span<std::uint8_t> rest(blocks);
+    for (std::uint32_t level = 0; level < file.places.size(); ++level) {
+        const BlockFile::Level& place = file.places[level];
+        const ByteView from =
+            bytes.subspan(static_cast<std::size_t>(place.offset), static_cast<std::size_t>(place.bytes));
+        const std::span<std::uint8_t> to =
+            rest.first(static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, level)));
+        if (!file.isZstandard) {
+            std::ranges::copy(from, to.begin());
+        } else if (!unpackZstandard(from, to)) {
+            problem = fmt::format("the data of level {} are damaged", level);
+            return std::nullopt;
+        }
+        rest = rest.subspan(to.size());
+    }
+    return blocks;
+}
+
+namespace {
+
+bool readBlockHeader(ByteView bytes, Image& image, std::string& problem) {
+    const std::optional<BlockFile> file = readBlockFile(bytes, problem);
+    if (!file) {
+        return false;
+    }
+    image.width = file->width;
+    image.height = file->height;
+    image.levels = file->levels;
+    image.transfer = file->transfer;
+    image.storage = file->format ? Storage::Blocks : Storage::Transcoded;
+    image.format = PixelFormat::Rgba8;
+    return true;
+}
+
+bool decodeBlockFile(ByteView bytes, Image& image, std::string& problem) {
+    const std::optional<BlockFile> file = readBlockFile(bytes, problem);
+    if (!file) {
+        return false;
+    }
+    if (!file->format) {
+        return decodeBasis(bytes, image, problem);
+    }
+    std::optional<std::vector<std::uint8_t>> blocks = blocksOf(*file, bytes, problem);
+    if (!blocks) {
+        return false;
+    }
+    image.pixels.clear();
+    std::span<const std::uint8_t> rest(*blocks);
+    for (int level = 0; level < file->levels; ++level) {
+        const auto width =
+            sizeAtLevel(static_cast<std::uint32_t>(file->width), static_cast<std::uint32_t>(level));
+        const auto height =
+            sizeAtLevel(static_cast<std::uint32_t>(file->height), static_cast<std::uint32_t>(level));
+        const auto bytesHere = static_cast<std::size_t>(bytesOfLevel(*file->format, width, height, 0));
+        std::optional<std::vector<std::uint8_t>> pixels = decodeBlocks(
+            *file->format, file->transfer == Transfer::Srgb, width, height, rest.first(bytesHere), problem);
+        if (!pixels) {
+            image.pixels.clear();
+            return false;
+        }
+        for (std::size_t i = 3; !file->hasAlpha && i < pixels->size(); i += 4) {
+            (*pixels)[i] = 255;
+        }
+        image.pixels.insert(image.pixels.end(), pixels->begin(), pixels->end());
+        rest = rest.subspan(bytesHere);
+    }
+    return true;
+}
+
+}  // namespace
+
+const Codec kBasisu{"KTX2", "image/ktx2", readBlockHeader, decodeBlockFile};
+const Codec kDds{"DDS", "image/vnd-ms.dds", readBlockHeader, decodeBlockFile};
 
 }  // namespace glint::gltf

@@ -1,10 +1,13 @@
 // The image formats that Glint decodes, which it recognises by their first bytes.
 #pragma once
 
-#include "gltf/document/document.h"
+#include "gltf/codecs/block_file.h"
 #include "gltf/scene.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace glint::gltf {
 
@@ -25,6 +28,15 @@ extern const Codec kWebp;
 // KTX2 and DDS. In a build without hasBasisu(), decode() fails for data that need it, and says why.
 extern const Codec kBasisu;
 extern const Codec kDds;
+
+// Reads a file of the two by its first bytes. Returns nothing for a damaged file or one whose data Glint does
+// not read, and `problem` says why. Allocates nothing that depends on the file's sizes.
+std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem);
+
+// Returns all levels in their block format, one after the other. `file` must have been read from `bytes` and
+// have a format. Returns nothing if Zstandard data are damaged, and `problem` says so.
+std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
+                                                  std::string& problem);
 
 // Returns the codec that matches the first bytes, or null if there is none.
 const Codec* findCodec(ByteView bytes);

@@ -173,16 +173,16 @@ bool appendValues(const draco::Mesh& mesh, const draco::PointAttribute& attribut
     return true;
 }
 
-bool appendValuesAs(ComponentType componentType, const draco::Mesh& mesh,
-                    const draco::PointAttribute& attribute, std::size_t components, base::Bytes& bytes) {
+bool appendValuesAs(int componentType, const draco::Mesh& mesh, const draco::PointAttribute& attribute,
+                    std::size_t components, base::Bytes& bytes) {
     switch (componentType) {
-        case ComponentType::Byte:
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
             return appendValues<std::int8_t>(mesh, attribute, components, bytes);
-        case ComponentType::UnsignedByte:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
             return appendValues<std::uint8_t>(mesh, attribute, components, bytes);
-        case ComponentType::Short:
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
             return appendValues<std::int16_t>(mesh, attribute, components, bytes);
-        case ComponentType::UnsignedShort:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
             return appendValues<std::uint16_t>(mesh, attribute, components, bytes);
         default:
             return appendValues<float>(mesh, attribute, components, bytes);
@@ -196,8 +196,8 @@ DracoMesh::DracoMesh(DracoMesh&& other) noexcept = default;
 DracoMesh& DracoMesh::operator=(DracoMesh&& other) noexcept = default;
 DracoMesh::~DracoMesh() = default;
 
-Result<DracoMesh> DracoMesh::decode(Document& document, const Json& extension, const std::string& pointer) {
-    const int view = extension["bufferView"].get<int>();
+Result<DracoMesh> DracoMesh::decode(Document& document, const Value& extension, const std::string& pointer) {
+    const int view = indexMember(extension, "bufferView");
     GLINT_TRY(const auto bytes, document.bufferView(view));
     const std::optional<HeaderClaim> claim = readClaim(bytes);
     if (!claim) {

@@ -20,10 +20,10 @@ namespace glint::gltf {
 
 class DracoMesh {
 public:
-    // Decodes the data of the extension object, which checkCompression() accepted. `pointer` is that of the
+    // Decodes the data of the extension object, which checkDocument() accepted. `pointer` is that of the
     // extension. Errors: "draco-decode" with the decoder's message, "draco-size" if the header claims more
     // than its data can hold, "vertex-limit", and those of reading the buffer view.
-    static Result<DracoMesh> decode(Document& document, const Json& extension, const std::string& pointer);
+    static Result<DracoMesh> decode(Document& document, const Value& extension, const std::string& pointer);
 
     DracoMesh(DracoMesh&& other) noexcept;
     DracoMesh& operator=(DracoMesh&& other) noexcept;

@@ -92,12 +92,12 @@ std::string contradiction(const Layout& layout) {
     return {};
 }
 
-Result<Layout> readLayout(const Document& document, const Json& extension, const std::string& pointer) {
-    const std::string mode = extension["mode"].get<std::string>();
-    const Json* filterName = find(extension, "filter");
-    const std::string filter = filterName == nullptr ? "NONE" : filterName->get<std::string>();
+Result<Layout> readLayout(const Report& report, const Value& extension, const std::string& pointer) {
+    const std::string mode = textMember(extension, "mode");
+    const Value* const filterName = find(extension, "filter");
+    const std::string filter = filterName == nullptr ? "NONE" : filterName->Get<std::string>();
     const auto fail = [&](std::string message) {
-        return document.error("meshopt-layout", pointer, std::move(message), kExportWithoutMeshopt);
+        return report.error("meshopt-layout", pointer, std::move(message), kExportWithoutMeshopt);
     };
     const std::optional<Mode> knownMode = modeOf(mode);
     if (!knownMode) {
@@ -107,8 +107,8 @@ Result<Layout> readLayout(const Document& document, const Json& extension, const
     if (!knownFilter) {
         return fail(fmt::format("\"{}\" is no filter of meshopt compression that Glint reads", filter));
     }
-    const Layout layout{*knownMode, *knownFilter, extension["count"].get<std::size_t>(),
-                        extension["byteStride"].get<std::size_t>()};
+    const Layout layout{*knownMode, *knownFilter, static_cast<std::size_t>(sizeMember(extension, "count")),
+                        static_cast<std::size_t>(sizeMember(extension, "byteStride"))};
     if (std::string problem = contradiction(layout); !problem.empty()) {
         return fail(std::move(problem));
     }
@@ -376,35 +376,34 @@ std::string explain(int code) {
 
 }  // namespace
 
-Result<base::Bytes> unpackMeshopt(Document& document, const Json& extension, const std::string& pointer,
+Result<base::Bytes> unpackMeshopt(Report& report, const Value& extension, const std::string& pointer,
                                   ByteView packed, std::uint64_t byteLength) {
-    GLINT_TRY(const auto layout, readLayout(document, extension, pointer));
+    GLINT_TRY(const auto layout, readLayout(report, extension, pointer));
     // This can't overflow, because the factors are within the limits of the table, 2^53 and 2^8.
     if (std::uint64_t{layout.count} * layout.stride != byteLength) {
-        return document.error("meshopt-layout", pointer,
-                              fmt::format("{} elements of {} bytes are not its {} bytes", layout.count,
-                                          layout.stride, byteLength),
-                              kExportWithoutMeshopt);
+        return report.error("meshopt-layout", pointer,
+                            fmt::format("{} elements of {} bytes are not its {} bytes", layout.count,
+                                        layout.stride, byteLength),
+                            kExportWithoutMeshopt);
     }
     if (byteLength / kMaxRatio > packed.size()) {
-        return document.error(
+        return report.error(
             "meshopt-size", pointer,
             fmt::format("says it unpacks {} bytes to {}, which no data can", packed.size(), byteLength),
             kExportWithoutMeshopt);
     }
-    if (!document.chargeUnpackedBytes(byteLength)) {
-        return document.error("meshopt-size", pointer,
-                              "the scene's compressed buffer views unpack to too much",
-                              "split the scene, or raise ImportOptions::maxFileBytes");
+    if (!report.chargeUnpackedBytes(byteLength)) {
+        return report.error("meshopt-size", pointer, "the scene's compressed buffer views unpack to too much",
+                            "split the scene, or raise ImportOptions::maxFileBytes");
     }
     base::Bytes bytes(static_cast<std::size_t>(byteLength));
     if (bytes.empty()) {
         return bytes;
     }
     if (const int code = decode(layout, packed, bytes); code != kDecoded) {
-        return document.error("meshopt-decode", pointer,
-                              fmt::format("can't be unpacked: {} (code {})", explain(code), code),
-                              kExportWithoutMeshopt);
+        return report.error("meshopt-decode", pointer,
+                            fmt::format("can't be unpacked: {} (code {})", explain(code), code),
+                            kExportWithoutMeshopt);
     }
     applyFilter(layout, bytes);
     return bytes;

@@ -52,11 +52,11 @@ T load(const std::uint8_t* bytes) {
     return value;
 }
 
-std::uint32_t loadUnsigned(const std::uint8_t* bytes, ComponentType type) {
-    switch (type) {
-        case ComponentType::UnsignedByte:
+std::uint32_t loadUnsigned(const std::uint8_t* bytes, int componentType) {
+    switch (componentType) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
             return load<std::uint8_t>(bytes);
-        case ComponentType::UnsignedShort:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
             return load<std::uint16_t>(bytes);
         default:
             return load<std::uint32_t>(bytes);
@@ -64,13 +64,13 @@ std::uint32_t loadUnsigned(const std::uint8_t* bytes, ComponentType type) {
 }
 
 // Returns the largest value of an unsigned component type, or 0 for other types.
-std::uint32_t largestUnsigned(ComponentType type) {
-    switch (type) {
-        case ComponentType::UnsignedByte:
+std::uint32_t largestUnsigned(int componentType) {
+    switch (componentType) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
             return std::numeric_limits<std::uint8_t>::max();
-        case ComponentType::UnsignedShort:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
             return std::numeric_limits<std::uint16_t>::max();
-        case ComponentType::UnsignedInt:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
             return std::numeric_limits<std::uint32_t>::max();
         default:
             return 0;
@@ -79,7 +79,7 @@ std::uint32_t largestUnsigned(ComponentType type) {
 
 // Copies the accessor's own elements, without substitutions, tightly packed.
 Status gatherBase(Document& document, int index, std::size_t elementSize, base::Bytes& elements) {
-    const Accessor& accessor = document.accessor(index);
+    const tinygltf::Accessor& accessor = document.accessor(index);
     if (accessor.bufferView < 0) {
         if (!document.chargeZeroElements(accessor.count)) {
             return document.error(
@@ -102,7 +102,7 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, base::
                                           accessorPointer(index), elementSize),
                               kDamaged);
     }
-    const ElementLayout layout{bytes, accessor.offset, stride, elementSize};
+    const ElementLayout layout{bytes, accessor.byteOffset, stride, elementSize};
     if (!fits(layout, accessor.count)) {
         return rangeError(document, accessorPointer(index), accessor.count, layout);
     }
@@ -126,30 +126,32 @@ Result<ElementLayout> sparseLayout(Document& document, const std::string& pointe
 
 // Puts the substitutes of a sparse accessor into `elements`.
 Status substituteSparse(Document& document, int index, std::size_t elementSize, base::Bytes& elements) {
-    const Accessor& accessor = document.accessor(index);
-    const Accessor::Sparse& sparse = *accessor.sparse;
-    const std::size_t count = sparse.count;
+    const tinygltf::Accessor& accessor = document.accessor(index);
+    const auto& sparse = accessor.sparse;
+    const auto count = static_cast<std::size_t>(sparse.count);
     const std::string pointer = accessorPointer(index) + "/sparse";
     if (count > accessor.count) {
         return document.error("sparse-count", pointer + "/count",
                               fmt::format("is {}, more than the {} elements", count, accessor.count),
                               kDamaged);
     }
-    if (largestUnsigned(sparse.indicesType) == 0) {
+    if (largestUnsigned(sparse.indices.componentType) == 0) {
         return document.error("accessor-component-type", pointer + "/indices/componentType",
-                              fmt::format("{} is no unsigned integer", static_cast<int>(sparse.indicesType)),
+                              fmt::format("{} is no unsigned integer", sparse.indices.componentType),
                               kDamaged);
     }
-    const std::size_t indexSize = sizeOf(sparse.indicesType);
-    GLINT_TRY(const auto indices, sparseLayout(document, pointer + "/indices", sparse.indicesView,
-                                               sparse.indicesOffset, indexSize, count));
-    GLINT_TRY(const auto values, sparseLayout(document, pointer + "/values", sparse.valuesView,
-                                              sparse.valuesOffset, elementSize, count));
+    const std::size_t indexSize = componentSizeOf(sparse.indices.componentType);
+    GLINT_TRY(const auto indices,
+              sparseLayout(document, pointer + "/indices", sparse.indices.bufferView,
+                           static_cast<std::size_t>(sparse.indices.byteOffset), indexSize, count));
+    GLINT_TRY(const auto values,
+              sparseLayout(document, pointer + "/values", sparse.values.bufferView,
+                           static_cast<std::size_t>(sparse.values.byteOffset), elementSize, count));
     std::int64_t before = -1;
     bool increases = true;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t target =
-            loadUnsigned(&indices.bytes[indices.offset + i * indexSize], sparse.indicesType);
+            loadUnsigned(&indices.bytes[indices.offset + i * indexSize], sparse.indices.componentType);
         if (target >= accessor.count) {
             return document.error(
                 "sparse-index", pointer + "/indices",
@@ -170,11 +172,11 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
 
 // Returns all elements, tightly packed.
 Result<base::Bytes> gather(Document& document, int index, std::size_t elementSize) {
-    const Accessor& accessor = document.accessor(index);
+    const tinygltf::Accessor& accessor = document.accessor(index);
     GLINT_TRY_DO(document.chargeVertices(accessor.count, accessorPointer(index)));
     base::Bytes elements;
     GLINT_TRY_DO(gatherBase(document, index, elementSize, elements));
-    if (accessor.sparse) {
+    if (accessor.sparse.isSparse) {
         GLINT_TRY_DO(substituteSparse(document, index, elementSize, elements));
     }
     return elements;
@@ -196,34 +198,35 @@ void appendIntegers(const base::Bytes& bytes, bool normalized, std::vector<float
 }  // namespace
 
 Result<ElementFormat> floatFormat(const Document& document, int index) {
-    const Accessor& accessor = document.accessor(index);
-    if (accessor.isMatrix) {
+    const tinygltf::Accessor& accessor = document.accessor(index);
+    if (isMatrix(accessor)) {
         return document.error("accessor-type", accessorPointer(index) + "/type",
                               "a vertex attribute can't be a matrix", "export the scene again");
     }
-    if (accessor.componentType == ComponentType::UnsignedInt) {
+    if (accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT) {
         return document.error("accessor-component-type", accessorPointer(index) + "/componentType",
                               "a vertex attribute can't have 32-bit integers", "export the scene again");
     }
-    return ElementFormat{accessor.componentType, accessor.components, sizeOf(accessor.componentType)};
+    return ElementFormat{accessor.componentType, componentsOf(accessor),
+                         componentSizeOf(accessor.componentType)};
 }
 
 FloatElements toFloats(const Document& document, int index, Integers integers, const base::Bytes& bytes) {
-    const Accessor& accessor = document.accessor(index);
+    const tinygltf::Accessor& accessor = document.accessor(index);
     FloatElements result;
-    result.components = accessor.components;
+    result.components = componentsOf(accessor);
     const bool normalized = accessor.normalized || integers == Integers::Normalized;
     switch (accessor.componentType) {
-        case ComponentType::Byte:
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
             appendIntegers<std::int8_t>(bytes, normalized, result.values);
             break;
-        case ComponentType::UnsignedByte:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
             appendIntegers<std::uint8_t>(bytes, normalized, result.values);
             break;
-        case ComponentType::Short:
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
             appendIntegers<std::int16_t>(bytes, normalized, result.values);
             break;
-        case ComponentType::UnsignedShort:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
             appendIntegers<std::uint16_t>(bytes, normalized, result.values);
             break;
         default:
@@ -243,8 +246,9 @@ Result<FloatElements> readFloats(Document& document, int index, Integers integer
 }
 
 Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
-    const Accessor& accessor = document.accessor(index);
-    if (!accessor.isMatrix || accessor.components != 16 || accessor.componentType != ComponentType::Float) {
+    const tinygltf::Accessor& accessor = document.accessor(index);
+    if (!isMatrix(accessor) || componentsOf(accessor) != 16 ||
+        accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
         return document.error("accessor-type", accessorPointer(index), "must have 4 x 4 matrices of floats",
                               "export the scene again");
     }
@@ -258,13 +262,13 @@ Result<std::vector<Matrix4>> readMatrices(Document& document, int index) {
 }
 
 Result<IndexElements> readIndices(Document& document, int index) {
-    const Accessor& accessor = document.accessor(index);
+    const tinygltf::Accessor& accessor = document.accessor(index);
     const std::uint32_t restart = largestUnsigned(accessor.componentType);
-    if (accessor.components != 1 || restart == 0) {
+    if (componentsOf(accessor) != 1 || restart == 0) {
         return document.error("accessor-component-type", accessorPointer(index),
                               "indices must be scalars of unsigned integers", "export the scene again");
     }
-    const std::size_t size = sizeOf(accessor.componentType);
+    const std::size_t size = componentSizeOf(accessor.componentType);
     GLINT_TRY(const auto bytes, gather(document, index, size));
     IndexElements result;
     result.restart = restart;

@@ -23,7 +23,7 @@ enum class Integers : std::uint8_t { AsValues, Normalized };
 
 // What the elements of an accessor look like.
 struct ElementFormat {
-    ComponentType componentType = ComponentType::Float;
+    int componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
     std::size_t components = 0;
     std::size_t componentSize = 0;  // bytes
 };

@@ -1,10 +1,10 @@
 #include "gltf/document/conformance.h"
 
-#include "gltf/document/document.h"
-#include "gltf/document/extensions.h"
+#include "gltf/document/model.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -20,24 +20,74 @@ namespace glint::gltf {
 
 namespace {
 
+// Extensions of materials are declared (shaders/materials). KHR_texture_basisu is listed even if this build
+// does not decode it. textures.cpp decides about each texture.
+constexpr auto kSupported = std::to_array<std::string_view>(
+    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_animation_pointer",
+     "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_variants", "KHR_mesh_quantization",
+     "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_basisu", "KHR_texture_transform",
+     "MSFT_texture_dds"});
+
+// Ratified or registered extensions whose data a renderer may ignore even if a file requires them.
+constexpr auto kNoPicture = std::to_array<std::string_view>(
+    {"AGI_stk_metadata", "EXT_instance_features", "EXT_mesh_features", "EXT_mesh_manifold",
+     "EXT_mesh_opacity_micromap", "EXT_structural_metadata", "FB_geometry_metadata", "GODOT_single_root",
+     "KHR_node_hoverability", "KHR_node_selectability", "KHR_xmp", "KHR_xmp_json_ld"});
+
+// Returns the extensions in either list of a document that change no picture, in alphabetical order.
+std::set<std::string> unreadOf(const Json& root) {
+    std::set<std::string> names;
+    for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
+        for (const Json& name : arrayMember(root, list)) {
+            if (changesNoPicture(name.get_ref<const std::string&>())) {
+                names.insert(name.get<std::string>());
+            }
+        }
+    }
+    return names;
+}
+
+std::string extensionHint(std::string_view name) {
+    if (name == "EXT_texture_avif") {
+        return "store the textures as PNG, JPEG or WebP";
+    }
+    if (name.starts_with("KHR_materials_")) {
+        return fmt::format("move {} from extensionsRequired to extensionsUsed to render without it", name);
+    }
+    return "export the scene without this extension";
+}
+
+// Returns the error "extension-unsupported" at `pointer`.
+Diagnostic unsupportedExtension(const Report& report, std::string_view name, std::string_view pointer) {
+    return report.error("extension-unsupported", pointer,
+                        fmt::format("needs the extension {}, which Glint does not support", name),
+                        extensionHint(name));
+}
+
 constexpr const char* kExport = "export the scene again";
 
-std::string_view nameOf(ComponentType type) {
-    switch (type) {
-        case ComponentType::Byte:
+std::string_view nameOf(int componentType) {
+    switch (componentType) {
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
             return "bytes";
-        case ComponentType::UnsignedByte:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
             return "unsigned bytes";
-        case ComponentType::Short:
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
             return "shorts";
-        case ComponentType::UnsignedShort:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
             return "unsigned shorts";
-        case ComponentType::UnsignedInt:
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
             return "unsigned integers";
-        case ComponentType::Float:
+        default:
             return "floats";
     }
-    return "components";
+}
+
+// Returns how many numbers an element of a checked accessor has: "SCALAR", "VEC3", "MAT4".
+std::size_t componentsOf(const Json& accessor) {
+    const std::string& type = accessor["type"].get_ref<const std::string&>();
+    const auto width = static_cast<std::size_t>(type.back() - '0');
+    return type == "SCALAR" ? 1 : type.starts_with("MAT") ? width * width : width;
 }
 
 bool isIn(const Json& list, std::string_view name) {
@@ -67,23 +117,23 @@ void visitExtensions(const Json& json, std::string& pointer, const Visit& visit)
     }
 }
 
-void checkLists(Document& document) {
-    const Json& used = arrayMember(document.json(), "extensionsUsed");
-    const Json& required = arrayMember(document.json(), "extensionsRequired");
+void checkLists(Report& report, const Json& document) {
+    const Json& used = arrayMember(document, "extensionsUsed");
+    const Json& required = arrayMember(document, "extensionsRequired");
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (!isIn(used, required[i].get_ref<const std::string&>())) {
-            document.warn("extension-unlisted", fmt::format("/extensionsRequired/{}", i),
-                          fmt::format("{} is missing in extensionsUsed", required[i].get<std::string>()),
-                          kExport);
+            report.warn("extension-unlisted", fmt::format("/extensionsRequired/{}", i),
+                        fmt::format("{} is missing in extensionsUsed", required[i].get<std::string>()),
+                        kExport);
         }
     }
     std::set<std::string> known;
     std::string root;
-    visitExtensions(document.json(), root, [&](const std::string& name, const std::string& pointer) {
+    visitExtensions(document, root, [&](const std::string& name, const std::string& pointer) {
         if (!isIn(used, name) && !isIn(required, name) && known.insert(name).second) {
-            document.warn("extension-unlisted", pointer,
-                          fmt::format("{} is missing in extensionsUsed; it is read all the same", name),
-                          kExport);
+            report.warn("extension-unlisted", pointer,
+                        fmt::format("{} is missing in extensionsUsed; it is read all the same", name),
+                        kExport);
         }
     });
 }
@@ -91,36 +141,36 @@ void checkLists(Document& document) {
 // Warns of objects that a reader without the extension can't read in a file that does not require it.
 class RequiredExtensions {
 public:
-    explicit RequiredExtensions(Document& document) : document_(document) {}
+    RequiredExtensions(Report& report, const Json& root) : report_(report), root_(root) {}
 
     void check() {
-        if (isIn(arrayMember(document_.json(), "extensionsUsed"), kQuantization)) {
+        if (isIn(arrayMember(root_, "extensionsUsed"), kQuantization)) {
             demand(kQuantization, "/extensionsUsed");
         }
-        const Json& textures = arrayMember(document_.json(), "textures");
+        const Json& textures = arrayMember(root_, "textures");
         for (std::size_t i = 0; i < textures.size(); ++i) {
-            for (const char* const name : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"}) {
+            for (const char* const name : kImageExtensions) {
                 if (findExtension(textures[i], name) != nullptr && find(textures[i], "source") == nullptr) {
                     demand(name, fmt::format("/textures/{}", i));
                 }
             }
         }
-        const Json& buffers = arrayMember(document_.json(), "buffers");
+        const Json& buffers = arrayMember(root_, "buffers");
         for (std::size_t i = 0; i < buffers.size(); ++i) {
-            for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+            for (const char* const name : kMeshoptExtensions) {
                 if (findExtension(buffers[i], name) != nullptr && find(buffers[i], "uri") == nullptr) {
                     demand(name, fmt::format("/buffers/{}", i));
                 }
             }
         }
-        const Json& views = arrayMember(document_.json(), "bufferViews");
+        const Json& views = arrayMember(root_, "bufferViews");
         for (std::size_t i = 0; i < views.size(); ++i) {
             if (findExtension(views[i], "EXT_meshopt_compression") != nullptr &&
                 findExtension(views[i], "KHR_meshopt_compression") != nullptr) {
-                document_.warn("meshopt-layout", fmt::format("/bufferViews/{}", i),
-                               "has both EXT_meshopt_compression and KHR_meshopt_compression; the former is "
-                               "read",
-                               kExport);
+                report_.warn("meshopt-layout", fmt::format("/bufferViews/{}", i),
+                             "has both EXT_meshopt_compression and KHR_meshopt_compression; the former is "
+                             "read",
+                             kExport);
             }
         }
         checkDraco();
@@ -130,15 +180,15 @@ public:
 
 private:
     void demand(const char* name, const std::string& pointer) {
-        if (!requiresExtension(document_, name) && given_.insert(name).second) {
-            document_.warn("extension-unlisted", pointer,
-                           fmt::format("needs {}, which is missing in extensionsRequired", name), kExport);
+        if (!isIn(arrayMember(root_, "extensionsRequired"), name) && given_.insert(name).second) {
+            report_.warn("extension-unlisted", pointer,
+                         fmt::format("needs {}, which is missing in extensionsRequired", name), kExport);
         }
     }
 
     void checkDraco() {
-        const Json& accessors = arrayMember(document_.json(), "accessors");
-        const Json& meshes = arrayMember(document_.json(), "meshes");
+        const Json& accessors = arrayMember(root_, "accessors");
+        const Json& meshes = arrayMember(root_, "meshes");
         for (std::size_t i = 0; i < meshes.size(); ++i) {
             const Json& primitives = arrayMember(meshes[i], "primitives");
             for (std::size_t k = 0; k < primitives.size(); ++k) {
@@ -152,7 +202,8 @@ private:
         }
     }
 
-    Document& document_;
+    Report& report_;
+    const Json& root_;
     std::set<std::string> given_;
 };
 
@@ -161,17 +212,19 @@ private:
 // Forms of components, as bits: two for each component type, of which the second is for normalised ones.
 using Forms = std::uint32_t;
 
-constexpr Forms form(ComponentType type, bool normalized) {
-    const auto index = static_cast<std::uint32_t>(type) - static_cast<std::uint32_t>(ComponentType::Byte);
+constexpr Forms form(int type, bool normalized) {
+    const auto index = static_cast<std::uint32_t>(type - TINYGLTF_COMPONENT_TYPE_BYTE);
     return 1U << (2 * index + (normalized ? 1 : 0));
 }
-constexpr Forms kFloat = form(ComponentType::Float, false);
+constexpr Forms kFloat = form(TINYGLTF_COMPONENT_TYPE_FLOAT, false);
 constexpr Forms kUnsignedFractions =
-    form(ComponentType::UnsignedByte, true) | form(ComponentType::UnsignedShort, true);
-constexpr Forms kFractions = form(ComponentType::Byte, true) | form(ComponentType::Short, true);
-constexpr Forms kIntegers = form(ComponentType::Byte, false) | form(ComponentType::Short, false);
+    form(TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, true) | form(TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, true);
+constexpr Forms kFractions =
+    form(TINYGLTF_COMPONENT_TYPE_BYTE, true) | form(TINYGLTF_COMPONENT_TYPE_SHORT, true);
+constexpr Forms kIntegers =
+    form(TINYGLTF_COMPONENT_TYPE_BYTE, false) | form(TINYGLTF_COMPONENT_TYPE_SHORT, false);
 constexpr Forms kUnsigned =
-    form(ComponentType::UnsignedByte, false) | form(ComponentType::UnsignedShort, false);
+    form(TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, false) | form(TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, false);
 
 struct AttributeForms {
     std::string_view prefix;
@@ -217,16 +270,16 @@ const AttributeForms* formsOf(const UsedAccessor& used) {
 
 class AccessorRules {
 public:
-    explicit AccessorRules(Document& document) : document_(document) {
+    AccessorRules(Report& report, const Json& root) : report_(report), root_(root) {
         constexpr const char* kName = RequiredExtensions::kQuantization;
-        quantized_ =
-            requiresExtension(document, kName) || isIn(arrayMember(document.json(), "extensionsUsed"), kName);
+        quantized_ = isIn(arrayMember(root, "extensionsRequired"), kName) ||
+                     isIn(arrayMember(root, "extensionsUsed"), kName);
     }
 
     void check(const UsedAccessor& used) {
         checkForm(used);
         checkBounds(used);
-        if (document_.accessor(used.accessor).bufferView >= 0) {
+        if (find(accessor(used), "bufferView") != nullptr) {
             checkLayout(used);
         }
     }
@@ -235,7 +288,7 @@ public:
     void checkViews() {
         for (const auto& [view, uses] : views_) {
             const std::string pointer = fmt::format("/bufferViews/{}", view);
-            const bool isStrided = document_.stride(view) > 0;
+            const bool isStrided = strideOf(view) > 0;
             if (uses.kinds.size() > 1) {
                 warn("accessor-layout", pointer,
                      "holds several kinds of data: vertices, indices, keyframes or inverse bind matrices");
@@ -253,6 +306,16 @@ public:
     }
 
 private:
+    const Json& accessor(const UsedAccessor& used) const {
+        return root_["accessors"][static_cast<std::size_t>(used.accessor)];
+    }
+    const Json& view(std::size_t index) const {
+        return root_["bufferViews"][index];
+    }
+    std::size_t strideOf(std::size_t view) const {
+        return sizeMember(this->view(view), "byteStride");
+    }
+
     enum Kind : std::uint8_t { kVertices, kIndices, kInverseBinds, kOther };
     struct ViewUse {
         std::set<Kind> kinds;
@@ -261,13 +324,14 @@ private:
 
     void warn(std::string id, const std::string& pointer, std::string message) {
         if (given_.insert(id + message).second) {
-            document_.warn(std::move(id), pointer, std::move(message), kExport);
+            report_.warn(std::move(id), pointer, std::move(message), kExport);
         }
     }
 
     void checkForm(const UsedAccessor& used) {
-        const Accessor& accessor = document_.accessor(used.accessor);
-        const Forms own = form(accessor.componentType, accessor.normalized);
+        const int type = accessor(used)["componentType"].get<int>();
+        const bool normalized = boolMember(accessor(used), "normalized", false);
+        const Forms own = form(type, normalized);
         const AttributeForms* const row = formsOf(used);
         const bool isTime = used.use == AccessorUse::Times;
         if (isTime && (own & kFloat) == 0) {
@@ -276,11 +340,11 @@ private:
         if (row == nullptr || (own & row->core) != 0 || ((own & row->quantized) != 0 && quantized_)) {
             return;
         }
-        const std::string_view mark = accessor.componentType == ComponentType::Float && accessor.normalized
+        const std::string_view mark = type == TINYGLTF_COMPONENT_TYPE_FLOAT && normalized
                                           ? "normalised floats"
-                                      : accessor.normalized ? "normalised"
-                                                            : "plain";
-        const std::string what = fmt::format("{} has {} {}", used.name, mark, nameOf(accessor.componentType));
+                                      : normalized ? "normalised"
+                                                   : "plain";
+        const std::string what = fmt::format("{} has {} {}", used.name, mark, nameOf(type));
         warn(
             "accessor-form", used.pointer,
             (own & row->quantized) != 0
@@ -289,19 +353,18 @@ private:
     }
 
     void checkBounds(const UsedAccessor& used) {
-        const Json& json = document_.json()["accessors"][static_cast<std::size_t>(used.accessor)];
         const bool isNeeded = used.use == AccessorUse::Times ||
                               ((used.use == AccessorUse::Attribute || used.use == AccessorUse::Target) &&
                                used.name == "POSITION");
         for (const char* const name : {"min", "max"}) {
-            const Json* const bound = find(json, name);
+            const Json* const bound = find(accessor(used), name);
             const std::string pointer = fmt::format("/accessors/{}", used.accessor);
             if (bound == nullptr && isNeeded) {
                 warn("accessor-bounds", pointer,
                      "positions and times of keyframes must have min and max; Glint takes the bounds from "
                      "the data");
-            } else if (bound != nullptr && (!bound->is_array() ||
-                                            bound->size() != document_.accessor(used.accessor).components)) {
+            } else if (bound != nullptr &&
+                       (!bound->is_array() || bound->size() != componentsOf(accessor(used)))) {
                 warn("accessor-bounds", pointer,
                      "min and max must have a number for each component; Glint takes the bounds from the "
                      "data");
@@ -310,32 +373,34 @@ private:
     }
 
     void checkLayout(const UsedAccessor& used) {
-        const Accessor& accessor = document_.accessor(used.accessor);
-        const std::size_t size = sizeOf(accessor.componentType);
-        const std::size_t stride = document_.stride(accessor.bufferView);
+        const Json& json = accessor(used);
+        const std::size_t size = componentSizeOf(json["componentType"].get<int>());
+        const auto viewIndex = json["bufferView"].get<std::size_t>();
+        const std::size_t stride = strideOf(viewIndex);
         const bool isVertex = used.use == AccessorUse::Attribute || used.use == AccessorUse::Target;
-        ViewUse& view = views_[accessor.bufferView];
-        view.kinds.insert(isVertex                                ? kVertices
+        ViewUse& uses = views_[viewIndex];
+        uses.kinds.insert(isVertex                                ? kVertices
                           : used.use == AccessorUse::Indices      ? kIndices
                           : used.use == AccessorUse::InverseBinds ? kInverseBinds
                                                                   : kOther);
-        view.accessors.insert(used.accessor);
-        const Json& json = document_.json()["bufferViews"][static_cast<std::size_t>(accessor.bufferView)];
-        const std::uint64_t inBuffer = accessor.offset + sizeMember(json, "byteOffset");
-        if (accessor.offset % size != 0 || inBuffer % size != 0 || stride % size != 0) {
+        uses.accessors.insert(used.accessor);
+        const std::uint64_t offset = sizeMember(json, "byteOffset");
+        const std::uint64_t inBuffer = offset + sizeMember(view(viewIndex), "byteOffset");
+        if (offset % size != 0 || inBuffer % size != 0 || stride % size != 0) {
             warn("accessor-layout", fmt::format("/accessors/{}", used.accessor),
                  "its elements are not at multiples of the size of a component; they are read all the same");
         }
-        const std::size_t step = stride > 0 ? stride : accessor.components * size;
-        if (isVertex && (accessor.offset % 4 != 0 || (step % 4 != 0 && accessor.count > 1))) {
+        const std::size_t step = stride > 0 ? stride : componentsOf(json) * size;
+        if (isVertex && (offset % 4 != 0 || (step % 4 != 0 && sizeMember(json, "count") > 1))) {
             warn("accessor-layout", fmt::format("/accessors/{}", used.accessor),
                  "elements of vertices must be at multiples of 4 bytes; they are read all the same");
         }
     }
 
-    Document& document_;
+    Report& report_;
+    const Json& root_;
     bool quantized_ = false;
-    std::map<int, ViewUse> views_;
+    std::map<std::size_t, ViewUse> views_;
     std::set<std::string> given_;  // ids and messages
 };
 
@@ -349,7 +414,7 @@ std::optional<int> setOf(std::string_view digits) {
     return isWhole && set >= 0 && std::to_string(set) == digits ? std::optional(set) : std::nullopt;
 }
 
-void checkNames(Document& document, const Json& attributes, const std::string& pointer) {
+void checkNames(Report& report, const Json& attributes, const std::string& pointer) {
     constexpr std::array<std::string_view, 3> kSingle{"POSITION", "NORMAL", "TANGENT"};
     constexpr std::array<std::string_view, 4> kSets{"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
     for (const auto& [text, accessor] : attributes.items()) {
@@ -362,23 +427,35 @@ void checkNames(Document& document, const Json& attributes, const std::string& p
         const std::optional<int> set =
             prefix == kSets.end() ? std::nullopt : setOf(name.substr(prefix->size()));
         if (!set) {
-            document.warn("attribute-name", fmt::format("{}/{}", pointer, name),
-                          "is no name of an attribute and does not start with an underscore; it is not read",
-                          "give attributes of an application names such as _TEMPERATURE");
+            report.warn("attribute-name", fmt::format("{}/{}", pointer, name),
+                        "is no name of an attribute and does not start with an underscore; it is not read",
+                        "give attributes of an application names such as _TEMPERATURE");
         } else if (*set > 0 && find(attributes, fmt::format("{}{}", *prefix, *set - 1)) == nullptr) {
-            document.warn("attribute-name", fmt::format("{}/{}", pointer, name),
-                          fmt::format("there is no {}{}, and sets must count from 0", *prefix, *set - 1),
-                          kExport);
+            report.warn("attribute-name", fmt::format("{}/{}", pointer, name),
+                        fmt::format("there is no {}{}, and sets must count from 0", *prefix, *set - 1),
+                        kExport);
         }
     }
 }
 
-void checkPrimitives(Document& document) {
-    const Json& meshes = arrayMember(document.json(), "meshes");
+// tinygltf does not read other transforms beside a matrix.
+void checkTransforms(Report& report, const Json& root) {
+    const Json& nodes = arrayMember(root, "nodes");
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (nodes[i].contains("matrix") && (nodes[i].contains("translation") ||
+                                            nodes[i].contains("rotation") || nodes[i].contains("scale"))) {
+            report.warn("node-matrix", fmt::format("/nodes/{}", i),
+                        "has a matrix and another transform; the matrix is used", kExport);
+        }
+    }
+}
+
+void checkPrimitives(Report& report, const Json& root) {
+    const Json& meshes = arrayMember(root, "meshes");
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const Json& primitives = arrayMember(meshes[i], "primitives");
         for (std::size_t k = 0; k < primitives.size(); ++k) {
-            checkNames(document, primitives[k]["attributes"],
+            checkNames(report, primitives[k]["attributes"],
                        fmt::format("/meshes/{}/primitives/{}/attributes", i, k));
         }
     }
@@ -386,14 +463,60 @@ void checkPrimitives(Document& document) {
 
 }  // namespace
 
-void warnOfBrokenRules(Document& document) {
-    checkLists(document);
-    RequiredExtensions(document).check();
-    checkPrimitives(document);
-    AccessorRules rules(document);
-    visitAccessors(document.json(), *document.options().materialModel,
+bool isSupportedExtension(const materials::MaterialModel& model, std::string_view name) {
+    const int object = model.findObject(name);
+    return (object >= 0 && model.objects[static_cast<std::size_t>(object)].isExtension) ||
+           std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+}
+
+bool changesNoPicture(std::string_view name) {
+    return std::find(kNoPicture.begin(), kNoPicture.end(), name) != kNoPicture.end();
+}
+
+Status checkExtensions(Report& report, const Json& root) {
+    for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
+        const Json* names = find(root, list);
+        if (names != nullptr &&
+            (!names->is_array() ||
+             !std::all_of(names->begin(), names->end(), [](auto& name) { return name.is_string(); }))) {
+            return report.error("json-type", fmt::format("/{}", list), "must be an array of strings",
+                                "export the scene again");
+        }
+    }
+    const Json& required = arrayMember(root, "extensionsRequired");
+    for (std::size_t i = 0; i < required.size(); ++i) {
+        const std::string& name = required[i].get_ref<const std::string&>();
+        if (!isSupportedExtension(*report.options().materialModel, name) && !changesNoPicture(name)) {
+            return unsupportedExtension(report, name, fmt::format("/extensionsRequired/{}", i));
+        }
+    }
+    std::set<std::string> warned;
+    const Json& used = arrayMember(root, "extensionsUsed");
+    for (std::size_t i = 0; i < used.size(); ++i) {
+        const std::string& name = used[i].get_ref<const std::string&>();
+        if (!isSupportedExtension(*report.options().materialModel, name) && !changesNoPicture(name) &&
+            warned.insert(name).second) {
+            report.warn("extension-ignored", fmt::format("/extensionsUsed/{}", i),
+                        fmt::format("the extension {} is not supported; what it adds is left out", name));
+        }
+    }
+    if (const std::set<std::string> unread = unreadOf(root); !unread.empty()) {
+        report.note("extension-no-picture", "/extensionsUsed",
+                    fmt::format("{} change{} no picture and {} not read", fmt::join(unread, ", "),
+                                unread.size() == 1 ? "s" : "", unread.size() == 1 ? "is" : "are"));
+    }
+    return okStatus();
+}
+
+void warnOfBrokenRules(Report& report, const Json& root) {
+    checkLists(report, root);
+    RequiredExtensions(report, root).check();
+    checkPrimitives(report, root);
+    AccessorRules rules(report, root);
+    visitAccessors(root, *report.options().materialModel,
                    [&](const UsedAccessor& used) { rules.check(used); });
     rules.checkViews();
+    checkTransforms(report, root);
 }
 
 }  // namespace glint::gltf

@@ -1,4 +1,8 @@
 // Reads the outer layer of a glTF file: splits GLB chunks and parses JSON text.
+//
+// tinygltf's own functions are not used. They refuse a GLB whose binary chunk is empty or no multiple of 4
+// bytes long, which exporters write, and copy that chunk. Its parser refuses a document for a number such as
+// 1e400 in the extras, and its messages name no place.
 #pragma once
 
 #include "base/files.h"

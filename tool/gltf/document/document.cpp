@@ -1,29 +1,19 @@
 #include "gltf/document/document.h"
 
-#include "gltf/codecs/compression.h"
 #include "gltf/codecs/meshopt.h"
 #include "gltf/document/conformance.h"
 #include "gltf/document/container.h"
-#include "gltf/document/extensions.h"
-#include "gltf/document/uri.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace glint::gltf {
 
 namespace {
-
-// A hostile file can name one small image many times, and an image of one colour takes a few bytes whatever
-// its size. A scene's images may therefore decode to kFreeImageBytes plus kMaxImageRatio times the bytes of
-// its files, but to kMaxImageBytes at most. Photographs stay below 100 : 1, and drawings seldom reach 1000 :
-// 1.
-constexpr std::uint64_t kFreeImageBytes = 1ULL << 28;
-constexpr std::uint64_t kMaxImageRatio = 1024;
-constexpr std::uint64_t kMaxImageBytes = 1ULL << 33;
 
 // Chooses a hint by the kind of failure. The pointer and the message already say where and what.
 std::string hintFor(const std::string& id) {
@@ -33,102 +23,97 @@ std::string hintFor(const std::string& id) {
     return "correct the value, or export the file again; the Khronos glTF validator explains the rules";
 }
 
-}  // namespace
-
-Document::Document(const std::filesystem::path& path, const ImportOptions& options)
-    : name_(path.string()),
-      options_(options),
-      source_(path, options.maxFileBytes, options.strictPaths ? OuterLinks::Refuse : OuterLinks::Follow),
-      verticesLeft_(options.maxVertices),
-      unpackedBytesLeft_(options.maxFileBytes) {}
-
-Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
-                                                 const ImportOptions& options) {
-    std::unique_ptr<Document> document(new Document(path, options));
-    GLINT_TRY_DO(document->parse());
-    return document;
-}
-
-Status Document::parse() {
-    GLINT_TRY(file_, source_.readScene());
-    GLINT_TRY(const auto container, splitContainer(file_, name_, warnings_));
-    binary_ = container.binary;
-    GLINT_TRY(json_, parseJson(container.json, name_, warnings_));
-    GLINT_TRY_DO(checkVersion());
-    GLINT_TRY_DO(checkExtensions(*this));
-    auto failure = checkDocument(json_, *options_.materialModel);
-    if (!failure) {
-        failure = checkCompression(json_);
-    }
-    if (failure) {
-        return error(failure->id, failure->pointer, failure->message, hintFor(failure->id));
-    }
-    readElements();
-    warnOfBrokenRules(*this);
-    return okStatus();
-}
-
-void Document::readElements() {
-    buffers_.resize(arraySize(json_, "/buffers"));
-    for (const Json& view : arrayMember(json_, "bufferViews")) {
-        views_.push_back(readBufferView(view));
-    }
-    unpackedViews_.resize(views_.size());
-    const std::vector<bool> used = usedAccessors(json_, *options_.materialModel);
-    accessors_.resize(used.size());
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        if (used[i]) {
-            accessors_[i] = readAccessor(json_["accessors"][i]);
-        }
-    }
-}
-
-Status Document::checkVersion() {
-    const Json* asset = find(json_, "asset");
+Status checkVersion(Report& report, const Json& root) {
+    const Json* asset = find(root, "asset");
     const Json* version = asset == nullptr ? nullptr : find(*asset, "version");
     if (version == nullptr || !version->is_string()) {
-        return error("asset-version", "/asset", "has no \"version\"", "check that this is a glTF 2.0 file");
+        return report.error("asset-version", "/asset", "has no \"version\"",
+                            "check that this is a glTF 2.0 file");
     }
     const Json* minVersion = find(*asset, "minVersion");
     const bool hasMin = minVersion != nullptr && minVersion->is_string();
     const auto target = version->get<std::string>();
     if (hasMin && *minVersion != "2.0") {
-        return error("asset-version", "/asset/minVersion",
-                     fmt::format("needs glTF {}; Glint reads 2.0", minVersion->get<std::string>()),
-                     "convert the file to glTF 2.0");
+        return report.error("asset-version", "/asset/minVersion",
+                            fmt::format("needs glTF {}; Glint reads 2.0", minVersion->get<std::string>()),
+                            "convert the file to glTF 2.0");
     }
     if (!target.starts_with("2.")) {
-        return error("asset-version", "/asset/version", fmt::format("needs glTF {}; Glint reads 2.0", target),
-                     "convert the file to glTF 2.0");
+        return report.error("asset-version", "/asset/version",
+                            fmt::format("needs glTF {}; Glint reads 2.0", target),
+                            "convert the file to glTF 2.0");
     }
     const bool isNumber = target.size() > 2 && std::ranges::all_of(target.substr(2), [](unsigned char c) {
                               return std::isdigit(c) != 0;
                           });
     if (!isNumber) {
-        warn("asset-version", "/asset/version",
-             fmt::format("\"{}\" is no version; it is read as 2.0", target), "write 2.0");
+        report.warn("asset-version", "/asset/version",
+                    fmt::format("\"{}\" is no version; it is read as 2.0", target), "write 2.0");
     }
     return okStatus();
 }
 
-Result<ByteView> Document::bufferView(int index) {
-    const BufferView& view = views_[static_cast<std::size_t>(index)];
-    const std::string pointer = fmt::format("/bufferViews/{}", index);
-    if (const Json* extension = findMeshopt(json_["bufferViews"][static_cast<std::size_t>(index)])) {
-        return unpackedView(index, *extension, pointer);
-    }
-    return bufferRange(view.buffer, view.offset, view.length, pointer);
+}  // namespace
+
+Document::Document(const std::filesystem::path& path, const ImportOptions& options)
+    : Report(path.string(), options),
+      source_(path, options.maxFileBytes, options.strictPaths ? OuterLinks::Refuse : OuterLinks::Follow) {}
+
+Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
+                                                 const ImportOptions& options) {
+    std::unique_ptr<Document> document(new Document(path, options));
+    GLINT_TRY_DO(document->parse(path.string()));
+    return document;
 }
 
-Result<ByteView> Document::unpackedView(int index, const Json& extension, const std::string& pointer) {
-    std::optional<base::Bytes>& unpacked = unpackedViews_[static_cast<std::size_t>(index)];
+Status Document::parse(const std::string& name) {
+    GLINT_TRY(file_, source_.readScene());
+    GLINT_TRY(const auto container, splitContainer(file_, name, warnings()));
+    binary_ = container.binary;
+    GLINT_TRY(json_, parseJson(container.json, name, warnings()));
+    GLINT_TRY_DO(checkVersion(*this, json_));
+    GLINT_TRY_DO(checkExtensions(*this, json_));
+    if (const auto failure = checkDocument(json_, *options().materialModel)) {
+        return error(failure->id, failure->pointer, failure->message, hintFor(failure->id));
+    }
+    warnOfBrokenRules(*this, json_);
+    const std::vector<bool> used = usedAccessors(json_, *options().materialModel);
+    if (std::string problem = readModel(json_, used, model_); !problem.empty()) {
+        return error("gltf", "", std::move(problem),
+                     "export the scene again; the Khronos glTF validator explains the rules");
+    }
+    if (!binary_) {
+        file_ = {};  // it was text, and nobody reads it any more
+    }
+    buffers_.resize(arrayMember(json_, "buffers").size());
+    unpackedViews_.resize(model_.bufferViews.size());
+    return okStatus();
+}
+
+bool Document::requiresExtension(std::string_view extension) const {
+    return std::ranges::find(model_.extensionsRequired, extension) != model_.extensionsRequired.end();
+}
+
+Result<ByteView> Document::bufferView(int index) {
+    const tinygltf::BufferView& view = model_.bufferViews[static_cast<std::size_t>(index)];
+    const std::string pointer = fmt::format("/bufferViews/{}", index);
+    for (const char* const name : kMeshoptExtensions) {
+        if (const Value* const extension = extensionOf(view.extensions, name)) {
+            return unpackedView(index, *extension, pointer);
+        }
+    }
+    return bufferRange(view.buffer, view.byteOffset, view.byteLength, pointer);
+}
+
+Result<ByteView> Document::unpackedView(int index, const Value& extension, const std::string& pointer) {
+    const auto slot = static_cast<std::size_t>(index);
+    std::optional<base::Bytes>& unpacked = unpackedViews_[slot];
     if (!unpacked) {
-        const Json* offset = find(extension, "byteOffset");
-        GLINT_TRY(const auto packed, bufferRange(extension["buffer"].get<int>(),
-                                                 offset == nullptr ? 0 : offset->get<std::uint64_t>(),
-                                                 extension["byteLength"].get<std::uint64_t>(), pointer));
-        GLINT_TRY(unpacked, unpackMeshopt(*this, extension, pointer, packed,
-                                          views_[static_cast<std::size_t>(index)].length));
+        GLINT_TRY(const auto packed,
+                  bufferRange(indexMember(extension, "buffer"), sizeMember(extension, "byteOffset"),
+                              sizeMember(extension, "byteLength"), pointer));
+        GLINT_TRY(unpacked,
+                  unpackMeshopt(*this, extension, pointer, packed, model_.bufferViews[slot].byteLength));
     }
     return ByteView(*unpacked);
 }
@@ -168,90 +153,40 @@ Result<ByteView> Document::buffer(int index) {
 }
 
 Result<base::Bytes> Document::loadBuffer(const Json& buffer, const std::string& pointer) {
-    const Json* uri = find(buffer, "uri");
-    if (uri == nullptr) {
-        if (findMeshopt(buffer) != nullptr) {
+    if (const Json* const uri = find(buffer, "uri")) {
+        return readUri(uri->get_ref<const std::string&>(), pointer);
+    }
+    for (const char* const name : kMeshoptExtensions) {
+        if (findExtension(buffer, name) != nullptr) {
             return error(
                 "buffer-data", pointer,
                 "is a fallback that holds no data, but a buffer view without compressed data is read "
                 "from it",
                 "export the scene again");
         }
-        return error("buffer-external", pointer,
-                     "has neither a \"uri\" nor the binary chunk of a GLB: its data is not in the file",
-                     "export the scene with its data");
     }
-    const std::string& text = uri->get_ref<const std::string&>();
-    if (!isDataUri(text)) {
-        return readFile(text, pointer);
+    return error("buffer-external", pointer,
+                 "has neither a \"uri\" nor the binary chunk of a GLB: its data is not in the file",
+                 "export the scene with its data");
+}
+
+Result<base::Bytes> Document::readUri(const std::string& uri, const std::string& pointer) {
+    if (!isDataUri(uri)) {
+        return source_.readRelative(uri, where(pointer + "/uri"));
     }
-    std::optional<DataUri> data = decodeDataUri(text);
+    std::optional<DataUri> data = decodeDataUri(uri);
     if (!data) {
         return error("data-uri", pointer + "/uri", "is no valid data URI", "export the scene again");
     }
     return std::move(data->bytes);
 }
 
-Result<base::Bytes> Document::readFile(std::string_view uri, const std::string& pointer) {
-    return source_.readRelative(uri, where(pointer + "/uri"));
-}
-
-Status Document::chargeVertices(std::uint64_t count, std::string_view pointer) {
-    if (count > verticesLeft_) {
-        return error(
-            "vertex-limit", pointer,
-            fmt::format("with its {} elements the scene passes the limit of {}", count, options_.maxVertices),
-            "split the scene, or raise ImportOptions::maxVertices");
-    }
-    verticesLeft_ -= count;
-    return okStatus();
-}
-
-bool Document::chargeUnpackedBytes(std::uint64_t bytes) {
-    if (bytes > unpackedBytesLeft_) {
-        return false;
-    }
-    unpackedBytesLeft_ -= bytes;
-    return true;
-}
-
-bool Document::chargeZeroElements(std::uint64_t count) {
-    if (count > zeroElementsLeft_) {
-        return false;
-    }
-    zeroElementsLeft_ -= count;
-    return true;
-}
-
-bool Document::chargeImageBytes(std::uint64_t bytes) {
-    // This can't overflow, because the contents of the files are below 2^54 bytes, as memory is.
-    std::uint64_t limit = kFreeImageBytes;
+bool Document::chargeImage(std::uint64_t bytes) {
+    std::uint64_t fileBytes = 0;
     for (const SourceFile& file : files()) {
-        limit += kMaxImageRatio * file.bytes;
+        fileBytes += file.bytes;
     }
-    limit = std::min(limit, kMaxImageBytes);
-    if (imageBytes_ > limit || bytes > limit - imageBytes_) {
-        return false;
-    }
-    imageBytes_ += bytes;
-    return true;
-}
-
-std::string Document::where(std::string_view pointer) const {
-    return pointer.empty() ? name_ : fmt::format("{}#{}", name_, pointer);
-}
-
-Diagnostic Document::error(std::string id, std::string_view pointer, std::string message,
-                           std::string hint) const {
-    return makeError(std::move(id), where(pointer), std::move(message), std::move(hint));
-}
-
-void Document::warn(std::string id, std::string_view pointer, std::string message, std::string hint) {
-    warnings_.push_back(makeWarning(std::move(id), where(pointer), std::move(message), std::move(hint)));
-}
-
-void Document::note(std::string id, std::string_view pointer, std::string message, std::string hint) {
-    warnings_.push_back({Severity::Note, std::move(id), where(pointer), std::move(message), std::move(hint)});
+    return chargeImageBytes(bytes, fileBytes);
 }
 
 }  // namespace glint::gltf

@@ -24,6 +24,7 @@ std::string_view describe(Kind kind) {
             return "a string";
         case Kind::Indices:
             return "an array of integers";
+        case Kind::Integers:
         case Kind::Object:
             return "an object";
         case Kind::Objects:
@@ -51,7 +52,7 @@ std::optional<SchemaError> checkRange(const Json& value, const Rule& rule, const
     return std::nullopt;
 }
 
-// Turns 3.0 into 3. JSON has one type of number, but the parsers behind this check distinguish two.
+// Turns 3.0 into 3. JSON has one type of number, but tinygltf distinguishes three.
 bool makeInteger(Json& value) {
     // Above this value, a double need not represent every integer.
     constexpr double kExact = 9007199254740992.0;
@@ -60,6 +61,9 @@ bool makeInteger(Json& value) {
         if (std::trunc(number) == number && std::abs(number) <= kExact) {
             value = static_cast<std::int64_t>(number);
         }
+    }
+    if (value.is_number_integer() && !value.is_number_unsigned() && value.get<std::int64_t>() >= 0) {
+        value = value.get<std::uint64_t>();
     }
     return value.is_number_integer();
 }
@@ -93,6 +97,22 @@ std::optional<SchemaError> checkNumbers(Json& value, const Rule& rule, const std
             return typeError(value[i], element, describe(Kind::Number));
         }
         if (auto error = checkRange(value[i], rule, element)) {
+            return error;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<SchemaError> checkIntegers(Json& value, const Rule& rule, const std::string& pointer) {
+    if (!value.is_object()) {
+        return typeError(value, pointer, describe(rule.kind));
+    }
+    for (auto member = value.begin(); member != value.end(); ++member) {
+        const std::string place = fmt::format("{}/{}", pointer, member.key());
+        if (!makeInteger(*member)) {
+            return typeError(*member, place, describe(Kind::Integer));
+        }
+        if (auto error = checkRange(*member, rule, place)) {
             return error;
         }
     }
@@ -136,6 +156,8 @@ std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule&
             return checkElements(value, rule.kind, pointer, [&](Json& element, const std::string& where) {
                 return checkIndex(root, element, rule, where);
             });
+        case Kind::Integers:
+            return checkIntegers(value, rule, pointer);
         case Kind::Object:
             return checkObject(root, value, rule.rules, pointer);
         case Kind::Objects:
@@ -203,24 +225,12 @@ T memberOr(const Json& object, std::string_view name, T fallback) {
 
 }  // namespace
 
-int indexMember(const Json& object, std::string_view name) {
-    return memberOr(object, name, -1);
-}
-
 std::uint64_t sizeMember(const Json& object, std::string_view name) {
     return memberOr<std::uint64_t>(object, name, 0);
 }
 
 std::string textMember(const Json& object, std::string_view name) {
     return memberOr<std::string>(object, name, {});
-}
-
-std::vector<double> numbersMember(const Json& object, std::string_view name) {
-    return memberOr<std::vector<double>>(object, name, {});
-}
-
-int integerMember(const Json& object, std::string_view name, int fallback) {
-    return memberOr(object, name, fallback);
 }
 
 bool boolMember(const Json& object, std::string_view name, bool fallback) {

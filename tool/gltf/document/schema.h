@@ -23,8 +23,9 @@ enum class Kind : std::uint8_t {
     Numbers,  // array of Rule::length numbers, or of any number of them if the length is 0
     Bool,
     Text,
-    Index,    // integer that indexes the array at Rule::target
-    Indices,  // array of such integers
+    Index,     // integer that indexes the array at Rule::target
+    Indices,   // array of such integers
+    Integers,  // object whose members are integers of any names
     Object,
     Objects,  // array of objects
 };
@@ -34,7 +35,8 @@ struct Rule {
     std::string_view name;
     Kind kind = Kind::Number;
     bool required = false;
-    // Range of Integer, Number and Numbers. A number that does not fit into a float would become an infinity.
+    // Range of Integer, Integers, Number and Numbers. A number that does not fit into a float would become an
+    // infinity.
     double min = -static_cast<double>(std::numeric_limits<float>::max());
     double max = static_cast<double>(std::numeric_limits<float>::max());
     std::size_t length = 0;
@@ -48,8 +50,53 @@ struct SchemaError {
     std::string message;
 };
 
+// Short forms for the tables of rules.
+namespace rules {
+
+// A larger value does not fit into an int.
+inline constexpr double kMaxInt = 2147483647.0;
+// Above this value, doubles no longer represent every integer.
+inline constexpr double kMaxSize = 9007199254740991.0;
+
+constexpr Rule text(std::string_view name, bool required = false) {
+    return {.name = name, .kind = Kind::Text, .required = required};
+}
+constexpr Rule boolean(std::string_view name) {
+    return {.name = name, .kind = Kind::Bool};
+}
+constexpr Rule number(std::string_view name, bool required = false) {
+    return {.name = name, .kind = Kind::Number, .required = required};
+}
+constexpr Rule numbers(std::string_view name, std::size_t length) {
+    return {.name = name, .kind = Kind::Numbers, .length = length};
+}
+constexpr Rule integer(std::string_view name, double min, double max, bool required = false) {
+    return {.name = name, .kind = Kind::Integer, .required = required, .min = min, .max = max};
+}
+constexpr Rule integers(std::string_view name, double min, double max, bool required = false) {
+    return {.name = name, .kind = Kind::Integers, .required = required, .min = min, .max = max};
+}
+constexpr Rule size(std::string_view name, double min = 0.0, bool required = false) {
+    return integer(name, min, kMaxSize, required);
+}
+constexpr Rule index(std::string_view name, std::string_view target, bool required = false) {
+    return {.name = name, .kind = Kind::Index, .required = required, .target = target};
+}
+constexpr Rule indices(std::string_view name, std::string_view target, bool required = false) {
+    return {.name = name, .kind = Kind::Indices, .required = required, .target = target};
+}
+constexpr Rule object(std::string_view name, std::span<const Rule> rules, bool required = false) {
+    return {.name = name, .kind = Kind::Object, .required = required, .rules = rules};
+}
+constexpr Rule objects(std::string_view name, std::span<const Rule> rules, bool required = false) {
+    return {.name = name, .kind = Kind::Objects, .required = required, .rules = rules};
+}
+
+}  // namespace rules
+
 // Checks `object` and everything that its rules reach. A number such as 3.0 becomes an integer if the rule
-// asks for one. Rule::target is looked up in `root`, which may contain `object`.
+// asks for one, and an integer that is not negative an unsigned one, because tinygltf tells them apart.
+// Rule::target is looked up in `root`, which may contain `object`.
 std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
                                        const std::string& pointer);
 
@@ -63,13 +110,10 @@ const Json* find(const Json& object, std::string_view name);
 const Json* findExtension(const Json& object, std::string_view name);
 // Returns the array of that name, or an empty one if there is none.
 const Json& arrayMember(const Json& object, std::string_view name);
-// Return the member of a checked object, or what counts where it is absent: -1 for an index, 0 for a size, an
-// empty text, no numbers, the fallback.
-int indexMember(const Json& object, std::string_view name);
+// Return the member of a checked object, or what counts where it is absent: 0 for a size, an empty text, the
+// fallback.
 std::uint64_t sizeMember(const Json& object, std::string_view name);
 std::string textMember(const Json& object, std::string_view name);
-std::vector<double> numbersMember(const Json& object, std::string_view name);
-int integerMember(const Json& object, std::string_view name, int fallback);
 bool boolMember(const Json& object, std::string_view name, bool fallback);
 // Returns how many elements the array at that JSON pointer has, or 0 if there is no array.
 std::size_t arraySize(const Json& root, std::string_view pointer);

@@ -1,11 +1,11 @@
 #include "gltf/document/validate.h"
 
-#include "gltf/document/material_rules.h"
-#include "gltf/document/rules.h"
-
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,10 +15,30 @@ namespace {
 
 using namespace rules;
 
+// Makes a rule of each name for an object with those members.
+template <std::size_t N>
+constexpr std::array<Rule, N> objectsOf(const char* const (&names)[N], std::span<const Rule> members) {
+    std::array<Rule, N> rules{};
+    for (std::size_t i = 0; i < N; ++i) {
+        rules[i] = object(names[i], members);
+    }
+    return rules;
+}
+
 // These are the rules of buffers, views and accessors.
 constexpr std::array kBuffer{text("uri"), size("byteLength", 0.0, true)};
+// The largest vertex that the extension allows has 256 bytes.
+constexpr std::array kMeshopt{index("buffer", "/buffers", true),
+                              size("byteOffset"),
+                              size("byteLength", 0.0, true),
+                              integer("byteStride", 1.0, 256.0, true),
+                              size("count", 0.0, true),
+                              text("mode", true),
+                              text("filter")};
+constexpr std::array kBufferViewExtensions = objectsOf(kMeshoptExtensions, kMeshopt);
 constexpr std::array kBufferView{index("buffer", "/buffers", true), size("byteOffset"),
-                                 size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0)};
+                                 size("byteLength", 0.0, true), integer("byteStride", 0.0, 252.0),
+                                 object("extensions", kBufferViewExtensions)};
 constexpr std::array kSparseIndices{index("bufferView", "/bufferViews", true),
                                     integer("byteOffset", 0.0, kMaxInt),
                                     integer("componentType", 0.0, kMaxInt, true)};
@@ -48,7 +68,11 @@ constexpr std::array kTargetRules = accessorIndices(kTargetAttributes);
 constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materials_variants/variants", true),
                                      index("material", "/materials", true)};
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
-constexpr std::array kPrimitiveExtensions{object("KHR_materials_variants", kVariantMappings)};
+constexpr double kMaxAttributeId = 4294967295.0;
+constexpr std::array kDraco{index("bufferView", "/bufferViews", true),
+                            integers("attributes", 0.0, kMaxAttributeId, true)};
+constexpr std::array kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDraco),
+                                          object("KHR_materials_variants", kVariantMappings)};
 // The rules of the attributes come before these, because packs add to them.
 constexpr std::array kPrimitive{index("indices", "/accessors"), index("material", "/materials"),
                                 integer("mode", 0.0, kMaxInt), objects("targets", kTargetRules),
@@ -71,8 +95,10 @@ constexpr std::array kSkin{text("name"), index("inverseBindMatrices", "/accessor
                            index("skeleton", "/nodes"), indices("joints", "/nodes", true)};
 
 // These are the rules of textures.
+constexpr std::array kTextureSource{index("source", "/images", true)};
+constexpr std::array kTextureExtensions = objectsOf(kImageExtensions, kTextureSource);
 constexpr std::array kTexture{text("name"), index("source", "/images"), index("sampler", "/samplers"),
-                              object("extensions", {})};
+                              object("extensions", kTextureExtensions)};
 constexpr std::array kSampler{integer("magFilter", 0.0, kMaxInt), integer("minFilter", 0.0, kMaxInt),
                               integer("wrapS", 0.0, kMaxInt), integer("wrapT", 0.0, kMaxInt)};
 constexpr std::array kImage{text("name"), text("uri"), text("mimeType"), index("bufferView", "/bufferViews")};
@@ -110,6 +136,86 @@ constexpr std::array kVariant{text("name", true)};
 constexpr std::array kVariants{objects("variants", kVariant, true)};
 constexpr std::array kRootExtensions{object("KHR_lights_punctual", kLights),
                                      object("KHR_materials_variants", kVariants)};
+
+// ---- Rules of materials ----
+
+constexpr std::array kTransformRules{numbers("offset", 2), number("rotation"), numbers("scale", 2),
+                                     integer("texCoord", 0.0, kMaxInt)};
+constexpr std::array kTextureInfoExtensions{object("KHR_texture_transform", kTransformRules)};
+
+Rule parameterRule(const materials::Parameter& parameter, std::string_view name) {
+    Rule rule =
+        parameter.channels == 1 ? number(name) : numbers(name, static_cast<std::size_t>(parameter.channels));
+    if (std::isinf(parameter.high)) {
+        // Exporters write the largest number they know for an infinite one. A float need not be able to hold
+        // it.
+        rule.min = std::numeric_limits<double>::lowest();
+        rule.max = std::numeric_limits<double>::max();
+    }
+    return rule;
+}
+
+// Rules for the JSON of a material, as the declarations give them. They check only types, because values out
+// of range are clamped while reading. The model must outlive the rules.
+class MaterialRules {
+public:
+    explicit MaterialRules(const materials::MaterialModel& model);
+    MaterialRules(const MaterialRules&) = delete;
+    MaterialRules& operator=(const MaterialRules&) = delete;
+
+    std::span<const Rule> rules() const {
+        return material_;
+    }
+
+private:
+    std::vector<Rule> rulesOf(const materials::MaterialModel& model, int object);
+
+    std::deque<std::vector<Rule>> nested_;  // Rule::rules point into it.
+    std::vector<Rule> material_;
+};
+
+MaterialRules::MaterialRules(const materials::MaterialModel& model) {
+    std::vector<Rule> extensions;
+    material_ = rulesOf(model, 0);
+    for (std::size_t i = 1; i < model.objects.size(); ++i) {
+        const materials::MaterialObject& object = model.objects[i];
+        nested_.push_back(rulesOf(model, static_cast<int>(i)));
+        (object.isExtension ? extensions : material_).push_back(rules::object(object.name, nested_.back()));
+    }
+    nested_.push_back(std::move(extensions));
+    for (const Rule& rule :
+         {text("name"), text("alphaMode"), boolean("doubleSided"), object("extensions", nested_.back())}) {
+        material_.push_back(rule);
+    }
+}
+
+std::vector<Rule> MaterialRules::rulesOf(const materials::MaterialModel& model, int object) {
+    std::vector<Rule> found;
+    for (const materials::Parameter& parameter : model.parameters) {
+        if (parameter.object == object && parameter.place.find('/') == std::string::npos) {
+            found.push_back(parameterRule(parameter, parameter.place));
+        }
+    }
+    for (const materials::MaterialTexture& texture : model.textures) {
+        for (const materials::MaterialTexture::Place& place : texture.places) {
+            if (place.object != object) {
+                continue;
+            }
+            std::vector<Rule>& info = nested_.emplace_back();
+            info = {index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
+                    rules::object("extensions", kTextureInfoExtensions)};
+            for (const materials::Parameter& parameter : model.parameters) {
+                // A parameter beside a texture: "normalTexture/scale".
+                const std::string_view where = parameter.place;
+                if (parameter.object == object && where.starts_with(place.member + "/")) {
+                    info.push_back(parameterRule(parameter, where.substr(place.member.size() + 1)));
+                }
+            }
+            found.push_back(rules::object(place.member, info));
+        }
+    }
+    return found;
+}
 
 // The rules of a whole document whose materials are made as `model` says.
 class RootRules {

@@ -13,6 +13,11 @@
 
 namespace glint::gltf {
 
+// The names of these extensions of buffer views and buffers, and of textures. The first that is given counts.
+inline constexpr const char* kMeshoptExtensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+inline constexpr const char* kImageExtensions[] = {"EXT_texture_webp", "KHR_texture_basisu",
+                                                   "MSFT_texture_dds"};
+
 // Checks types, ranges and references of everything that the importer reads. It checks only the accessors
 // that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare.
 std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model);

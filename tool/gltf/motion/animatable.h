@@ -1,5 +1,6 @@
-// Defines which properties of materials, lights and cameras animations can change (KHR_animation_pointer).
-// Tables list them by the names that the glTF 2.0 Asset Object Model gives them.
+// Defines which properties of materials, lights and cameras animations can change (KHR_animation_pointer),
+// and finds the values that they can have. Tables list them by the names that the glTF 2.0 Asset Object Model
+// gives them.
 #pragma once
 
 #include "gltf/scene.h"
@@ -73,5 +74,9 @@ double materialPropertyValue(const materials::Material& material, int property, 
 // `range` bounds all values that the number takes. Planning reads the range in place of the value. Returns
 // false if the number is always the same.
 bool setPropertyRange(materials::Material& material, int property, std::size_t number, ValueRange range);
+
+// Fills AnimatedMaterial::planned and changes, Node::canShow, Light::canShine, and the visibility
+// of nodes and lights at rest. The animations must have been imported.
+void settleAnimatedValues(Scene& scene);
 
 }  // namespace glint::gltf

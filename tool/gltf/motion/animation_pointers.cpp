@@ -98,6 +98,7 @@ class PointerResolver {
 public:
     PointerResolver(const Document& document, const Scene& scene, const NodeNumbers& numbers, Tokens tokens)
         : json_(document.json()),
+          file_(document.model()),
           model_(*document.options().materialModel),
           scene_(scene),
           numbers_(numbers),
@@ -133,15 +134,29 @@ private:
         if (!index) {
             return wrong(fmt::format("has \"{}\" where a number should be", tokens_[place]));
         }
-        const Json* const array = follow(json_, tokens_.first(place));
-        if (array == nullptr || !array->is_array() || *index >= array->size()) {
+        if (*index >= count(place)) {
             return wrong("leads to an element that the file does not have");
         }
         return (this->*member)(*index, tokens_.subspan(place + 1));
     }
 
-    // Returns whether the file has the object that holds the property. A property with a default value is
-    // then defined.
+    // Returns how many elements the array has that the tokens before `place` name.
+    std::size_t count(std::size_t place) const {
+        if (tokens_[0] == "nodes") {
+            return file_.nodes.size();
+        }
+        if (tokens_[0] == "meshes") {
+            return file_.meshes.size();
+        }
+        if (tokens_[0] == "cameras") {
+            return file_.cameras.size();
+        }
+        const Json* const array = follow(json_, tokens_.first(place));
+        return array == nullptr || !array->is_array() ? 0 : array->size();
+    }
+
+    // Returns whether the material or light has the object that holds the property. A property with a default
+    // value is then defined.
     bool hasOwner() const {
         const Json* const owner = follow(json_, tokens_.first(tokens_.size() - 1));
         return owner != nullptr && owner->is_object();
@@ -181,7 +196,9 @@ private:
         }
         const std::string name = nameOf(rest);
         if (name == "extensions/KHR_node_visibility/visible") {
-            return hasOwner() ? known(AnimationPath::Visible, 1, targets, 0, ValueKind::Bool) : undefined();
+            return file_.nodes[index].extensions.contains("KHR_node_visibility")
+                       ? known(AnimationPath::Visible, 1, targets, 0, ValueKind::Bool)
+                       : undefined();
         }
         if (name == "matrix" || name == "globalMatrix") {
             return wrong("is a matrix, which can only be read");
@@ -190,7 +207,7 @@ private:
         if (!isTransform) {
             return unknown();
         }
-        if (json_["nodes"][index].contains("matrix")) {
+        if (!file_.nodes[index].matrix.empty()) {
             return wrong("animates a node whose transform is a matrix, which glTF forbids");
         }
         return name == "rotation"
@@ -206,8 +223,8 @@ private:
         std::vector<int> nodes;
         for (std::size_t i = 0; i < scene_.nodes.size(); ++i) {
             const Node& node = scene_.nodes[i];
-            const Json& json = json_["nodes"][static_cast<std::size_t>(node.source)];
-            if (node.mesh == static_cast<int>(index) && !json.contains("weights")) {
+            if (node.mesh == static_cast<int>(index) &&
+                file_.nodes[static_cast<std::size_t>(node.source)].weights.empty()) {
                 nodes.push_back(static_cast<int>(i));
             }
         }
@@ -245,9 +262,9 @@ private:
         if (!property) {
             return unknown();  // this includes aspectRatio, which the picture's size decides
         }
-        const bool isOfType = json_["cameras"][index]["type"] == rest[0];
+        const tinygltf::Camera& file = file_.cameras[index];
         // Every property of a camera is required, except zfar, which has no default.
-        return isOfType && isDefined()
+        return file.type == rest[0] && (rest[1] != "zfar" || farPlane(file))
                    ? known(AnimationPath::Camera, 1, placesOf(scene_.cameras, index), *property)
                    : undefined();
     }
@@ -265,6 +282,7 @@ private:
     }
 
     const Json& json_;
+    const tinygltf::Model& file_;
     const materials::MaterialModel& model_;
     const Scene& scene_;
     const NodeNumbers& numbers_;

@@ -3,7 +3,7 @@
 
 #include "gltf/animation.h"
 #include "gltf/document/document.h"
-#include "gltf/motion/node_numbers.h"
+#include "gltf/motion/nodes.h"
 #include "gltf/scene.h"
 
 #include <cstdint>

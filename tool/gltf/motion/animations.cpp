@@ -2,9 +2,8 @@
 
 #include "gltf/document/accessor.h"
 #include "gltf/motion/animatable.h"
-#include "gltf/motion/animated_values.h"
 #include "gltf/motion/animation_pointers.h"
-#include "gltf/motion/node_numbers.h"
+#include "gltf/motion/nodes.h"
 
 #include <fmt/format.h>
 
@@ -37,15 +36,14 @@ std::optional<AnimationPath> pathOf(const std::string& name) {
     return name == "weights" ? std::optional(AnimationPath::Weights) : std::nullopt;
 }
 
-std::optional<Interpolation> interpolationOf(const Json& sampler) {
-    const Json* name = find(sampler, "interpolation");
-    if (name == nullptr || *name == "LINEAR") {
+std::optional<Interpolation> interpolationOf(const std::string& name) {
+    if (name == "LINEAR") {
         return Interpolation::Linear;
     }
-    if (*name == "STEP") {
+    if (name == "STEP") {
         return Interpolation::Step;
     }
-    return *name == "CUBICSPLINE" ? std::optional(Interpolation::CubicSpline) : std::nullopt;
+    return name == "CUBICSPLINE" ? std::optional(Interpolation::CubicSpline) : std::nullopt;
 }
 
 bool areFinite(const std::vector<float>& values) {
@@ -79,16 +77,13 @@ public:
         : document_(document),
           scene_(scene),
           numbers_(numbers),
-          json_(document.json()["animations"][index]),
+          file_(document.model().animations[index]),
           pointer_(fmt::format("/animations/{}", index)) {}
 
     Animation read() {
-        if (const Json* name = find(json_, "name")) {
-            animation_.name = name->get<std::string>();
-        }
-        const Json& channels = json_["channels"];
-        for (std::size_t i = 0; i < channels.size(); ++i) {
-            readChannel(channels[i], fmt::format("{}/channels/{}", pointer_, i));
+        animation_.name = file_.name;
+        for (std::size_t i = 0; i < file_.channels.size(); ++i) {
+            readChannel(file_.channels[i], fmt::format("{}/channels/{}", pointer_, i));
         }
         for (const AnimationChannel& channel : animation_.channels) {
             const AnimationSampler& sampler = animation_.samplers[static_cast<std::size_t>(channel.sampler)];
@@ -118,17 +113,14 @@ private:
         return path == AnimationPath::Rotation ? 4 : 3;
     }
 
-    void readChannel(const Json& json, const std::string& pointer) {
-        const Json& target = json["target"];
-        const std::string& pathName = target["path"].get_ref<const std::string&>();
-        const Json* const extension = findExtension(target, "KHR_animation_pointer");
+    void readChannel(const tinygltf::AnimationChannel& channel, const std::string& pointer) {
+        const std::string& pathName = channel.target_path;
+        const Value* const extension = extensionOf(channel.target_extensions, "KHR_animation_pointer");
         if (pathName == "pointer" || extension != nullptr) {
-            const Json* const text = extension == nullptr ? nullptr : find(*extension, "pointer");
-            readPointer(json, pointer, text == nullptr ? "" : text->get<std::string>());
+            readPointer(channel, pointer, extension == nullptr ? "" : textMember(*extension, "pointer"));
             return;
         }
-        const Json* inFile = find(target, "node");
-        const int node = inFile == nullptr ? -1 : numbers_.inScene(inFile->get<int>());
+        const int node = channel.target_node < 0 ? -1 : numbers_.inScene(channel.target_node);
         if (node < 0) {
             return;  // an extension's channel, or one of a node that this scene does not draw
         }
@@ -138,9 +130,9 @@ private:
             return;
         }
         const std::size_t width = widthOf(*path, scene_.nodes[static_cast<std::size_t>(node)], pointer);
-        const int sampler = width == 0 ? -1 : samplerOf(json, pointer, {width});
+        const int sampler = width == 0 ? -1 : samplerOf(channel, pointer, {width});
         if (sampler >= 0) {
-            checkOutput(json, pointer, *path);
+            checkOutput(channel, pointer, *path);
             append({node, *path, sampler}, pointer);
         }
     }
@@ -166,15 +158,17 @@ private:
     }
 
     // The form of a node's keyframes, of which only the number of values matters to Glint.
-    void checkOutput(const Json& channel, const std::string& pointer, AnimationPath path) {
-        const int output = json_["samplers"][channel["sampler"].get<std::size_t>()]["output"].get<int>();
-        const Accessor& values = document_.accessor(output);
+    void checkOutput(const tinygltf::AnimationChannel& channel, const std::string& pointer,
+                     AnimationPath path) {
+        const int output = file_.samplers[static_cast<std::size_t>(channel.sampler)].output;
+        const tinygltf::Accessor& values = document_.accessor(output);
         const std::size_t components = path == AnimationPath::Weights    ? 1
                                        : path == AnimationPath::Rotation ? 4
                                                                          : 3;
         const bool mayBeFractions = path == AnimationPath::Weights || path == AnimationPath::Rotation;
-        if (values.components != components || values.isMatrix ||
-            (values.componentType != ComponentType::Float && !(mayBeFractions && values.normalized))) {
+        if (componentsOf(values) != components || isMatrix(values) ||
+            (values.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT &&
+             !(mayBeFractions && values.normalized))) {
             document_.warn(
                 "accessor-form", pointer,
                 fmt::format("/accessors/{} has a type or a component type that glTF does not allow "
@@ -184,9 +178,10 @@ private:
         }
     }
 
-    void readPointer(const Json& channel, const std::string& place, const std::string& pointer) {
+    void readPointer(const tinygltf::AnimationChannel& channel, const std::string& place,
+                     const std::string& pointer) {
         const std::string where = place + "/target/extensions/KHR_animation_pointer/pointer";
-        if (channel["target"]["path"] != "pointer" || find(channel["target"], "node") != nullptr) {
+        if (channel.target_path != "pointer" || channel.target_node >= 0) {
             document_.warn(
                 "animation-pointer", place + "/target",
                 "must have the path \"pointer\" and no node beside KHR_animation_pointer; the pointer "
@@ -263,9 +258,10 @@ private:
     }
 
     // Returns an index into animation_.samplers, or -1 if there is no usable sampler.
-    int samplerOf(const Json& channel, const std::string& pointer, const KeyframeForm& form) {
-        const auto inFile = channel["sampler"].get<std::size_t>();
-        const Json& samplers = json_["samplers"];
+    int samplerOf(const tinygltf::AnimationChannel& channel, const std::string& pointer,
+                  const KeyframeForm& form) {
+        const auto inFile = static_cast<std::size_t>(channel.sampler);
+        const std::vector<tinygltf::AnimationSampler>& samplers = file_.samplers;
         if (inFile >= samplers.size()) {
             leaveOut(pointer + "/sampler",
                      fmt::format("is {}, but the animation has {} samplers", inFile, samplers.size()));
@@ -293,13 +289,13 @@ private:
     // Returns which demand of a pointer's property the accessor does not meet, or an empty text if it meets
     // all.
     std::string flawOfForm(int accessor, const KeyframeForm& form, Interpolation interpolation) const {
-        const Accessor& values = document_.accessor(accessor);
+        const tinygltf::Accessor& values = document_.accessor(accessor);
         const std::size_t expected = form.kind == ValueKind::Vector ? form.width : 1;
-        if (values.components != expected) {
+        if (componentsOf(values) != expected) {
             return fmt::format("/accessors/{} has elements of {} numbers, not {}", accessor,
-                               values.components, expected);
+                               componentsOf(values), expected);
         }
-        const bool isByte = values.componentType == ComponentType::UnsignedByte;
+        const bool isByte = values.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
         if (form.kind == ValueKind::Bool && (!isByte || values.normalized)) {
             return fmt::format("/accessors/{} drives true and false, but holds no plain unsigned bytes",
                                accessor);
@@ -310,20 +306,20 @@ private:
         return {};
     }
 
-    std::optional<AnimationSampler> readSampler(const Json& json, const std::string& pointer,
-                                                const KeyframeForm& form) {
-        const std::optional<Interpolation> interpolation = interpolationOf(json);
+    std::optional<AnimationSampler> readSampler(const tinygltf::AnimationSampler& file,
+                                                const std::string& pointer, const KeyframeForm& form) {
+        const std::optional<Interpolation> interpolation = interpolationOf(file.interpolation);
         if (!interpolation) {
-            return refuse(pointer, fmt::format("{} is no interpolation", json["interpolation"].dump()));
+            return refuse(pointer, fmt::format("\"{}\" is no interpolation", file.interpolation));
         }
-        Result<FloatElements> times = readFloats(document_, json["input"].get<int>());
+        Result<FloatElements> times = readFloats(document_, file.input);
         if (!times) {
             return refuse(pointer, times.error().where + " " + times.error().message);
         }
         if (const std::string flaw = flawOfTimes(*times); !flaw.empty()) {
             return refuse(pointer, flaw);
         }
-        const int output = json["output"].get<int>();
+        const int output = file.output;
         if (const std::string flaw = form.kind ? flawOfForm(output, form, *interpolation) : "";
             !flaw.empty()) {
             return refuse(pointer, flaw);
@@ -356,7 +352,7 @@ private:
     Document& document_;
     Scene& scene_;
     const NodeNumbers& numbers_;
-    const Json& json_;
+    const tinygltf::Animation& file_;
     std::string pointer_;
     Animation animation_;
     std::map<std::pair<std::size_t, KeyframeForm>, int> samplers_;  // by number in the file
@@ -367,7 +363,7 @@ private:
 
 void importAnimations(Document& document, Scene& scene) {
     const NodeNumbers numbers(document, scene);
-    const std::size_t count = arrayMember(document.json(), "animations").size();
+    const std::size_t count = document.model().animations.size();
     for (std::size_t i = 0; i < count; ++i) {
         scene.animations.push_back(AnimationReader(document, scene, numbers, i).read());
     }

@@ -3,6 +3,7 @@
 #include "base/vectors.h"
 #include "gltf/document/accessor.h"
 #include "gltf/document/validate.h"
+#include "gltf/motion/nodes.h"
 #include "gltf/motion/transform.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ constexpr const char* kExportInstances = "export the instances again";
 
 class InstanceReader {
 public:
-    InstanceReader(Document& document, const Json& attributes, std::string pointer)
+    InstanceReader(Document& document, const Value::Object& attributes, std::string pointer)
         : document_(document), attributes_(attributes), pointer_(std::move(pointer)) {}
 
     // Without any of the three attributes there is one placement, because all of them would coincide.
@@ -41,13 +42,13 @@ public:
 private:
     template <std::size_t N>
     Status readArray(const char* name, std::vector<std::array<float, N>>& values) {
-        const Json* const accessor = find(attributes_, name);
-        if (accessor == nullptr) {
+        const auto accessor = attributes_.find(name);
+        if (accessor == attributes_.end()) {
             return okStatus();
         }
         const std::string where = fmt::format("{}/{}", pointer_, name);
         // Only rotations may be integers, which then are fractions.
-        GLINT_TRY(auto elements, readFloats(document_, accessor->get<int>(),
+        GLINT_TRY(auto elements, readFloats(document_, accessor->second.GetNumberAsInt(),
                                             N == 4 ? Integers::Normalized : Integers::AsValues));
         if (elements.components != N) {
             return document_.error("attribute-type", where,
@@ -101,7 +102,7 @@ private:
     }
 
     Document& document_;
-    const Json& attributes_;
+    const Value::Object& attributes_;
     std::string pointer_;
     std::optional<std::size_t> count_;
 };
@@ -129,8 +130,8 @@ Status checkPlaces(const Document& document, const Matrix4& world, const Instanc
 Status importInstances(Document& document, Scene& scene) {
     std::set<std::string> custom;
     for (Node& node : scene.nodes) {
-        const Json* const extension = findExtension(
-            document.json()["nodes"][static_cast<std::size_t>(node.source)], "EXT_mesh_gpu_instancing");
+        const Value* const extension =
+            extensionOf(fileNode(document, node).extensions, "EXT_mesh_gpu_instancing");
         if (extension == nullptr) {
             continue;
         }
@@ -141,8 +142,8 @@ Status importInstances(Document& document, Scene& scene) {
                           kExportInstances);
             continue;
         }
-        const Json& attributes = (*extension)["attributes"];
-        for (const auto& [name, accessor] : attributes.items()) {
+        const Value::Object& attributes = objectMember(*extension, "attributes");
+        for (const auto& [name, accessor] : attributes) {
             if (std::ranges::find(kInstanceAttributes, name) == std::end(kInstanceAttributes)) {
                 custom.insert(name);
             }

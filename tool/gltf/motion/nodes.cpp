@@ -1,19 +1,190 @@
+// Imports cameras and lights where a node places them.
 #include "gltf/motion/nodes.h"
 
 #include "base/suggest.h"
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
+#include "gltf/planning_inputs.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace glint::gltf {
+
+// ---- Cameras and lights where a node places them ----
+
+namespace {
+
+// Warns if a light's value is out of range. Returns the value to use.
+double clampLight(Document& document, const std::string& pointer, double value, double low, double high) {
+    const double clamped = std::clamp(value, low, high);
+    if (clamped != value) {
+        document.warn("light-range", pointer, fmt::format("is {}; {} is used", value, clamped),
+                      "correct the light's value");
+    }
+    return clamped;
+}
+
+double numberOr(const Json& object, std::string_view name, double fallback) {
+    const Json* member = find(object, name);
+    return member == nullptr ? fallback : member->get<double>();
+}
+
+Matrix4 poseOf(Document& document, const std::string& pointer, const Matrix4& world) {
+    if (const auto rigid = rigidPart(world)) {
+        return *rigid;
+    }
+    document.warn("pose-degenerate", pointer,
+                  "its node's scale leaves no direction; the world's axes are used",
+                  "give the node a scale that is not zero");
+    Matrix4 pose = identity();
+    std::copy(world.begin() + 12, world.begin() + 15, pose.begin() + 12);
+    return pose;
+}
+
+void readSpot(Document& document, const Json& json, const std::string& pointer, Light& light) {
+    constexpr double kRightAngle = std::numbers::pi / 2;
+    const Json* spot = find(json, "spot");
+    if (spot == nullptr) {
+        document.warn("light-range", pointer, "is a spot light without \"spot\"; its angles are the defaults",
+                      "give the light its angles");
+    }
+    const Json empty = Json::object();
+    const Json& angles = spot == nullptr ? empty : *spot;
+    const double outer =
+        clampLight(document, pointer + "/spot/outerConeAngle",
+                   numberOr(angles, "outerConeAngle", std::numbers::pi / 4), 0.0, kRightAngle);
+    const double given = numberOr(angles, "innerConeAngle", 0.0);
+    const double inner = clampLight(document, pointer + "/spot/innerConeAngle", given, 0.0, outer);
+    light.outerConeAngle = static_cast<float>(outer);
+    light.innerConeAngle = static_cast<float>(inner);
+    if (given == outer) {
+        document.warn("light-range", pointer + "/spot",
+                      "the inner angle is no smaller than the outer one: the cone has a sharp edge",
+                      "make innerConeAngle smaller than outerConeAngle");
+    }
+}
+
+// Returns the range in metres. 0 means unlimited: the file gives none, or none that is above 0.
+float readRange(Document& document, const Json& json, const std::string& pointer) {
+    const Json* range = find(json, "range");
+    const double metres = range == nullptr ? 0.0 : range->get<double>();
+    if (range != nullptr && metres <= 0.0) {
+        document.warn("light-range", pointer, fmt::format("is {}; the light's range is unlimited", metres),
+                      "use more than 0, or leave it out");
+    }
+    return static_cast<float>(std::max(metres, 0.0));
+}
+
+// Values above 1 stay, because a clamped channel would change the hue.
+float readChannel(Document& document, const std::string& pointer, double value) {
+    if (value > 1.0) {
+        document.warn("light-range", pointer, fmt::format("is {}, above 1; it is used as it is", value),
+                      "scale the colour down and the intensity up");
+        return static_cast<float>(value);
+    }
+    return static_cast<float>(clampLight(document, pointer, value, 0.0, 1.0));
+}
+
+}  // namespace
+
+Result<Camera> importCamera(Document& document, int index, const Matrix4& world) {
+    const tinygltf::Camera& file = document.model().cameras[static_cast<std::size_t>(index)];
+    const std::string pointer = fmt::format("/cameras/{}/{}", index, file.type);
+    const auto fail = [&](const char* member, const char* rule, double value) {
+        return document.error("camera-range", fmt::format("{}/{}", pointer, member),
+                              fmt::format("is {}; it must be {}", value, rule), "correct the camera");
+    };
+    Camera camera;
+    camera.name = file.name;
+    camera.world = poseOf(document, fmt::format("/cameras/{}", index), world);
+    camera.orthographic = file.type == "orthographic";
+    if (camera.orthographic) {
+        camera.xmag = std::abs(file.orthographic.xmag);
+        camera.ymag = std::abs(file.orthographic.ymag);
+        camera.znear = file.orthographic.znear;
+        if (camera.xmag == 0.0 || camera.ymag == 0.0) {
+            return fail(camera.xmag == 0.0 ? "xmag" : "ymag", "other than 0", 0.0);
+        }
+        if (file.orthographic.xmag < 0.0 || file.orthographic.ymag < 0.0) {
+            document.warn("camera-range", pointer, "has a negative magnification; its size is used");
+        }
+        if (camera.znear < 0.0) {
+            return fail("znear", "0 or more", camera.znear);
+        }
+    } else {
+        camera.yfov = file.perspective.yfov;
+        camera.znear = file.perspective.znear;
+        if (camera.yfov <= 0.0 || camera.yfov >= std::numbers::pi) {
+            return fail("yfov", "between 0 and pi", camera.yfov);
+        }
+        if (camera.znear <= 0.0) {
+            return fail("znear", "above 0", camera.znear);
+        }
+    }
+    const std::optional<double> zfar = farPlane(file);
+    camera.zfar = zfar.value_or(0.0);
+    if (zfar && camera.zfar <= camera.znear) {
+        return fail("zfar", "above znear", camera.zfar);
+    }
+    return camera;
+}
+
+Result<Light> importLight(Document& document, int index, const Matrix4& world) {
+    const std::string pointer = fmt::format("/extensions/KHR_lights_punctual/lights/{}", index);
+    const Json& json =
+        document.json()["extensions"]["KHR_lights_punctual"]["lights"][static_cast<std::size_t>(index)];
+    Light light;
+    light.name = textMember(json, "name");
+    const std::string& type = json["type"].get_ref<const std::string&>();
+    if (type == "spot") {
+        light.type = LightType::Spot;
+        readSpot(document, json, pointer, light);
+    } else if (type == "point") {
+        light.type = LightType::Point;
+    } else if (type != "directional") {
+        return document.error("light-type", pointer + "/type",
+                              fmt::format("\"{}\" is no type of light", type),
+                              "use directional, point or spot");
+    }
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    light.intensity = static_cast<float>(
+        clampLight(document, pointer + "/intensity", numberOr(json, "intensity", 1.0), 0.0, kLargest));
+    light.range = readRange(document, json, pointer + "/range");
+    if (light.type == LightType::Directional && light.range > 0.0F) {
+        document.warn("light-range", pointer + "/range", "a directional light has no range; it is ignored",
+                      "leave the range out, or use a point or spot light");
+        light.range = 0.0F;
+    }
+    if (const Json* color = find(json, "color")) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            light.color[i] =
+                readChannel(document, fmt::format("{}/color/{}", pointer, i), (*color)[i].get<double>());
+        }
+    }
+    light.position = {world[12], world[13], world[14]};
+    if (light.type != LightType::Point) {
+        const auto axis = normalized({-world[8], -world[9], -world[10]});
+        if (!axis) {
+            document.warn("pose-degenerate", pointer, "its node's scale leaves no direction; -Z is used",
+                          "give the node a scale that is not zero");
+        }
+        const glm::dvec3 direction = axis.value_or(glm::dvec3{0.0, 0.0, -1.0});
+        light.direction = {static_cast<float>(direction[0]), static_cast<float>(direction[1]),
+                           static_cast<float>(direction[2])};
+    }
+    return light;
+}
+
+// ---- Nodes ----
 
 namespace {
 
@@ -25,11 +196,10 @@ std::string pointerOf(std::size_t node) {
 
 // Returns the parent of each node, which is -1 for roots.
 Result<std::vector<int>> findParents(const Document& document) {
-    const Json& nodes = arrayMember(document.json(), "nodes");
+    const std::vector<tinygltf::Node>& nodes = document.model().nodes;
     std::vector<int> parents(nodes.size(), -1);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        for (const Json& index : arrayMember(nodes[i], "children")) {
-            const int child = index.get<int>();
+        for (const int child : nodes[i].children) {
             int& parent = parents[static_cast<std::size_t>(child)];
             if (parent >= 0) {
                 return document.error("node-parents", pointerOf(static_cast<std::size_t>(child)),
@@ -55,8 +225,8 @@ Status checkCycles(const Document& document, const std::vector<int>& parents) {
         const std::size_t node = open.back();
         open.pop_back();
         reached[node] = true;
-        for (const Json& child : arrayMember(document.json()["nodes"][node], "children")) {
-            open.push_back(child.get<std::size_t>());
+        for (const int child : document.model().nodes[node].children) {
+            open.push_back(static_cast<std::size_t>(child));
         }
     }
     const auto missed = std::find(reached.begin(), reached.end(), false);
@@ -87,15 +257,15 @@ Diagnostic unknownScene(const Document& document, const Scene& scene) {
 
 // Decides which of the file's scenes is read, and lists them all.
 Status chooseScene(Document& document, Scene& scene) {
-    const Json& scenes = arrayMember(document.json(), "scenes");
-    for (const Json& json : scenes) {
-        scene.scenesInFile.push_back(textMember(json, "name"));
+    const tinygltf::Model& model = document.model();
+    for (const tinygltf::Scene& inFile : model.scenes) {
+        scene.scenesInFile.push_back(inFile.name);
     }
     const std::string& wanted = document.options().scene;
-    const auto count = static_cast<int>(scenes.size());
+    const auto count = static_cast<int>(model.scenes.size());
     if (wanted.empty()) {
-        scene.sceneInFile = count > 0 ? integerMember(document.json(), "scene", 0) : -1;
-        if (count > 1 && find(document.json(), "scene") == nullptr) {
+        scene.sceneInFile = count > 0 ? std::max(model.defaultScene, 0) : -1;
+        if (count > 1 && model.defaultScene < 0) {
             document.note("scene-choice", "/scenes",
                           fmt::format("the file names none of its {} scenes as the default; scene {} is read",
                                       count, sceneLabel(scene, 0)),
@@ -138,8 +308,8 @@ void takeTree(const Document& document, std::size_t top, std::vector<Part>& part
             continue;  // and so is everything below it
         }
         parts[node] = Part::Whole;
-        for (const Json& child : arrayMember(document.json()["nodes"][node], "children")) {
-            open.push_back(child.get<std::size_t>());
+        for (const int child : document.model().nodes[node].children) {
+            open.push_back(static_cast<std::size_t>(child));
         }
     }
 }
@@ -148,9 +318,9 @@ void takeTree(const Document& document, std::size_t top, std::vector<Part>& part
 std::vector<std::size_t> listedNodes(Document& document, int scene, std::size_t count) {
     std::vector<std::size_t> nodes;
     std::vector<bool> known(count);
-    const Json& list = arrayMember(document.json()["scenes"][static_cast<std::size_t>(scene)], "nodes");
+    const std::vector<int>& list = document.model().scenes[static_cast<std::size_t>(scene)].nodes;
     for (std::size_t i = 0; i < list.size(); ++i) {
-        const auto node = list[i].get<std::size_t>();
+        const auto node = static_cast<std::size_t>(list[i]);
         if (known[node]) {
             document.warn("scene-node-repeated", fmt::format("/scenes/{}/nodes/{}", scene, i),
                           "names a node that the scene has already", kExportNodes);
@@ -249,13 +419,9 @@ bool shears(const Matrix4& matrix) {
     return false;
 }
 
-Matrix4 readMatrix(Document& document, const Json& json, const std::string& pointer) {
-    if (json.contains("translation") || json.contains("rotation") || json.contains("scale")) {
-        document.warn("node-matrix", pointer, "has a matrix and another transform; the matrix is used",
-                      kExportNodes);
-    }
+Matrix4 readMatrix(Document& document, const std::vector<double>& values, const std::string& pointer) {
     Matrix4 matrix{};
-    std::ranges::copy(numbersMember(json, "matrix"), matrix.begin());
+    std::ranges::copy(values, matrix.begin());
     if (matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0) {
         document.warn("node-matrix", pointer + "/matrix",
                       "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExportNodes);
@@ -273,19 +439,18 @@ Matrix4 readMatrix(Document& document, const Json& json, const std::string& poin
 
 // Reads the node's local transform into `node`, and returns it as a matrix.
 Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
-    const Json& json = document.json()["nodes"][index];
+    const tinygltf::Node& file = document.model().nodes[index];
     const std::string pointer = pointerOf(index);
-    if (json.contains("matrix")) {
-        placed.matrix = readMatrix(document, json, pointer);
+    if (!file.matrix.empty()) {
+        placed.matrix = readMatrix(document, file.matrix, pointer);
         return *placed.matrix;
     }
-    const auto triple = [&](const char* name, double fallback) {
-        const std::vector<double> values = numbersMember(json, name);
+    const auto triple = [](const std::vector<double>& values, double fallback) {
         return values.size() == 3 ? std::array{values[0], values[1], values[2]}
                                   : std::array{fallback, fallback, fallback};
     };
-    placed.rest = {triple("translation", 0.0),
-                   readRotation(document, numbersMember(json, "rotation"), pointer), triple("scale", 1.0)};
+    placed.rest = {triple(file.translation, 0.0), readRotation(document, file.rotation, pointer),
+                   triple(file.scale, 1.0)};
     return compose(placed.rest);
 }
 
@@ -306,9 +471,9 @@ Status placeLight(Document& document, int light, Node& node, Scene& scene) {
 }
 
 Status appendNode(Document& document, std::size_t index, Part part, int parent, Scene& scene) {
-    const Json& json = document.json()["nodes"][index];
+    const tinygltf::Node& file = document.model().nodes[index];
     Node node;
-    node.name = textMember(json, "name");
+    node.name = file.name;
     node.parent = parent;
     node.source = static_cast<int>(index);
     const Matrix4 above = parent < 0 ? identity() : scene.nodes[static_cast<std::size_t>(parent)].world;
@@ -317,19 +482,19 @@ Status appendNode(Document& document, std::size_t index, Part part, int parent, 
         return document.error("node-transform", pointerOf(index), "its transform in the world overflows",
                               "check the scales of the node and its parents");
     }
-    if (const Json* const visibility = findExtension(json, "KHR_node_visibility")) {
+    if (const Value* const visibility = extensionOf(file.extensions, "KHR_node_visibility")) {
         node.visible = boolMember(*visibility, "visible", true);
     }
     if (part == Part::Transform) {
         scene.nodes.push_back(std::move(node));
         return okStatus();
     }
-    node.mesh = indexMember(json, "mesh");
-    if (const int camera = indexMember(json, "camera"); camera >= 0) {
-        GLINT_TRY_DO(placeCamera(document, camera, node, scene));
+    node.mesh = file.mesh;
+    if (file.camera >= 0) {
+        GLINT_TRY_DO(placeCamera(document, file.camera, node, scene));
     }
-    if (const Json* light = findExtension(json, "KHR_lights_punctual")) {
-        GLINT_TRY_DO(placeLight(document, (*light)["light"].get<int>(), node, scene));
+    if (const Value* const light = extensionOf(file.extensions, "KHR_lights_punctual")) {
+        GLINT_TRY_DO(placeLight(document, indexMember(*light, "light"), node, scene));
     }
     scene.nodes.push_back(std::move(node));
     return okStatus();
@@ -356,9 +521,9 @@ Status importNodes(Document& document, Scene& scene) {
         pending.pop_back();
         const int parent = static_cast<int>(scene.nodes.size());
         GLINT_TRY_DO(appendNode(document, next.node, extent.parts[next.node], next.parent, scene));
-        const Json& children = arrayMember(document.json()["nodes"][next.node], "children");
+        const std::vector<int>& children = document.model().nodes[next.node].children;
         for (std::size_t i = children.size(); i-- > 0;) {
-            const auto child = children[i].get<std::size_t>();
+            const auto child = static_cast<std::size_t>(children[i]);
             if (extent.parts[child] != Part::None) {
                 pending.push_back({child, parent});
             }

@@ -1,15 +1,190 @@
 #include "gltf/texels/block_decode.h"
 
 #include "gltf/codecs/basisu.h"
-#include "gltf/texels/etc2_decode.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 
 namespace glint::gltf {
 
+// ---- ETC2 and EAC: Khronos Data Format Specification 1.3, section 21 ----
+
 namespace {
+
+using Color = std::array<int, 3>;
+
+constexpr int kModifiers[8][2] = {{2, 8},   {5, 17},  {9, 29},   {13, 42},
+                                  {18, 60}, {24, 80}, {33, 106}, {47, 183}};
+constexpr int kDistances[8] = {3, 6, 11, 16, 23, 32, 41, 64};
+constexpr int kEacModifiers[16][8] = {
+    {-3, -6, -9, -15, 2, 5, 8, 14}, {-3, -7, -10, -13, 2, 6, 9, 12}, {-2, -5, -8, -13, 1, 4, 7, 12},
+    {-2, -4, -6, -13, 1, 3, 5, 12}, {-3, -6, -8, -12, 2, 5, 7, 11},  {-3, -7, -9, -11, 2, 6, 8, 10},
+    {-4, -7, -8, -11, 3, 6, 7, 10}, {-3, -5, -8, -11, 2, 4, 7, 10},  {-2, -6, -8, -10, 1, 5, 7, 9},
+    {-2, -5, -8, -10, 1, 4, 7, 9},  {-2, -4, -8, -10, 1, 3, 7, 9},   {-2, -5, -7, -10, 1, 4, 6, 9},
+    {-3, -4, -7, -10, 2, 3, 6, 9},  {-1, -2, -3, -10, 0, 1, 2, 9},   {-4, -6, -8, -9, 3, 5, 7, 8},
+    {-3, -5, -7, -9, 2, 4, 6, 8}};
+
+// Pixels are numbered column by column.
+constexpr std::size_t placeOf(std::size_t pixel) {
+    return (pixel % 4) * 4 + pixel / 4;
+}
+
+// The two bits of a pixel.
+int indexOf(const std::uint8_t* block, std::size_t pixel) {
+    const unsigned low = static_cast<unsigned>(block[4]) << 24U | static_cast<unsigned>(block[5]) << 16U |
+                         static_cast<unsigned>(block[6]) << 8U | block[7];
+    return static_cast<int>((low >> (16 + pixel) & 1U) << 1U | (low >> pixel & 1U));
+}
+
+int clamp8(int value) {
+    return std::clamp(value, 0, 255);
+}
+
+Color shifted(const Color& color, int by) {
+    return {color[0] + by, color[1] + by, color[2] + by};
+}
+
+void paint(BlockTexels& texels, std::size_t pixel, const Color& color, int alpha = 255) {
+    auto& texel = texels[placeOf(pixel)];
+    for (std::size_t i = 0; i < 3; ++i) {
+        texel[i] = static_cast<std::uint8_t>(clamp8(color[i]));
+    }
+    texel[3] = static_cast<std::uint8_t>(alpha);
+}
+
+Color expanded(int r, int g, int b, int bits) {
+    const auto expand = [bits](int value) { return value << (8 - bits) | value >> (2 * bits - 8); };
+    return {expand(r), expand(g), expand(b)};
+}
+
+// The four colours of the modes T and H.
+void paintPalette(const std::uint8_t* block, const std::array<Color, 4>& palette, bool transparent,
+                  BlockTexels& texels) {
+    for (std::size_t pixel = 0; pixel < 16; ++pixel) {
+        const int index = indexOf(block, pixel);
+        if (transparent && index == 2) {
+            paint(texels, pixel, {0, 0, 0}, 0);
+        } else {
+            paint(texels, pixel, palette[static_cast<std::size_t>(index)]);
+        }
+    }
+}
+
+void unpackT(const std::uint8_t* block, bool transparent, BlockTexels& texels) {
+    const Color first = expanded((block[0] >> 3 & 3) << 2 | (block[0] & 3), block[1] >> 4, block[1] & 15, 4);
+    const Color second = expanded(block[2] >> 4, block[2] & 15, block[3] >> 4, 4);
+    const int distance = kDistances[(block[3] >> 2 & 3) << 1 | (block[3] & 1)];
+    paintPalette(block, {first, shifted(second, distance), second, shifted(second, -distance)}, transparent,
+                 texels);
+}
+
+void unpackH(const std::uint8_t* block, bool transparent, BlockTexels& texels) {
+    const Color first = expanded(block[0] >> 3 & 15, (block[0] & 7) << 1 | (block[1] >> 4 & 1),
+                                 (block[1] & 8) | (block[1] & 3) << 1 | block[2] >> 7, 4);
+    const Color second =
+        expanded(block[2] >> 3 & 15, (block[2] & 7) << 1 | block[3] >> 7, block[3] >> 3 & 15, 4);
+    const int order = first >= second ? 1 : 0;
+    const int distance = kDistances[(block[3] & 4) | (block[3] & 1) << 1 | order];
+    paintPalette(block,
+                 {shifted(first, distance), shifted(first, -distance), shifted(second, distance),
+                  shifted(second, -distance)},
+                 transparent, texels);
+}
+
+void unpackPlanar(const std::uint8_t* block, BlockTexels& texels) {
+    const auto six = [](int value) { return value << 2 | value >> 4; };
+    const auto seven = [](int value) { return value << 1 | value >> 6; };
+    const Color origin{six(block[0] >> 1 & 63), seven((block[0] & 1) << 6 | (block[1] >> 1 & 63)),
+                       six((block[1] & 1) << 5 | (block[2] & 0x18) | (block[2] & 3) << 1 | block[3] >> 7)};
+    const Color right{six((block[3] & 0x7C) >> 1 | (block[3] & 1)), seven(block[4] >> 1),
+                      six((block[4] & 1) << 5 | block[5] >> 3)};
+    const Color down{six((block[5] & 7) << 3 | block[6] >> 5), seven((block[6] & 31) << 2 | block[7] >> 6),
+                     six(block[7] & 63)};
+    for (std::size_t pixel = 0; pixel < 16; ++pixel) {
+        const int x = static_cast<int>(pixel / 4);
+        const int y = static_cast<int>(pixel % 4);
+        Color color{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            color[i] = (x * (right[i] - origin[i]) + y * (down[i] - origin[i]) + 4 * origin[i] + 2) >> 2;
+        }
+        paint(texels, pixel, color);
+    }
+}
+
+// Two halves of the block with a base colour each.
+void unpackHalves(const std::uint8_t* block, const std::array<Color, 2>& bases, bool transparent,
+                  BlockTexels& texels) {
+    const bool isFlipped = (block[3] & 1) != 0;
+    const int tables[2] = {block[3] >> 5, block[3] >> 2 & 7};
+    for (std::size_t pixel = 0; pixel < 16; ++pixel) {
+        const std::size_t half = (isFlipped ? pixel % 4 : pixel / 4) / 2;
+        const int* const table = kModifiers[tables[half]];
+        const int index = indexOf(block, pixel);
+        if (transparent && index == 2) {
+            paint(texels, pixel, {0, 0, 0}, 0);
+            continue;
+        }
+        const int size = (index & 1) != 0 ? table[1] : transparent ? 0 : table[0];
+        paint(texels, pixel, shifted(bases[half], (index & 2) != 0 ? -size : size));
+    }
+}
+
+// Sets red, green, blue and alpha. `punchThrough`: alpha of 0 or 1, as RGBA1 has it.
+void unpackEtc2(const std::uint8_t* block, bool punchThrough, BlockTexels& texels) {
+    const bool bit = (block[3] & 2) != 0;
+    const bool transparent = punchThrough && !bit;
+    if (!bit && !punchThrough) {
+        unpackHalves(block,
+                     {expanded(block[0] >> 4, block[1] >> 4, block[2] >> 4, 4),
+                      expanded(block[0] & 15, block[1] & 15, block[2] & 15, 4)},
+                     false, texels);
+        return;
+    }
+    Color base{};
+    Color second{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const int difference = (block[i] & 7) - ((block[i] & 4) << 1);
+        base[i] = block[i] >> 3;
+        second[i] = base[i] + difference;
+    }
+    // A sum that does not fit says which of the further modes the block has.
+    const auto overflows = [](int value) { return value < 0 || value > 31; };
+    if (overflows(second[0])) {
+        unpackT(block, transparent, texels);
+    } else if (overflows(second[1])) {
+        unpackH(block, transparent, texels);
+    } else if (overflows(second[2])) {
+        unpackPlanar(block, texels);
+    } else {
+        unpackHalves(block,
+                     {expanded(base[0], base[1], base[2], 5), expanded(second[0], second[1], second[2], 5)},
+                     transparent, texels);
+    }
+}
+
+// Sets one channel by a block of EAC: with 8 bits, as the alpha of RGBA has it, or with 11, rounded to 8.
+void unpackEac(const std::uint8_t* block, bool has11Bits, std::size_t channel, BlockTexels& texels) {
+    std::uint64_t bits = 0;
+    for (std::size_t i = 2; i < 8; ++i) {
+        bits = bits << 8U | block[i];
+    }
+    const int multiplier = block[1] >> 4;
+    const int* const table = kEacModifiers[block[1] & 15];
+    for (std::size_t pixel = 0; pixel < 16; ++pixel) {
+        const int modifier = table[bits >> (45 - 3 * pixel) & 7U];
+        int value = clamp8(block[0] + modifier * multiplier);
+        if (has11Bits) {
+            const int scale = multiplier == 0 ? 1 : 8 * multiplier;
+            const int wide = std::clamp(8 * block[0] + 4 + modifier * scale, 0, 2047);
+            value = static_cast<int>(std::lround(wide * 255.0 / 2047.0));
+        }
+        texels[placeOf(pixel)][channel] = static_cast<std::uint8_t>(value);
+    }
+}
+
+// ---- Blocks of all formats ----
 
 using Texel = std::array<std::uint8_t, 4>;
 

@@ -1,7 +1,8 @@
 // Unpacks block formats to RGBA of 8 bits on the CPU.
 #pragma once
 
-#include "gltf/document/document.h"
+#include "gltf/document/files.h"
+#include "gltf/scene.h"
 
 #include <glint/texel_format.h>
 

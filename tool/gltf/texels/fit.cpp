@@ -1,11 +1,10 @@
 #include "gltf/texels/fit.h"
 
 #include "gltf/codecs/basisu.h"
-#include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
-#include "gltf/codecs/images.h"
 #include "gltf/texels/block_decode.h"
 #include "gltf/texels/levels.h"
+#include "gltf/textures.h"
 
 #include <fmt/format.h>
 

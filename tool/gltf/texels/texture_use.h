@@ -1,9 +1,12 @@
-// What the materials of a scene read of its images.
+// What the materials of a scene read of its images, and what shading makes of the numbers that an image
+// stores.
 #pragma once
 
 #include "gltf/scene.h"
 #include "gltf/texels/levels.h"
+#include "materials/interval.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -30,5 +33,14 @@ bool blitsSuit(const ImageUse& use);
 
 // Returns the use of each of Scene::images. Materials that no primitive has count.
 std::vector<ImageUse> imageUses(const Scene& scene);
+
+// Returns what a shader reads of such an image. `isColor` says that red, green and blue are in sRGB. The
+// bounds are wider by what drivers round, but 0 and 1 stay exact: a channel that is 0 everywhere is read as
+// 0.
+std::array<materials::ValueInterval, 4> contentAsRead(const std::array<materials::ValueInterval, 4>& stored,
+                                                      bool isColor);
+
+// Returns the number that a code stands for, where it is colour in sRGB or not.
+double numberAsRead(double stored, bool isColor);
 
 }  // namespace glint::gltf

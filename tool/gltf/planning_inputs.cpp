@@ -1,7 +1,9 @@
-#include "gltf/expected_hits.h"
+#include "gltf/planning_inputs.h"
 
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -134,6 +136,72 @@ void expectHits(const Scene& scene, std::vector<materials::PrimitiveInputs>& inp
             inputs[i].expectedHits += area > 0.0 ? own[k].count * area / (area + large) : 0.0;
         }
     }
+}
+
+std::string sceneLabel(const Scene& scene, std::size_t number) {
+    const std::string& name = scene.scenesInFile[number];
+    return name.empty() ? std::to_string(number) : fmt::format("{} \"{}\"", number, name);
+}
+
+SceneInFile sceneInFile(const Scene& scene) {
+    const int index = scene.sceneInFile;
+    return {index, index < 0 ? "" : scene.scenesInFile[static_cast<std::size_t>(index)]};
+}
+
+namespace {
+
+// Returns a bit for each of the model's attributes that the primitive has.
+std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
+    if (primitive.attributes.empty()) {
+        return 0;
+    }
+    const std::vector<materials::VertexAttribute>& known =
+        scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &VertexValues::name) !=
+                           primitive.attributes.end();
+        bits |= std::uint64_t{given} << i;
+    }
+    return bits;
+}
+
+}  // namespace
+
+materials::PrimitiveInputs inputsOf(const Scene& scene, std::size_t mesh, std::size_t index) {
+    const Primitive& primitive = scene.meshes[mesh].primitives[index];
+    materials::PrimitiveInputs input;
+    input.mesh = static_cast<int>(mesh);
+    input.primitive = static_cast<int>(index);
+    input.material = primitive.material;
+    input.hasNormals = !primitive.normals.empty();
+    input.hasTangents = !primitive.tangents.empty();
+    input.hasTexCoords0 = !primitive.texCoords0.empty();
+    input.hasTexCoords1 = !primitive.texCoords1.empty();
+    input.colors = primitive.colorContent;
+    input.attributes = attributesOf(scene, primitive);
+    input.seen = primitive.seen;
+    input.derivesTangents = primitive.derivesTangents;
+    return input;
+}
+
+std::vector<materials::PrimitiveInputs> planningInputs(const Scene& scene) {
+    std::vector<materials::PrimitiveInputs> inputs;
+    for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+        for (std::size_t i = 0; i < scene.meshes[mesh].primitives.size(); ++i) {
+            inputs.push_back(inputsOf(scene, mesh, i));
+        }
+    }
+    expectHits(scene, inputs);
+    return inputs;
+}
+
+std::vector<materials::Material> planningMaterials(const Scene& scene) {
+    std::vector<materials::Material> materials = scene.materials;
+    for (const AnimatedMaterial& animated : scene.animatedMaterials) {
+        materials[static_cast<std::size_t>(animated.material)] = animated.planned;
+    }
+    return materials;
 }
 
 }  // namespace glint::gltf

@@ -1,17 +1,171 @@
-#include "gltf/motion/skinning.h"
+#include "gltf/motion/deformation.h"
 
 #include "gltf/document/accessor.h"
-#include "gltf/motion/node_numbers.h"
+#include "gltf/document/validate.h"
+#include "gltf/motion/nodes.h"
 #include "gltf/motion/transform.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace glint::gltf {
+
+// ---- Morph targets ----
+
+namespace {
+
+constexpr const char* kExportMorphs = "export the mesh again";
+// Limits all nodes of a scene together. A thousand figures with a thousand targets each have a quarter of it.
+constexpr std::uint64_t kMaxWeights = 1ULL << 22;
+
+using Target = std::map<std::string, int>;  // accessors by attribute
+
+// Reads one attribute of a target if the target has it. Alpha that is missing does not change.
+template <std::size_t N>
+Status readDifferences(Document& document, const Target& target, const std::string& pointer,
+                       const char* attribute, std::size_t vertices,
+                       std::vector<std::array<float, N>>& differences) {
+    const int accessor = accessorOf(target, attribute);
+    if (accessor < 0) {
+        return okStatus();
+    }
+    const std::string place = pointer + "/" + attribute;
+    GLINT_TRY(const auto elements,
+              readFloats(document, accessor, N == 4 ? Integers::Normalized : Integers::AsValues));
+    if (elements.components < 3 || elements.components > N) {
+        return document.error("attribute-type", place,
+                              fmt::format("has {} components, not {}", elements.components, N),
+                              kExportMorphs);
+    }
+    if (elements.count != vertices) {
+        return document.error("attribute-count", place,
+                              fmt::format("has {} elements, POSITION has {}", elements.count, vertices),
+                              kExportMorphs);
+    }
+    differences.resize(vertices);
+    for (std::size_t i = 0; i < vertices; ++i) {
+        std::copy_n(&elements.values[elements.components * i], elements.components, differences[i].begin());
+    }
+    return okStatus();
+}
+
+// Reads the weights that a node or a mesh lists. There are as many as targets.
+std::vector<double> readWeights(Document& document, std::vector<double> weights, std::size_t targets,
+                                const std::string& pointer) {
+    if (weights.size() != targets) {
+        document.warn("morph-weights", pointer,
+                      fmt::format("has {} weights for {} morph targets; missing ones are 0, others ignored",
+                                  weights.size(), targets),
+                      "give a weight for each target");
+    }
+    weights.resize(targets, 0.0);
+    return weights;
+}
+
+std::size_t countTargets(const Mesh& mesh) {
+    std::size_t count = 0;
+    for (const Primitive& primitive : mesh.primitives) {
+        count = std::max(count, primitive.targets.size());
+    }
+    return count;
+}
+
+// Warns of attributes that glTF lets a target change and that Glint does not change.
+void warnOfUnread(Document& document, const Target& target, const std::string& pointer) {
+    for (const auto& [name, accessor] : target) {
+        if (!name.starts_with('_') &&
+            std::ranges::find(kTargetAttributes, name) == std::end(kTargetAttributes)) {
+            document.warn("morph-attribute", pointer + "/" + name,
+                          "Glint does not morph this attribute; its differences are left out",
+                          "animate the texture's transform instead, or give each shape a mesh of its own");
+        }
+    }
+}
+
+}  // namespace
+
+void compareTargets(Document& document, std::size_t mesh) {
+    const std::vector<tinygltf::Primitive>& primitives = document.model().meshes[mesh].primitives;
+    for (std::size_t i = 1; i < primitives.size(); ++i) {
+        const std::size_t first = primitives[0].targets.size();
+        const std::size_t own = primitives[i].targets.size();
+        if (own != first) {
+            document.warn("morph-targets", fmt::format("/meshes/{}/primitives/{}", mesh, i),
+                          fmt::format("has {} morph targets, and the mesh's first primitive has {}; the "
+                                      "targets that one of them lacks don't change it",
+                                      own, first),
+                          "give all primitives of the mesh the same targets");
+        }
+    }
+}
+
+Status readTargets(Document& document, const tinygltf::Primitive& file, Primitive& primitive) {
+    const std::vector<Target>& targets = file.targets;
+    const std::size_t vertices = primitive.positions.size();
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const std::string pointer = fmt::format("{}/targets/{}", primitive.pointer, i);
+        MorphTarget& target = primitive.targets.emplace_back();
+        warnOfUnread(document, targets[i], pointer);
+        const auto read = [&](const char* attribute, bool isBased, auto& differences) {
+            if (!isBased && targets[i].contains(attribute)) {
+                document.warn("morph-attribute", pointer + "/" + attribute,
+                              "the primitive itself has no such attribute; its differences are left out",
+                              kExportMorphs);
+                return okStatus();
+            }
+            return readDifferences(document, targets[i], pointer, attribute, vertices, differences);
+        };
+        GLINT_TRY_DO(read("POSITION", true, target.positions));
+        GLINT_TRY_DO(read("NORMAL", !primitive.normals.empty(), target.normals));
+        GLINT_TRY_DO(read("TANGENT", !primitive.tangents.empty(), target.tangents));
+        GLINT_TRY_DO(read("COLOR_0", !primitive.colors.empty(), target.colors));
+    }
+    return okStatus();
+}
+
+Status importMorphWeights(Document& document, Scene& scene) {
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+        Mesh& mesh = scene.meshes[i];
+        const std::size_t targets = countTargets(mesh);
+        mesh.weights.assign(targets, 0.0);
+        const std::vector<double>& weights = document.model().meshes[i].weights;
+        if (!weights.empty() && targets > 0) {
+            mesh.weights = readWeights(document, weights, targets, fmt::format("/meshes/{}/weights", i));
+        }
+    }
+    std::uint64_t total = 0;
+    for (Node& node : scene.nodes) {
+        if (node.mesh < 0) {
+            continue;
+        }
+        const Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+        total += mesh.weights.size();
+        if (total > kMaxWeights) {
+            return document.error(
+                "morph-limit", fmt::format("/nodes/{}", node.source),
+                fmt::format("with its {} morph targets the nodes of the scene pass the limit of {} weights",
+                            mesh.weights.size(), kMaxWeights),
+                "leave out targets, or split the scene");
+        }
+        node.restWeights = mesh.weights;
+        const std::vector<double>& weights = fileNode(document, node).weights;
+        if (!weights.empty() && !mesh.weights.empty()) {
+            node.restWeights = readWeights(document, weights, mesh.weights.size(),
+                                           fmt::format("/nodes/{}/weights", node.source));
+        }
+        node.weights = node.restWeights;
+    }
+    return okStatus();
+}
+
+// ---- Skins ----
 
 namespace {
 
@@ -60,13 +214,12 @@ double sumOf(const std::vector<Influence>& influences) {
 }
 
 // Returns the inverse bind matrices of a skin, or identities if it gives none.
-Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& json,
-                                              const std::string& pointer, std::size_t joints) {
-    const Json* accessor = find(json, "inverseBindMatrices");
-    if (accessor == nullptr) {
+Result<std::vector<Matrix4>> readInverseBinds(Document& document, int accessor, const std::string& pointer,
+                                              std::size_t joints) {
+    if (accessor < 0) {
         return std::vector<Matrix4>(joints, identity());
     }
-    Result<std::vector<Matrix4>> matrices = readMatrices(document, accessor->get<int>());
+    Result<std::vector<Matrix4>> matrices = readMatrices(document, accessor);
     if (!matrices) {
         return matrices;
     }
@@ -96,18 +249,18 @@ Result<std::vector<Matrix4>> readInverseBinds(Document& document, const Json& js
 
 // Returns nothing if a joint is not in the scene.
 Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, const NodeNumbers& numbers) {
-    const Json& json = document.json()["skins"][index];
+    const tinygltf::Skin& file = document.model().skins[index];
     const std::string pointer = fmt::format("/skins/{}", index);
     Skin skin;
-    skin.name = textMember(json, "name");
-    const Json& joints = json["joints"];
+    skin.name = file.name;
+    const std::vector<int>& joints = file.joints;
     if (joints.empty() || joints.size() > kMaxJoints) {
         return document.error("skin-joints", pointer + "/joints",
                               fmt::format("has {} joints; 1 to {} are possible", joints.size(), kMaxJoints),
                               kExportSkin);
     }
     for (std::size_t i = 0; i < joints.size(); ++i) {
-        const int node = numbers.inScene(joints[i].get<int>());
+        const int node = numbers.inScene(joints[i]);
         if (node < 0) {
             document.warn("skin-joint-outside", fmt::format("{}/joints/{}", pointer, i),
                           "is a node outside of the scene; the skin is left out and its meshes keep their "
@@ -117,7 +270,8 @@ Result<std::optional<Skin>> readSkin(Document& document, std::size_t index, cons
         }
         skin.joints.push_back(node);
     }
-    GLINT_TRY(skin.inverseBinds, readInverseBinds(document, json, pointer, joints.size()));
+    GLINT_TRY(skin.inverseBinds,
+              readInverseBinds(document, file.inverseBindMatrices, pointer, joints.size()));
     return std::optional(std::move(skin));
 }
 
@@ -188,8 +342,8 @@ Status importSkins(Document& document, Scene& scene) {
     const NodeNumbers numbers(document, scene);
     std::map<std::size_t, int> known;  // by number in the file; -1: the skin is left out
     for (Node& node : scene.nodes) {
-        const Json* skin = find(document.json()["nodes"][static_cast<std::size_t>(node.source)], "skin");
-        if (skin == nullptr) {
+        const int skin = fileNode(document, node).skin;
+        if (skin < 0) {
             continue;
         }
         const std::string pointer = fmt::format("/nodes/{}/skin", node.source);
@@ -198,7 +352,7 @@ Status importSkins(Document& document, Scene& scene) {
                           kExportSkin);
             continue;
         }
-        const auto index = skin->get<std::size_t>();
+        const auto index = static_cast<std::size_t>(skin);
         if (!known.contains(index)) {
             GLINT_TRY(auto read, readSkin(document, index, numbers));
             known[index] = read ? static_cast<int>(scene.skins.size()) : -1;
