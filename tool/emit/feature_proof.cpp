@@ -202,11 +202,10 @@ void dropUnread(const prove::Program& program, prove::Claim& claim) {
 
 }  // namespace
 
-Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const Plan& plan,
-                                         const CompileSettings& settings,
-                                         const materials::FeatureCode& code) {
-    const gltf::SceneList scenes({&scene, 1});
-    GLINT_TRY(auto sources, makeSourceSet(scenes, plan, settings));
+Result<FeatureProof> compileFeatureProof(const Build& build, const materials::FeatureCode& code) {
+    const Plan& plan = build.plan;
+    const CompileSettings& settings = build.settings.compile;
+    GLINT_TRY(auto sources, makeSourceSet(*build.scenes, plan, settings));
     FeatureProof proof;
     proof.claim = startClaim();
     materials::FeatureMask mask =

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "emit/compile.h"
-#include "gltf/scene.h"
 #include "prove/prover.h"
 
 #include <glint/result.h>
@@ -15,10 +14,9 @@ struct FeatureProof {
     prove::Claim claim;
 };
 
-// `code` is of the plan's model, and the plan is of a scene that has the feature. Errors are those of
+// `code` is of the plan's model, and the build is of a scene that has the feature. Errors are those of
 // compileShader() and executeSymbolically(): "prove-unsupported" where the code reads what the proof has no
 // bounds of.
-Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const Plan& plan,
-                                         const CompileSettings& settings, const materials::FeatureCode& code);
+Result<FeatureProof> compileFeatureProof(const Build& build, const materials::FeatureCode& code);
 
 }  // namespace glint::compiler

@@ -124,11 +124,16 @@ Result<Package> loadPackage(const compiler::CompiledPackage& compiled) {
     return Package::load(files);
 }
 
+Result<Package> compileAndLoad(const compiler::Build& build, compiler::ModuleCache* cache) {
+    GLINT_TRY(const auto compiled, compilePackage(build, cache));
+    return loadPackage(compiled);
+}
+
 Result<Package> compileAndLoad(const gltf::Scene& scene, compiler::CompileSettings settings,
                                compiler::ModuleCache* cache) {
     settings.emitHeader = false;
-    const Result<compiler::CompiledPackage> compiled = compilePackage(scene, settings, cache);
-    return compiled ? loadPackage(*compiled) : compiled.error();
+    GLINT_TRY(const auto compiled, compilePackage(scene, settings, cache));
+    return loadPackage(compiled);
 }
 
 }  // namespace glint::scene_view

@@ -87,11 +87,11 @@ struct CompileSettings {
     // The renderer gives lights a size, which --sized-lights=auto takes into account.
     bool sizesLights = false;
     // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
-    // lights (emit/lights.h).
+    // lights (resolve/light.h).
     std::optional<std::uint32_t> lightSamples{};
-    EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides what Auto is
-    SkyLight skyLight = SkyLight::Auto;                    // so it does here
-    SizedLights sizedLights = SizedLights::Auto;           // and here
+    EmissiveLights emissiveLights = EmissiveLights::Auto;
+    SkyLight skyLight = SkyLight::Auto;
+    SizedLights sizedLights = SizedLights::Auto;
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     // Whether planning looks at what textures hold (gltf::ImportOptions::trustTextures). Packages with a
@@ -109,7 +109,7 @@ struct CompileSettings {
     bool emitLibrary = false;   // writes shading as functions in GLSL, in library/
     bool emitLinkable = false;  // writes the same functions as a SPIR-V module that can be linked, there
     bool debugInfo = false;     // keeps names in the SPIR-V
-    // A folder with files that stand in for those of shaders/host; empty: none (emit/host.h).
+    // A folder with files that stand in for those of shaders/host; empty: none (resolve/host.h).
     std::string host{};
     // How `strategies` was chosen, for the manifest. Empty if the user named the strategies.
     std::optional<StrategyAdvice> strategyChoice{};

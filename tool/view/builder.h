@@ -5,8 +5,7 @@
 #include "emit/compile.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene.h"
-#include "plan/plan.h"
-#include "settings/configuration.h"
+#include "resolve/resolve.h"
 #include "view/request.h"
 
 #include <glint/package.h>
@@ -27,10 +26,8 @@ namespace glint::view {
 
 // What a picture is made from, apart from the device's copy.
 struct Build {
-    compiler::Settings settings;  // with which it was made; the strategy is chosen
+    compiler::Build resolved;  // of `scene`
     std::shared_ptr<const gltf::Scene> scene;
-    compiler::PlanOptions options;
-    compiler::Plan plan;
     std::shared_ptr<const Package> package;
     std::shared_ptr<const scene_view::TextureSet> textures;
     // By shader ID: SPIR-V instructions of the shader of that case alone; 0: it has none, or it is unknown.
@@ -38,6 +35,11 @@ struct Build {
     std::vector<std::string> layers;      // names of those that its packages may have (PackageLayer::name)
     compiler::BenchFacts facts;           // of the scene, about settings that change nothing
     std::vector<base::InputFile> inputs;  // files to watch
+
+    // Without `auto`.
+    const compiler::Settings& settings() const {
+        return resolved.settings;
+    }
     // Wall clock.
     double readMs = 0.0;
     double compileMs = 0.0;
@@ -88,8 +90,8 @@ public:
 private:
     void work();
     Result<Build> build(const BuildOrder& order);
-    Status readScene(const BuildOrder& order, Build& build);
-    Status makePackage(const BuildOrder& order, Build& build);
+    Status readScene(const BuildOrder& order, const Package* package, Build& build);
+    Status makePackage(const BuildOrder& order, std::optional<Package> given, Build& build);
     Status readTextures(Build& build);
     std::optional<compiler::EarlyShowing> earlyShowing(std::size_t picture, const Build& build);
     bool publishEarly(std::size_t picture, const compiler::CompiledPackage& early);
@@ -100,6 +102,7 @@ private:
     compiler::WarmModules warm_;
     // The last scene and its textures, and what they were read with.
     std::shared_ptr<const gltf::Scene> scene_;
+    std::shared_ptr<const gltf::SceneList> list_;  // of it
     std::string sceneKey_;
     std::shared_ptr<const scene_view::TextureSet> textures_;
     std::string texturesKey_;

@@ -67,15 +67,12 @@ Result<std::vector<FeatureProofOutcome>> proveMaterials(const ProveMaterialsOpti
                                                         const Observer& observer) {
     GLINT_TRY(const auto model, materials::loadMaterialModel(options.packs));
     GLINT_TRY(const auto checked, makeCheckedScene(*model, 2));
-    const compiler::CompileSettings settings;
-    const gltf::SceneList scenes({&checked.scene, 1});
-    const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    GLINT_TRY(const auto build, compiler::resolve(std::span(&checked.scene, 1), compiler::CompileSettings()));
     std::vector<FeatureProofOutcome> outcomes;
     for (const CheckedFeature& feature : checked.features) {
         observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked.features.size(),
                                       feature.code->name));
-        const Result<compiler::FeatureProof> proof =
-            compiler::compileFeatureProof(checked.scene, plan, settings, *feature.code);
+        const Result<compiler::FeatureProof> proof = compiler::compileFeatureProof(build, *feature.code);
         FeatureProofOutcome outcome;
         if (proof) {
             prove::ProofOptions limits;

@@ -34,8 +34,10 @@ Status checkPackage(const Package& package, const std::filesystem::path& folder,
 // Loads a package that was just compiled, from memory. Has the errors of Package::load().
 Result<Package> loadPackage(const compiler::CompiledPackage& compiled);
 
-// Compiles `scene` and loads the package, without files that the runtime does not read. Modules that `cache`
-// has are not compiled; it may be null. Has the errors of compilePackage().
+// Compiles a package and loads it. Modules that `cache` has are not compiled; it may be null. Has the errors
+// of compilePackage().
+Result<Package> compileAndLoad(const compiler::Build& build, compiler::ModuleCache* cache = nullptr);
+// Resolves the settings for `scene` before, without files that the runtime does not read.
 Result<Package> compileAndLoad(const gltf::Scene& scene, compiler::CompileSettings settings,
                                compiler::ModuleCache* cache = nullptr);
 
