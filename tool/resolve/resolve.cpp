@@ -113,10 +113,7 @@ std::vector<std::string> runnableStrategies(const Target& target, std::optional<
 class Resolver {
 public:
     Resolver(std::shared_ptr<const gltf::SceneList> list, const Settings& asked, const Target& target)
-        : target_(target),
-          scenes_(*list),
-          settings_(build_.settings),
-          compile_(build_.settings.compile) {
+        : target_(target), scenes_(*list), settings_(build_.settings), compile_(build_.settings.compile) {
         build_.scenes = std::move(list);
         build_.asked = asked;
         build_.settings = asked;
@@ -179,8 +176,9 @@ private:
         if (!settings_.profile.empty()) {
             GLINT_TRY(options.hits, readHits(settings_.profile, scenes_, keys, options, messages));
         }
-        std::ranges::stable_partition(
-            messages, [](const Diagnostic& message) { return message.severity == Severity::Warning; });
+        std::stable_partition(messages.begin(), messages.end(), [](const Diagnostic& message) {
+            return message.severity == Severity::Warning;
+        });
         const LockRequest& lock = settings_.lock;
         LockText before;
         if (!lock.file.empty()) {
@@ -199,7 +197,14 @@ private:
         using enum package::AlphaPolicy;
         const std::optional<package::AlphaPolicy> asked =
             target_.package ? std::optional(target_.package->alpha) : settings_.alpha;
-        const package::AlphaPolicy needed = neededAlphaPolicy(scenes_.materials(), scenes_.primitives());
+        std::vector<std::string> blended;
+        for (const materials::Material& material : scenes_.materials()) {
+            if (material.alphaMode == materials::AlphaMode::Blend) {
+                blended.push_back(material.name.empty() ? "a material without a name" : material.name);
+            }
+        }
+        const package::AlphaPolicy needed =
+            asked && blended.empty() ? *asked : neededAlphaPolicy(scenes_.materials(), scenes_.primitives());
         const package::AlphaPolicy chosen = asked.value_or(needed);
         settings_.alpha = compile_.plan.keys.alpha = chosen;
         const auto note = [this](const char* id, std::string message, const char* hint) {
@@ -209,17 +214,12 @@ private:
             note("alpha-tested", "the scene has alpha masks, so rays test them (--alpha tested)",
                  "--alpha opaque ignores masks where rays hit, which is faster");
         }
-        std::vector<std::string> blended;
-        for (const materials::Material& material : scenes_.materials()) {
-            if (material.alphaMode == materials::AlphaMode::Blend) {
-                blended.push_back(material.name.empty() ? "a material without a name" : material.name);
-            }
-        }
         if (needed != Stochastic || blended.empty()) {
             return;
         }
         if (chosen != Stochastic) {
-            note("alpha-blend", fmt::format("alphaMode BLEND is drawn opaque: {}", base::someOf(blended)), "");
+            note("alpha-blend", fmt::format("alphaMode BLEND is drawn opaque: {}", base::someOf(blended)),
+                 "");
         } else if (!asked) {
             note("alpha-stochastic",
                  fmt::format("alphaMode BLEND is seen with the probability alpha, which is noise at few "
@@ -290,9 +290,10 @@ private:
                 settings_.strategy = chosen;
             } else {
                 // Not every device runs a pipeline of its own.
-                compile_.strategies |= chosen | (package::infoOf(chosen).ownPipeline
-                                                     ? std::uint32_t{package::strategyTable().front().strategy}
-                                                     : 0U);
+                compile_.strategies |=
+                    chosen | (package::infoOf(chosen).ownPipeline
+                                  ? std::uint32_t{package::strategyTable().front().strategy}
+                                  : 0U);
             }
         }
         if (target_.package) {
