@@ -70,9 +70,7 @@ Result<Package> obtainPackage(const Console& console, const compiler::Build& bui
     const compiler::Settings& settings = build.settings;
     if (given) {
         const gltf::Scene& scene = build.scenes->scenes().front();
-        const scene_view::PackageDemand demand{*settings.strategy, settings.renderer.tracer,
-                                               !settings.environment.empty()};
-        GLINT_TRY_DO(scene_view::checkPackage(*given, settings.package, demand, scene));
+        GLINT_TRY_DO(scene_view::checkPackage(*given, build));
         const bool isLit = settings.sun == compiler::Sun::On ||
                            std::ranges::any_of(scene.lights, [](const gltf::Light& light) {
                                return light.shines() || light.canShine;

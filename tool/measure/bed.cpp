@@ -220,9 +220,7 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::B
     auto mounted = std::make_shared<MountedPackage>();
     mounted->settings = settings;
     if (given) {
-        const scene_view::PackageDemand demand{*settings.strategy, settings.renderer.tracer,
-                                               !settings.environment.empty()};
-        GLINT_TRY_DO(scene_view::checkPackage(*given, settings.package, demand, scene));
+        GLINT_TRY_DO(scene_view::checkPackage(*given, build));
         mounted->package = std::make_unique<Package>(std::move(*given));
     } else {
         GLINT_TRY(auto compiled, scene_view::compileAndLoad(build, cache_));

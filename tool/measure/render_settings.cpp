@@ -57,6 +57,11 @@ void addAlternatives(const compiler::Build& build, compiler::BenchFacts& facts) 
         facts.effectsOfAnyRoughness = namesOfChosen(plan->effects);
         facts.manyLights = plan->samples > 0;
     }
+    const auto one = planWith([](auto& settings) { settings.maxBounces = 1; });
+    const auto several = planWith([](auto& settings) { settings.maxBounces = 2; });
+    facts.bouncesLight =
+        one && several &&
+        (one->emissive != several->emissive || one->sky != several->sky || one->sized != several->sized);
 }
 
 }  // namespace

@@ -63,7 +63,6 @@ struct Build {
     std::optional<std::string> lockText{};  // what is to be written to the lock file, if that changes
     std::vector<Diagnostic> messages{};     // warnings and notes about the decisions
     bool draws = false;                     // for pictures on a device
-    bool hasPackage = false;                // the package was there already
     double milliseconds = 0.0;              // wall clock that deciding took
 };
 

@@ -90,6 +90,17 @@ Status checkSettings(const CompileSettings& settings, const std::string& where) 
     return settings.positionFetch ? checkPositionFetch(settings, where) : okStatus();
 }
 
+template <typename Values>
+std::vector<std::string> namesIn(std::uint32_t bits, const Values& values) {
+    std::vector<std::string> names;
+    for (const auto value : values) {
+        if ((bits & value) != 0) {
+            names.emplace_back(package::nameOf(value));
+        }
+    }
+    return names;
+}
+
 // Returns the strategies that can be chosen, in the order of simplestFirst(): those that the package has, if
 // there is one, and that the device can run, if one is known, by `tracer` if that is given.
 std::vector<std::string> runnableStrategies(const Target& target, std::optional<package::Tracer> tracer) {
@@ -118,7 +129,6 @@ public:
         build_.asked = asked;
         build_.settings = asked;
         build_.draws = target.tracers.has_value();
-        build_.hasPackage = target.package.has_value();
     }
 
     Result<Build> resolve() && {
@@ -404,23 +414,11 @@ bool trustsTextures(const Settings& settings, const DecidedPackage* package) {
 }
 
 std::vector<std::string> strategyNames(std::uint32_t strategies) {
-    std::vector<std::string> names;
-    for (const package::Strategy strategy : package::strategies()) {
-        if ((strategies & strategy) != 0) {
-            names.emplace_back(package::nameOf(strategy));
-        }
-    }
-    return names;
+    return namesIn(strategies, package::strategies());
 }
 
 std::vector<std::string> tracerNames(std::uint32_t tracers) {
-    std::vector<std::string> names;
-    for (const package::Tracer tracer : package::kTracers) {
-        if ((tracers & tracer) != 0) {
-            names.emplace_back(package::nameOf(tracer));
-        }
-    }
-    return names;
+    return namesIn(tracers, package::kTracers);
 }
 
 namespace {

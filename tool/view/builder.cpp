@@ -249,10 +249,7 @@ Status Builder::makePackage(const BuildOrder& order, std::optional<Package> give
     GLINT_TRY(build.resolved, compiler::resolve(list_, asked, target));
     const compiler::Build& resolved = build.resolved;
     if (given) {
-        const compiler::Settings& settings = resolved.settings;
-        const scene_view::PackageDemand demand{*settings.strategy, settings.renderer.tracer,
-                                               !settings.environment.empty()};
-        GLINT_TRY_DO(scene_view::checkPackage(*given, settings.package, demand, *build.scene));
+        GLINT_TRY_DO(scene_view::checkPackage(*given, resolved));
         build.package = std::make_shared<const Package>(std::move(*given));
         for (const package::PackageLayer& layer : build.package->layers()) {
             build.layers.push_back(layer.name);

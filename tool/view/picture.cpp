@@ -27,13 +27,6 @@ bool uploadsAlike(const compiler::Settings& a, const compiler::Settings& b) {
     });
 }
 
-bool drawAlike(const RendererOptions& a, const RendererOptions& b) {
-    return a.strategy == b.strategy && a.width == b.width && a.height == b.height && a.tracer == b.tracer &&
-           a.ordering == b.ordering && a.checkOrder == b.checkOrder && a.batchEffects == b.batchEffects &&
-           a.picture == b.picture && a.screenMarch == b.screenMarch && a.bands == b.bands &&
-           a.bounces == b.bounces && a.pipelineThreads == b.pipelineThreads;
-}
-
 // The picture has the size of its part of the window.
 RendererOptions optionsOf(compiler::Settings settings, std::uint32_t width, std::uint32_t height) {
     settings.renderer.width = width;
@@ -118,7 +111,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     }
     lastChange_ = fmt::format("package replaced: {} pipelines made, {} kept", replaced->pipelinesMade,
                               replaced->pipelinesKept);
-    if (drawAlike(options, options_)) {
+    if (options == options_) {
         return true;
     }
     // The scene changes to the package with a sample of the renderer that it has. Then it can get another
@@ -194,7 +187,7 @@ Status Picture::takeBackEarly() {
 
 Status Picture::change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height) {
     const RendererOptions options = optionsOf(settings, width, height);
-    if (!drawAlike(options, options_)) {
+    if (options != options_) {
         GLINT_TRY(device_.renderer, Renderer::create(context_, *build_.package, gpuScene(), options));
         options_ = options;
         inFlight_.clear();
