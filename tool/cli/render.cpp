@@ -45,7 +45,7 @@ namespace glint::cli {
 namespace {
 
 // Returns what the pictures need: the settings of the command line, and what is read of each picture.
-compiler::Settings settingsOf(const RenderArguments& arguments, const Context& context) {
+compiler::Settings settingsOf(const RenderArguments& arguments) {
     compiler::Settings asked = arguments;
     if (const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view)) {
         asked.readLayers = measure::layersFor(*view);
@@ -58,7 +58,6 @@ compiler::Settings settingsOf(const RenderArguments& arguments, const Context& c
     if (!arguments.coverage.empty()) {
         asked.renderer.bands = 1;  // the coverage is that of all pixels at once
     }
-    asked.renderer.pipelineStatistics = arguments.pipelineStatistics && context.handles().pipelineStatistics;
     return asked;
 }
 
@@ -91,7 +90,7 @@ Result<Package> obtainPackage(const Console& console, const compiler::Build& bui
 
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
                                              const std::optional<Package>& given) {
-    HeadlessOptions options = measure::deviceOptions(arguments);
+    HeadlessOptions options = measure::deviceOptions(settingsOf(arguments));
     options.pipelineStatistics = options.pipelineStatistics || arguments.pipelineStatistics;
     if (given) {
         inspect::requirePackage(*given, options);
@@ -130,7 +129,8 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 // Decides what the command line leaves open, and reports it with the options that change nothing.
 Result<compiler::Build> resolve(const Console& console, const RenderArguments& arguments, Context& context,
                                 const gltf::Scene& scene, const Package* package, RenderReport& report) {
-    compiler::Settings asked = settingsOf(arguments, context);
+    compiler::Settings asked = settingsOf(arguments);
+    asked.renderer.pipelineStatistics = arguments.pipelineStatistics && context.handles().pipelineStatistics;
     asked.compile.progress = console.countTo("compiling");
     GLINT_TRY(const auto target, measure::targetOf(asked, context, package, scene));
     GLINT_TRY(auto build, compiler::resolve(std::span(&scene, 1), asked, target));

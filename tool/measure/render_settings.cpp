@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace glint::measure {
 
@@ -108,8 +109,11 @@ HeadlessOptions deviceOptions(const compiler::Settings& settings) {
     options.deviceName = settings.device;
     options.pipelineStatistics = settings.gpu == compiler::kThisDevice;
     options.positionFetch = settings.compile.positionFetch;
+    const auto has = [](const std::vector<std::string>& layers) {
+        return std::ranges::find(layers, "clocks") != layers.end();
+    };
     options.shaderClock =
-        std::ranges::find(settings.compile.layers, "clocks") != settings.compile.layers.end();
+        has(settings.compile.layers) || (settings.package.empty() && has(settings.readLayers));
     options.shaderFloat16 = settings.compile.precision == package::ShadingPrecision::Half;
     return options;
 }
