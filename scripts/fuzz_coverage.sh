@@ -69,7 +69,7 @@ row "\`tool/plan/lock*\`" tool/plan/lock*.cpp
 row "\`tool/spirv\`: reader, statistics, lint" tool/spirv/{call_graph,reader,statistics}.cpp tool/spirv/lint*.cpp
 row "\`tool/image\`" tool/image/{png,exr,exr_bounds,hdr,image_file}.cpp
 row "\`tool/cache\`" tool/cache/*.cpp
-row "\`tool/inspect\`, \`tool/measure\`: manifest, profile" tool/inspect/package.cpp tool/measure/profile.cpp
+row "\`tool/inspect\`, \`tool/resolve\`: manifest, profile" tool/inspect/package.cpp tool/resolve/profile.cpp
 row "\`tool/base\`: JSON and PNG bounds" tool/base/{json,png_bounds}.cpp
 row "\`runtime/src/package/\`" runtime/src/package/package*.cpp
 if [[ -n $html ]]; then

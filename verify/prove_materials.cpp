@@ -12,6 +12,7 @@
 #include "materials/packs.h"
 #include "measure/features/combinations.h"
 #include "plan/plan.h"
+#include "resolve/resolve.h"
 #include "spirv/compiler.h"
 #include "verify/prover.h"
 #include "verify/symbolic.h"
@@ -33,12 +34,10 @@ struct FeatureProof {
     Claim claim;
 };
 
-// `code` is of the plan's model, and the plan is of a scene that has the feature. Errors are those of
+// `code` is of the plan's model, and the build is of a scene that has the feature. Errors are those of
 // compileShader() and executeSymbolically(): "prove-unsupported" where the code reads what the proof has no
 // bounds of.
-Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const compiler::Plan& plan,
-                                         const compiler::CompileSettings& settings,
-                                         const materials::FeatureCode& code);
+Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const materials::FeatureCode& code);
 
 namespace {
 
@@ -224,11 +223,10 @@ void dropUnread(const Program& program, Claim& claim) {
 
 }  // namespace
 
-Result<FeatureProof> compileFeatureProof(const gltf::Scene& scene, const compiler::Plan& plan,
-                                         const compiler::CompileSettings& settings,
-                                         const materials::FeatureCode& code) {
-    const gltf::SceneList scenes({&scene, 1});
-    GLINT_TRY(auto sources, compiler::makeSourceSet(scenes, plan, settings));
+Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const materials::FeatureCode& code) {
+    const compiler::Plan& plan = build.plan;
+    const compiler::CompileSettings& settings = build.settings.compile;
+    GLINT_TRY(auto sources, compiler::makeSourceSet(*build.scenes, plan, settings));
     FeatureProof proof;
     proof.claim = startClaim();
     materials::FeatureMask mask =
@@ -349,14 +347,12 @@ Result<std::vector<FeatureProofOutcome>> proveMaterials(const ProveMaterialsOpti
                                                         const measure::Observer& observer) {
     GLINT_TRY(const auto model, materials::loadMaterialModel(options.packs));
     GLINT_TRY(const auto checked, measure::makeCheckedScene(*model, 2));
-    const compiler::CompileSettings settings;
-    const gltf::SceneList scenes({&checked.scene, 1});
-    const compiler::Plan plan = compiler::makePlan(scenes.materials(), scenes.primitives(), settings.plan);
+    GLINT_TRY(const auto build, compiler::resolve(std::span(&checked.scene, 1), compiler::CompileSettings()));
     std::vector<FeatureProofOutcome> outcomes;
     for (const measure::CheckedFeature& feature : checked.features) {
         observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked.features.size(),
                                       feature.code->name));
-        const Result<FeatureProof> proof = compileFeatureProof(checked.scene, plan, settings, *feature.code);
+        const Result<FeatureProof> proof = compileFeatureProof(build, *feature.code);
         FeatureProofOutcome outcome;
         if (proof) {
             ProofOptions limits;

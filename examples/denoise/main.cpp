@@ -7,6 +7,7 @@
 #include "settings/table.h"
 
 #include <glint/measure/render_settings.h>
+#include <glint/measure/target.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
@@ -184,11 +185,11 @@ void run(Options& options) {
     glint::HeadlessOptions headless = glint::measure::deviceOptions(settings);
     headless.validation = options.validation ? glint::Validation::Synchronization : glint::Validation::Off;
     const auto context = valueOf(glint::Context::createHeadless(headless));
-    const auto compile = [&](const std::vector<std::string>& layers) {
+    const auto compile = [&](const std::vector<std::string>& layers) -> glint::Result<glint::Package> {
         settings.compile.layers = layers;
-        return glint::scene_view::compileAndLoad(
-            scene, glint::measure::compileSettings(settings, settings.compile.plan,
-                                                   context->handles().tracers, scene));
+        GLINT_TRY(const auto target, glint::measure::targetOf(settings, *context, nullptr, scene));
+        GLINT_TRY(const auto build, glint::compiler::resolve(std::span(&scene, 1), settings, target));
+        return glint::scene_view::compileAndLoad(build);
     };
     std::vector<std::string> layers = denoise::wantedLayers();
     for (const std::string& layer : denoise::imageLayers()) {

@@ -130,6 +130,21 @@ TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
     EXPECT_TRUE(has(both.err, "--fallback")) << both.err;
 }
 
+// A bench reads the scene as each of its packages was made.
+TEST_F(TrustTextures, ABenchTakesPackagesThatTrustNone) {
+    ASSERT_EQ(compile("blind", "off").exit, 0);
+    const Outcome outcome = run({"bench",      "scene.gltf",  "-o",          "out",
+                                 "--quick",    "--size",      "16x9",        "--spp",
+                                 "1",          "--only",      "spp",         "--depth",
+                                 "singles",    "--rounds",    "1",           "--reference-error",
+                                 "1",          "--candidate", "blind=blind", "--strategy",
+                                 "visibility", "--json"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    EXPECT_FALSE(has(outcome.err, "bench-point")) << outcome.err;
+    const Json points = outcome.json().at("points");
+    EXPECT_TRUE(std::ranges::any_of(points, [](const Json& point) { return point.at("name") == "blind"; }));
+}
+
 TEST_F(TrustTextures, DoesWithoutAnImageThatCantBeRead) {
     writeText(path("uncoated.png"), "no image");
     std::filesystem::remove(path("closed.png"));

@@ -3,10 +3,10 @@
 //
 //   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
 #include "base/files.h"
-#include "emit/builtin.h"
 #include "emit/glsl/flatten.h"
 #include "emit/material_code.h"
 #include "materials/material_model.h"
+#include "resolve/builtin.h"
 #include "translate.h"
 
 #include <fmt/format.h>

@@ -128,8 +128,8 @@ Version makeVersion(const materials::MaterialModel* model, const Version* before
                                          {}};
     }
     Result<compiler::CompiledPackage> compiled =
-        compilePackage(std::span(version.scene.get(), 1), paintedSettings(fallback), &sharedModules(), {},
-                       nullptr, showing ? &*showing : nullptr);
+        compilePackage(*compiler::resolve(std::span(version.scene.get(), 1), paintedSettings(fallback)),
+                       &sharedModules(), nullptr, showing ? &*showing : nullptr);
     EXPECT_TRUE(compiled) << toString(compiled.error());
     if (compiled) {
         version.compiled = std::move(*compiled);
@@ -374,8 +374,8 @@ TEST_F(EarlyPackage, OtherEditsTakeTheOrdinaryWay) {
     bool shown = false;
     const compiler::EarlyShowing showing{
         &version(0).compiled, [&](const compiler::CompiledPackage&) { return shown = true; }, {}};
-    ASSERT_TRUE(
-        compilePackage(std::span(&repainted, 1), paintedSettings(), &sharedModules(), {}, nullptr, &showing));
+    ASSERT_TRUE(compilePackage(*compiler::resolve(std::span(&repainted, 1), paintedSettings()),
+                               &sharedModules(), nullptr, &showing));
     EXPECT_FALSE(shown);
 }
 
@@ -395,8 +395,8 @@ TEST_F(EarlyPackage, AnOutdatedCompilationEnds) {
                                                  return true;
                                              }};
         const Result<compiler::CompiledPackage> compiled =
-            compilePackage(std::span(&scene, 1), paintedSettings(), published ? nullptr : &sharedModules(),
-                           {}, nullptr, &showing);
+            compilePackage(*compiler::resolve(std::span(&scene, 1), paintedSettings()),
+                           published ? nullptr : &sharedModules(), nullptr, &showing);
         EXPECT_EQ(compiled.ok(), !published);
         if (!compiled) {
             EXPECT_EQ(compiled.error().id, "outdated");

@@ -1,11 +1,11 @@
 // Triangles that emit light as lights: their samples share the light with the rays that find them by chance,
 // so that the mean is the same, and the noise is less.
-#include "emit/lights.h"
 #include "render/harness.h"
 #include "render/light_pictures.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "resolve/light.h"
 #include "support/nightly.h"
 
 #include <gtest/gtest.h>
@@ -479,7 +479,7 @@ TEST(EmissiveLights, AutoTakesAFewSamples) {
         scene.lights.assign(static_cast<std::size_t>(points), light);
         compiler::CompileSettings settings = settingsOf({EmissiveLights::On, 1, 1});
         settings.lightSamples.reset();
-        return *compiler::lightSamplesOf({&scene, 1}, settings);
+        return compiler::planLight(gltf::SceneList({&scene, 1}), settings)->samples;
     };
     EXPECT_EQ(samplesOf(4, 0), 2U);
     EXPECT_EQ(samplesOf(4, 16), 2U);

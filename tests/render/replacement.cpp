@@ -81,7 +81,8 @@ void expectEqualImage(const LinearImage& image, const LinearImage& reference, co
 
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
                                          const compiler::CompileSettings& settings) {
-    Result<Package> package = scene_view::compileAndLoad(scene, settings, &sharedModules());
+    Result<Package> package =
+        scene_view::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules());
     if (!package) {
         ADD_FAILURE() << toString(package.error());
         return nullptr;

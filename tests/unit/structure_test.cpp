@@ -24,9 +24,9 @@ namespace package = glint::package;
 
 // The parts of the tool, from what knows least to what knows most. A part includes itself and the parts
 // before it.
-constexpr std::string_view kParts[] = {"base",       "materials", "plan", "gltf",    "scene", "spirv",
-                                       "cache",      "settings",  "emit", "inspect", "image", "synthetic",
-                                       "scene_view", "measure",   "view", "cli"};
+constexpr std::string_view kParts[] = {"base",      "materials",  "plan",    "gltf", "scene",   "spirv",
+                                       "cache",     "settings",   "resolve", "emit", "inspect", "image",
+                                       "synthetic", "scene_view", "measure", "view", "cli"};
 // The first part that may use the runtime and Vulkan, and not only the headers that say what a package is and
 // what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";
@@ -130,8 +130,8 @@ TEST(Structure, EveryFolderOfTheToolIsAPart) {
 // are one library.
 TEST(Structure, EveryPartOfTheToolHasANamespaceOfItsOwn) {
     const std::map<std::string, std::string, std::less<>> shared{
-        {"plan", "compiler"},  {"scene", "compiler"},    {"spirv", "compiler"},
-        {"cache", "compiler"}, {"settings", "compiler"}, {"emit", "compiler"}};
+        {"plan", "compiler"},     {"scene", "compiler"},   {"spirv", "compiler"}, {"cache", "compiler"},
+        {"settings", "compiler"}, {"resolve", "compiler"}, {"emit", "compiler"}};
     static const std::regex kNamespace(R"(^namespace (glint[\w:]*) \{)");
     for (const std::string_view part : kParts) {
         const auto found = shared.find(part);

@@ -1,8 +1,8 @@
 #include "view/shot_command.h"
 
+#include "resolve/resolve.h"
 #include "settings/table.h"
 #include "view/passes_panel.h"
-#include "view/picture.h"
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,7 @@
 namespace {
 
 namespace compiler = glint::compiler;
-using glint::view::Change;
-using glint::view::changeBetween;
+using compiler::Change;
 using glint::view::PassHistory;
 using glint::view::shotWords;
 using Words = std::vector<std::string>;

@@ -3,10 +3,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 namespace glint::base {
 
 std::string join(const std::vector<std::string>& words) {
     return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string someOf(const std::vector<std::string>& texts, std::size_t most) {
+    const std::size_t shown = std::min(texts.size(), most);
+    const std::string text =
+        fmt::format("{}", fmt::join(texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
+    return texts.size() > shown ? text + fmt::format("; and {} more", texts.size() - shown) : text;
 }
 
 std::string shellQuoted(std::string_view text) {

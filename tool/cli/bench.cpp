@@ -10,12 +10,10 @@
 #include "cli/render/pipeline_cache.h"
 #include "cli/report.h"
 #include "gltf/import.h"
-#include "gltf/scene_list.h"
 #include "measure/device_report.h"
 #include "measure/report_json.h"
 
 #include <glint/measure/bench.h>
-#include <glint/measure/profile.h>
 
 #include <fmt/format.h>
 
@@ -29,14 +27,17 @@ namespace glint::cli {
 namespace {
 
 Status bench(const Console& console, const BenchArguments& arguments, const gltf::Scene& scene,
-             const compiler::PlanOptions& plan, measure::BenchReport& report) {
+             const measure::SceneReader& reader, measure::BenchReport& report) {
     const base::Clock::time_point start = base::Clock::now();
     CompileCache cache(arguments.render.cache, "");
-    GLINT_TRY(const auto bed,
-              measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store()));
+    GLINT_TRY(const auto bed, measure::BenchBed::create(console, arguments.render, scene, reader,
+                                                        cache.modules(), cache.store()));
+    if (console.refused()) {
+        return okStatus();
+    }
     PipelineCacheFile pipelineCache(console, bed->context(),
                                     pipelineCacheFolder(arguments.render.pipelines, arguments.render.cache));
-    Status done = measure::runBench(console, arguments, plan, *bed, cache.store(), report);
+    Status done = measure::runBench(console, arguments, *bed, cache.store(), report);
     pipelineCache.save();
     cache.close(console);
     report.seconds = std::chrono::duration<double>(base::Clock::now() - start).count();
@@ -63,16 +64,14 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(scene.error());
     }
     console.report(scene->warnings);
-    const Result<measure::PlanChoice> plan =
-        measure::choosePlan(arguments.render, gltf::SceneList({&*scene, 1}));
-    if (!plan) {
-        return fail(plan.error());
-    }
-    console.report(plan->warnings);
-    console.report(plan->notes);
     if (console.refused()) {
         return kExitFailed;
     }
+    const measure::SceneReader reader = [&](bool trustsTextures) {
+        gltf::ImportOptions other = *import;
+        other.trustTextures = trustsTextures;
+        return importScene(arguments.render.scene, other);
+    };
     measure::BenchReport report;
     report.command = arguments.command;
     report.date = measure::utcNow();
@@ -83,7 +82,7 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = measure::metricNamed(arguments.metric);
-    if (Status done = bench(console, arguments, *scene, plan->options, report); !done) {
+    if (Status done = bench(console, arguments, *scene, reader, report); !done) {
         return fail(done.error());
     }
     if (console.refused()) {

@@ -12,17 +12,13 @@
 #include "cli/compile/outputs.h"
 #include "cli/compile/summary.h"
 #include "cli/compile/watch.h"
-#include "cli/options/effect_options.h"
-#include "cli/options/lock_option.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/effects.h"
 #include "emit/package/embed_source.h"
 #include "emit/package/json.h"
 #include "gltf/import.h"
 
-#include <glint/measure/profile.h>
-#include <glint/measure/strategy_advice.h>
+#include <glint/measure/target.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,6 +26,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -41,8 +38,9 @@ namespace {
 // The facts to report at the end. The package is absent after a dry run, and after planning.
 struct Outcome {
     const CompileArguments& arguments;
-    const gltf::SceneList& scenes;
-    const compiler::Plan& plan;
+    const compiler::Build& build;
+    const gltf::SceneList& scenes = *build.scenes;
+    const compiler::Plan& plan = build.plan;
     const compiler::CompiledPackage* package = nullptr;
     std::optional<std::size_t> planned{};  // distinct modules, after --plan-only
 
@@ -111,7 +109,7 @@ base::Json toJson(const Outcome& outcome) {
             {"upToDate", nullptr},
             {"scenes", scenesToJson(outcome.scenes)},
             {"variant", base::textOrNull(outcome.scenes.variant())},
-            {"strategyChoice", choiceToJson(outcome.arguments.settings.compile.strategyChoice)},
+            {"strategyChoice", choiceToJson(outcome.build.settings.compile.strategyChoice)},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return base::textOrNull(outcome.arguments.output); })},
@@ -142,10 +140,10 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
         {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
         {"keys present", fmt::format("{}", plan.keys.size())},
         {"cases", fmt::format("{}", caseCount(plan))}};
-    if (outcome.arguments.settings.compile.strategyChoice) {
-        rows.push_back(
-            {"strategies", fmt::format("{} (auto)", base::join(compiler::strategyNames(
-                                                        outcome.arguments.settings.compile.strategies)))});
+    const compiler::CompileSettings& settings = outcome.build.settings.compile;
+    if (settings.strategyChoice) {
+        rows.push_back({"strategies",
+                        fmt::format("{} (auto)", base::join(compiler::strategyNames(settings.strategies)))});
     }
     if (outcome.package != nullptr) {
         rows.push_back({"effects", chosenEffects(plan.effects)});
@@ -207,43 +205,10 @@ std::vector<Diagnostic> warningsOf(std::span<const gltf::Scene> scenes) {
     return warnings;
 }
 
-// Adds to the strategies, if they contain "auto", the one that should be fastest for a frame of 1920 x 1080
-// of each scene, taken together. It uses the device of the calibration, or else the built-in GPU. If the
-// choice has a pipeline of its own, which not every device runs, the first strategy is added. Has the errors
-// of knownCosts() and adviseStrategy(). `made` is the plan with these options; if it is needed, it is made
-// here at the latest.
-Status settleStrategies(const gltf::SceneList& scenes, const compiler::PlanOptions& plan,
-                        std::optional<compiler::Plan>& made, CompileArguments& arguments) {
-    compiler::Settings& settings = arguments.settings;
-    if (!settings.advisesStrategy) {
-        return okStatus();
-    }
-    GLINT_TRY(const auto costs, measure::knownCosts(settings, false));
-    compiler::FrameShape shape;
-    shape.effects = planEffects(scenes, settingsOf(arguments, plan)).effects.all;
-    shape.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
-    shape.bounces = settings.compile.maxBounces;
-    if (!made) {
-        made = makePlan(scenes.materials(), scenes.primitives(), plan);
-    }
-    GLINT_TRY(auto advice,
-              measure::adviseStrategy(
-                  costs, measure::roundsOf(scenes, *made, plan, shape),
-                  measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels));
-    const package::Strategy chosen = *valueNamed<package::Strategy>(advice.choice.strategy);
-    settings.compile.strategies |=
-        chosen |
-        (package::infoOf(chosen).ownPipeline ? std::uint32_t{package::strategyTable().front().strategy} : 0U);
-    settings.compile.strategyChoice = std::move(advice);
-    return okStatus();
-}
-
 // Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.
-int planOnly(const Console& console, const CompileArguments& arguments, std::span<const gltf::Scene> scenes,
-             const compiler::PlanOptions& options, std::optional<compiler::Plan> made, const LockChoice& lock,
+int planOnly(const Console& console, const CompileArguments& arguments, const compiler::Build& build,
              std::span<const std::string> dependencies, base::Clock::time_point start) {
-    const Result<compiler::PackagePlan> planned =
-        planPackage(scenes, settingsOf(arguments, options), std::move(made));
+    const Result<compiler::PackagePlan> planned = planPackage(build);
     if (!planned) {
         return fail(console, planned.error());
     }
@@ -251,32 +216,26 @@ int planOnly(const Console& console, const CompileArguments& arguments, std::spa
     if (Status written = writePlan(arguments, *planned, dependencies); !written) {
         return fail(console, written.error());
     }
-    if (lock.text) {
-        if (Status kept = base::writeFile(arguments.lock.file, *lock.text); !kept) {
+    if (build.lockText) {
+        if (Status kept = base::writeFile(arguments.settings.lock.file, *build.lockText); !kept) {
             return fail(console, kept.error());
         }
     }
     if (Status listed = writeDepfile(arguments.depfile, dependencies); !listed) {
         return fail(console, listed.error());
     }
-    const gltf::SceneList list(scenes);
-    const Outcome outcome{arguments, list, planned->plan, nullptr, planned->modules.size()};
+    const Outcome outcome{.arguments = arguments, .build = build, .planned = planned->modules.size()};
     tell(console, summaryOf(outcome), std::nullopt, false, base::millisecondsSince(start));
     return kExitDone;
 }
 
 // Does everything but to compile and to write.
-int dryRun(const Console& console, const CompileArguments& arguments, std::span<const gltf::Scene> scenes,
-           const compiler::PlanOptions& options, std::optional<compiler::Plan> made,
+int dryRun(const Console& console, const CompileArguments& arguments, const compiler::Build& build,
            base::Clock::time_point start) {
-    const Result<compiler::PackagePlan> planned =
-        planPackage(scenes, settingsOf(arguments, options), std::move(made));
-    if (!planned) {
+    if (const Result<compiler::PackagePlan> planned = planPackage(build); !planned) {
         return fail(console, planned.error());
     }
-    const gltf::SceneList list(scenes);
-    tell(console, summaryOf(Outcome{arguments, list, planned->plan}), std::nullopt, false,
-         base::millisecondsSince(start));
+    tell(console, summaryOf(Outcome{arguments, build}), std::nullopt, false, base::millisecondsSince(start));
     return kExitDone;
 }
 
@@ -313,11 +272,41 @@ bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments
     return addFiles(run.outputs, embedded);
 }
 
+// What a run reads, and what is decided about it.
+struct Resolved {
+    std::vector<gltf::Scene> scenes;
+    compiler::Build build;
+};
+
+Result<Resolved> readAndResolve(const Console& console, const CompileArguments& arguments,
+                                CompileCache& cache,
+                                const std::function<void(const std::vector<Diagnostic>&)>& report) {
+    GLINT_TRY_DO(checkOutputs(arguments));
+    console.progress("reading " + base::join(arguments.scenes));
+    GLINT_TRY(const auto import, importOptions(arguments.settings, ImageReading::None, cache.store()));
+    Resolved resolved;
+    GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
+    report(warningsOf(resolved.scenes));
+    GLINT_TRY(const auto target, measure::targetOf(arguments.settings));
+    compiler::Settings asked = settingsOf(arguments);
+    asked.compile.progress = console.countTo("compiling");
+    GLINT_TRY(resolved.build, compiler::resolve(resolved.scenes, asked, target));
+    const compiler::Build& build = resolved.build;
+    if (build.lockText) {
+        GLINT_TRY_DO(base::checkOutputFile(build.settings.lock.file));
+    }
+    report(build.messages);
+    if (const std::optional<compiler::StrategyAdvice>& advice = build.settings.compile.strategyChoice) {
+        console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
+    }
+    report(idleSettings(build));
+    return resolved;
+}
+
 // `watched` is null unless the run is one of a watch.
-int compileOnce(const Console& console, const CompileArguments& given, CompileCache& cache,
+int compileOnce(const Console& console, const CompileArguments& arguments, CompileCache& cache,
                 std::span<const std::filesystem::path> further, WatchedRun* watched) {
     const base::Clock::time_point start = base::Clock::now();
-    CompileArguments arguments = given;
     const std::optional<int> done = watched != nullptr || arguments.dryRun || !arguments.planOnly.empty()
                                         ? std::nullopt
                                         : repeatEarlier(console, arguments, cache, start);
@@ -330,54 +319,16 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
     };
-    if (Status possible = checkOutputs(arguments); !possible) {
-        return fail(console, possible.error());
+    const Result<Resolved> resolved = readAndResolve(console, arguments, cache, report);
+    if (!resolved) {
+        return fail(console, resolved.error());
     }
-    console.progress("reading " + base::join(arguments.scenes));
-    const Result<gltf::ImportOptions> import =
-        importOptions(arguments.settings, ImageReading::None, cache.store());
-    if (!import) {
-        return fail(console, import.error());
-    }
-    const Result<std::vector<gltf::Scene>> scenes = readScenes(arguments.scenes, *import);
-    if (!scenes) {
-        return fail(console, scenes.error());
-    }
-    const gltf::SceneList list(*scenes);
-    Result<measure::PlanChoice> plan = measure::choosePlan(arguments.settings, list);
-    if (!plan) {
-        return fail(console, plan.error());
-    }
-    report(warningsOf(*scenes));
-    report(plan->warnings);
-    report(plan->notes);
-    arguments.settings = withSettings(std::move(arguments.settings), plan->decided);
-    Result<LockChoice> lock = applyLock(arguments.lock, list, plan->options);
-    if (!lock) {
-        return fail(console, lock.error());
-    }
-    if (lock->text) {
-        if (Status possible = base::checkOutputFile(arguments.lock.file); !possible) {
-            return fail(console, possible.error());
-        }
-    }
-    report(lock->warnings);
-    report(lock->notes);
-    // From here on there is one plan, made where it is first needed.
-    std::optional<compiler::Plan> made = std::move(lock->plan);
-    if (Status settled = settleStrategies(list, plan->options, made, arguments); !settled) {
-        return fail(console, settled.error());
-    }
-    if (const std::optional<compiler::StrategyAdvice>& advice = arguments.settings.compile.strategyChoice) {
-        console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
-    }
-    report(effectWarnings(list, settingsOf(arguments, plan->options)));
-    report(idleSettings(*scenes, compiler::kOfCompile, arguments.settings, plan->options));
     if (console.refused()) {
         return kExitFailed;
     }
+    const compiler::Build& build = resolved->build;
     // The files of scenes come first, each in the state in which it was read.
-    const std::vector<compiler::FileState> sceneFiles = filesOf(*scenes);
+    const std::vector<compiler::FileState> sceneFiles = filesOf(resolved->scenes);
     run.inputs.insert(run.inputs.begin(), sceneFiles.begin(), sceneFiles.end());
     std::vector<std::string> dependencies = pathsOf(sceneFiles);
     for (const std::filesystem::path& file : further) {
@@ -388,24 +339,21 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         return fail(console, listed.error());
     }
     if (arguments.dryRun) {
-        return dryRun(console, arguments, *scenes, plan->options, std::move(made), start);
+        return dryRun(console, arguments, build, start);
     }
     if (!arguments.planOnly.empty()) {
-        return planOnly(console, arguments, *scenes, plan->options, std::move(made), *lock, dependencies,
-                        start);
+        return planOnly(console, arguments, build, dependencies, start);
     }
     if (watched != nullptr) {
         for (const compiler::FileState& file : run.inputs) {
             watched->inputs.push_back({file.path, file.hash});
         }
-        watched->readMs = base::millisecondsSince(start);
+        watched->readMs = base::millisecondsSince(start) - build.milliseconds;
     }
     console.progress("compiling " + base::join(arguments.scenes));
-    compiler::CompileSettings settings = settingsOf(arguments, plan->options);
-    settings.progress = console.countTo("compiling");
-    Result<compiler::CompiledPackage> package = compilePackage(
-        *scenes, settings, cache.modules(), std::move(made), watched != nullptr ? &watched->warm : nullptr,
-        watched != nullptr && watched->showing ? &*watched->showing : nullptr);
+    Result<compiler::CompiledPackage> package =
+        compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr,
+                       watched != nullptr && watched->showing ? &*watched->showing : nullptr);
     if (!package) {
         if (watched != nullptr && package.error().id == "outdated") {
             watched->outdated = true;
@@ -415,9 +363,9 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
     }
     console.progress("writing " + outputsOf(arguments));
     const base::Clock::time_point compiled = base::Clock::now();
-    const CompileOutputs outputs{arguments.output,  arguments.embed, arguments.lock, *lock,
-                                 arguments.depfile, dependencies};
-    if (Status written = writeOutputs(list, *package, outputs); !written) {
+    if (Status written = writeOutputs(build, *package,
+                                      {arguments.output, arguments.embed, arguments.depfile, dependencies});
+        !written) {
         return fail(console, written.error());
     }
     if (watched != nullptr) {
@@ -426,9 +374,9 @@ int compileOnce(const Console& console, const CompileArguments& given, CompileCa
         watched->made = std::move(*package);
         return kExitDone;
     }
-    CompileSummary summary = summaryOf(Outcome{arguments, list, package->plan, &*package});
+    CompileSummary summary = summaryOf(Outcome{.arguments = arguments, .build = build, .package = &*package});
     // A run that changes its own input may report other things next time, so it is not kept.
-    if (known && !lock->text && addOutputs(*package, arguments, run)) {
+    if (known && !build.lockText && addOutputs(*package, arguments, run)) {
         run.summary = pack(summary);
         cache.keep(run);
     }
@@ -466,7 +414,7 @@ void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line
                         "--watch", "--dry-run", "--jobs"}});
     addCompileOptions(command, *arguments);
     command.callback([arguments, &command, &chosen] {
-        settleCompile(command, *arguments);
+        finishCompile(command, *arguments);
         chosen = [arguments](const Console& console) { return compile(console, *arguments); };
     });
 }

@@ -6,8 +6,6 @@
 #include "cli/explain/material_text.h"
 #include "cli/explain/motion_text.h"
 #include "cli/explain/plan_text.h"
-#include "cli/options/effect_options.h"
-#include "cli/options/lock_option.h"
 #include "cli/options/setting_options.h"
 #include "cli/report.h"
 #include "cli/table.h"
@@ -15,8 +13,7 @@
 #include "gltf/import.h"
 #include "plan/gpu_costs.h"
 
-#include <glint/measure/profile.h>
-#include <glint/measure/strategy_advice.h>
+#include <glint/measure/target.h>
 
 #include <fmt/format.h>
 
@@ -24,8 +21,7 @@
 #include <charconv>
 #include <memory>
 #include <optional>
-#include <set>
-#include <utility>
+#include <span>
 
 namespace glint::cli {
 
@@ -36,20 +32,11 @@ struct ExplainArguments {
     std::string material;
     bool wholePlan = false;
     compiler::Settings settings;
-    LockArguments lock;
 };
 
-// The scene, and its plan.
-struct Planned {
-    const gltf::SceneList& scenes;
-    compiler::PlanOptions options;
-    compiler::Plan plan;
-};
-
-std::string toText(const PlannedScenes& planned, int material, Detail detail) {
-    const std::string text =
-        fmt::format("material {}: {}\n", material, planned.scenes.materialName(material));
-    const std::vector<std::vector<std::string>> rows = materialRows(planned, material, detail);
+std::string toText(const compiler::Build& build, int material, Detail detail) {
+    const std::string text = fmt::format("material {}: {}\n", material, build.scenes->materialName(material));
+    const std::vector<std::vector<std::string>> rows = materialRows(build, material, detail);
     return text + (rows.empty() ? "  no primitive uses it: no key, no shader\n" : formatFields(rows, detail));
 }
 
@@ -133,19 +120,17 @@ Result<std::vector<int>> chooseMaterials(const gltf::SceneList& scenes, const st
     return chosen;
 }
 
-// Advises for a frame of the usual size, with the effects that the scene calls for.
-Result<compiler::StrategyAdvice> advise(const measure::KnownCosts& costs, const Planned& planned,
-                                        const compiler::EffectPlan& effects, std::uint32_t bounces) {
-    compiler::FrameShape shape;
-    shape.effects = effects.effects.all;
-    shape.bounces = bounces;
-    return measure::adviseStrategy(
-        costs, measure::roundsOf(planned.scenes, planned.plan, planned.options, shape),
-        measure::runnableStrategies(package::kAllTracers, std::nullopt, nullptr), shape.pixels);
+// Returns a line for each effect: whether it is chosen, and why.
+std::string effectsText(const compiler::EffectPlan& plan) {
+    std::vector<std::vector<std::string>> rows{{"effect", "auto", "why"}};
+    for (const compiler::EffectDecision& decision : plan.decisions) {
+        rows.push_back({decision.name, decision.chosen ? "yes" : "no", decision.reason});
+    }
+    return formatTable(rows);
 }
 
 // Returns what the table of --gpu says; null without one.
-base::Json gpuToJson(const measure::KnownCosts& costs, double acceptedError) {
+base::Json gpuToJson(const compiler::KnownCosts& costs, double acceptedError) {
     if (!costs.gpu) {
         return nullptr;
     }
@@ -172,7 +157,7 @@ base::Json gpuToJson(const measure::KnownCosts& costs, double acceptedError) {
             {"choices", std::move(choices)}};
 }
 
-std::string gpuText(const measure::KnownCosts& costs, double acceptedError) {
+std::string gpuText(const compiler::KnownCosts& costs, double acceptedError) {
     if (!costs.gpu) {
         return {};
     }
@@ -184,106 +169,80 @@ std::string gpuText(const measure::KnownCosts& costs, double acceptedError) {
     return wrapped(text) + "\n\n";
 }
 
-int explain(const Console& console, const ExplainArguments& arguments) {
-    CompileCache known(CacheArguments{}, "");
-    const Result<gltf::ImportOptions> import =
-        importOptions(arguments.settings, ImageReading::None, known.store());
-    if (!import) {
-        console.report(import.error());
-        return kExitFailed;
+base::Json toJson(const ExplainArguments& arguments, const compiler::Build& build,
+                  const compiler::KnownCosts& costs, const std::vector<int>& materials) {
+    const gltf::Scene& scene = build.scenes->scenes().front();
+    const compiler::PlanOptions& options = build.settings.compile.plan;
+    base::Json result{{"scene", arguments.scene},
+                      {"sceneInFile", compiler::sceneInFileToJson(gltf::sceneInFile(scene))},
+                      {"scenesInFile", scenesInFileToJson(scene)},
+                      {"merge", nameOf(options.merge)},
+                      {"alpha", nameOf(options.keys.alpha)},
+                      {"hitLobes", featuresToJson(*build.plan.model, options.keys.keptLobes)},
+                      {"variant", base::textOrNull(scene.variant)},
+                      {"variants", scene.variants}};
+    if (arguments.wholePlan) {
+        result["plan"] = planToJson(build);
+        return result;
     }
-    const Result<gltf::Scene> scene = importScene(arguments.scene, *import);
-    if (!scene) {
-        console.report(scene.error());
-        return kExitFailed;
+    result["sameImages"] = sameImagesToJson(scene);
+    result["effects"] = effectsToJson(build.plan.effects);
+    result["strategies"] = strategyChoiceToJson(*build.settings.compile.strategyChoice);
+    result["gpu"] = gpuToJson(costs, build.asked.precisionError);
+    result["motion"] = motionToJson(scene);
+    result["materials"] = base::Json::array();
+    for (const int material : materials) {
+        result["materials"].push_back(materialToJson(build, material));
     }
-    console.report(scene->warnings);
-    const Result<measure::KnownCosts> costs = measure::knownCosts(arguments.settings, false);
-    if (!costs) {
-        console.report(costs.error());
-        return kExitFailed;
-    }
-    const gltf::SceneList scenes({&*scene, 1});
-    const Result<std::vector<int>> materials = chooseMaterials(scenes, arguments.material);
-    if (!materials) {
-        console.report(materials.error());
-        return kExitFailed;
-    }
-    Result<measure::PlanChoice> choice = measure::choosePlan(arguments.settings, scenes);
-    if (!choice) {
-        console.report(choice.error());
-        return kExitFailed;
-    }
-    console.report(choice->warnings);
-    console.report(choice->notes);
-    const Result<LockChoice> lock = applyLock(arguments.lock, scenes, choice->options);
-    if (!lock) {
-        console.report(lock.error());
-        return kExitFailed;
-    }
-    console.report(lock->warnings);
-    console.report(lock->notes);
-    Planned planned{scenes, std::move(choice->options), {}};
-    planned.plan =
-        lock->plan ? *lock->plan : makePlan(scenes.materials(), scenes.primitives(), planned.options);
-    if (const std::optional<std::string> excess = describeExcess(planned.plan, planned.options)) {
-        console.report(makeWarning("max-shaders", scene->path, *excess));
-    }
+    return result;
+}
 
+void print(const Console& console, const ExplainArguments& arguments, const compiler::Build& build,
+           const compiler::KnownCosts& costs, const std::vector<int>& materials) {
     const Detail detail = console.isVerbose() ? Detail::Whole : Detail::Short;
-    const PlannedScenes whole{scenes, planned.options, planned.plan};
-    if (arguments.wholePlan && !console.isJson()) {
-        console.print(planText(whole, detail));
-        return kExitDone;
+    if (arguments.wholePlan) {
+        console.print(planText(build, detail));
+        return;
     }
-    const compiler::EffectPlan effects = automaticEffects(scenes);
-    const Result<compiler::StrategyAdvice> advice =
-        advise(*costs, planned, effects, arguments.settings.compile.maxBounces);
-    if (!advice) {
-        console.report(advice.error());
-        return kExitFailed;
-    }
-    if (console.isJson()) {
-        base::Json result{{"scene", arguments.scene},
-                          {"sceneInFile", compiler::sceneInFileToJson(gltf::sceneInFile(*scene))},
-                          {"scenesInFile", scenesInFileToJson(*scene)},
-                          {"merge", nameOf(planned.options.merge)},
-                          {"alpha", nameOf(planned.options.keys.alpha)},
-                          {"hitLobes", featuresToJson(*planned.plan.model, planned.options.keys.keptLobes)},
-                          {"variant", base::textOrNull(scene->variant)},
-                          {"variants", scene->variants}};
-        if (arguments.wholePlan) {
-            result["plan"] = planToJson(whole);
-        } else {
-            result["sameImages"] = sameImagesToJson(*scene);
-            result["effects"] = effectsToJson(effects);
-            result["strategies"] = strategyChoiceToJson(*advice);
-            result["gpu"] = gpuToJson(*costs, arguments.settings.precisionError);
-            result["motion"] = motionToJson(*scene);
-            result["materials"] = base::Json::array();
-            for (const int material : *materials) {
-                result["materials"].push_back(materialToJson(whole, material));
-            }
-        }
-        console.result(result);
-        return kExitDone;
-    }
-    console.print(scenesText(*scene));
-    console.print(variantsText(*scene));
+    const gltf::Scene& scene = build.scenes->scenes().front();
+    console.print(scenesText(scene));
+    console.print(variantsText(scene));
     if (arguments.material.empty()) {
-        console.print(effectsText(effects));
-        console.print(strategiesText(*advice));
-        console.print(gpuText(*costs, arguments.settings.precisionError));
-        console.print(motionText(*scene));
-        console.print(sameImagesText(*scene));
+        console.print(effectsText(build.plan.effects));
+        console.print(strategiesText(*build.settings.compile.strategyChoice));
+        console.print(gpuText(costs, build.asked.precisionError));
+        console.print(motionText(scene));
+        console.print(sameImagesText(scene));
     }
-    for (const int material : *materials) {
-        console.print(toText(whole, material, detail));
+    for (const int material : materials) {
+        console.print(toText(build, material, detail));
     }
-    if (materials->empty()) {
+    if (materials.empty()) {
         console.print("no materials\n");
     }
-    return kExitDone;
+}
+
+Status explain(const Console& console, const ExplainArguments& arguments) {
+    CompileCache known(CacheArguments{}, "");
+    GLINT_TRY(const auto import, importOptions(arguments.settings, ImageReading::None, known.store()));
+    GLINT_TRY(const auto scene, importScene(arguments.scene, import));
+    console.report(scene.warnings);
+    compiler::Settings asked = arguments.settings;
+    asked.advisesStrategy = true;
+    GLINT_TRY(const auto target, measure::targetOf(asked));
+    const auto scenes = std::make_shared<const gltf::SceneList>(std::span(&scene, 1));
+    GLINT_TRY(const auto materials, chooseMaterials(*scenes, arguments.material));
+    GLINT_TRY(const auto build, compiler::resolve(scenes, asked, target));
+    console.report(build.messages);
+    if (build.excess) {
+        console.report(makeWarning("max-shaders", scene.path, *build.excess));
+    }
+    if (console.isJson()) {
+        console.result(toJson(arguments, build, target.costs, materials));
+    } else {
+        print(console, arguments, build, target.costs, materials);
+    }
+    return okStatus();
 }
 
 }  // namespace
@@ -310,11 +269,14 @@ void addExplain(CLI::App& app, Action& chosen) {
     addCalibration(command, arguments->settings);
     addSettings(command, compiler::kOfExplain, arguments->settings);
     addProfileInput(command, arguments->settings);
-    addLockOptions(command, arguments->lock, false);
+    addLockOptions(command, arguments->settings.lock, false);
     command.callback([arguments, &command, &chosen] {
-        settleSettings(command, arguments->settings);
+        checkSettings(command, arguments->settings);
         checkProfile(command, arguments->settings);
-        chosen = [arguments](const Console& console) { return explain(console, *arguments); };
+        chosen = [arguments](const Console& console) {
+            const Status explained = explain(console, *arguments);
+            return explained ? kExitDone : fail(console, explained.error());
+        };
     });
 }
 

@@ -4,7 +4,6 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/cache.h"
-#include "cli/options/effect_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/frames.h"
 #include "cli/render/open_image_denoise.h"
@@ -13,12 +12,15 @@
 #include "gltf/import.h"
 #include "image/image_file.h"
 #include "inspect/pipelines.h"
+#include "resolve/light.h"
+#include "resolve/profile.h"
+#include "resolve/resolve.h"
 
 #include <glint/context.h>
 #include <glint/measure/observer.h>
-#include <glint/measure/profile.h>
 #include <glint/measure/render_settings.h>
-#include <glint/measure/strategy_advice.h>
+#include <glint/measure/target.h>
+#include <glint/measure/views.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
@@ -32,56 +34,66 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace glint::cli {
 
 namespace {
 
+// Returns what the pictures need: the settings of the command line, and what is read of each picture.
+compiler::Settings settingsOf(const RenderArguments& arguments) {
+    compiler::Settings asked = arguments;
+    if (const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view)) {
+        asked.readLayers = measure::layersFor(*view);
+    }
+    if (arguments.denoise) {
+        std::ranges::copy(denoiserLayers(), std::back_inserter(asked.readLayers));
+    }
+    asked.countsHits = !arguments.profileOutput.empty();
+    asked.renderer.accumulate = arguments.samples > 1;
+    if (!arguments.coverage.empty()) {
+        asked.renderer.bands = 1;  // the coverage is that of all pixels at once
+    }
+    return asked;
+}
+
 // Returns the package `given` by --package, after checking it, or compiles one now. Fills in the report's
 // members about it.
-Result<Package> obtainPackage(const Console& console, const RenderArguments& arguments,
-                              const compiler::PlanOptions& plan, std::uint32_t tracers,
-                              const gltf::Scene& scene, std::optional<Result<Package>> given,
-                              compiler::ModuleCache* cache, RenderReport& report) {
+Result<Package> obtainPackage(const Console& console, const compiler::Build& build,
+                              std::optional<Package> given, compiler::ModuleCache* cache,
+                              RenderReport& report) {
+    const compiler::Settings& settings = build.settings;
     if (given) {
-        Result<Package>& package = *given;
-        if (!package) {
-            return std::move(package);
-        }
-        const scene_view::PackageDemand demand{*arguments.strategy, arguments.renderer.tracer,
-                                               !arguments.environment.empty()};
-        Status checked = scene_view::checkPackage(*package, arguments.package, demand, scene);
-        const bool isLit = measure::addsSun(arguments, scene) ||
+        const gltf::Scene& scene = build.scenes->scenes().front();
+        GLINT_TRY_DO(scene_view::checkPackage(*given, build));
+        const bool isLit = settings.sun == compiler::Sun::On ||
                            std::ranges::any_of(scene.lights, [](const gltf::Light& light) {
                                return light.shines() || light.canShine;
                            });
-        if (checked && isLit && package->shape().effects.lights == 0) {
-            console.report(Diagnostic{Severity::Note, "effect-absent", arguments.package,
+        if (isLit && given->shape().effects.lights == 0) {
+            console.report(Diagnostic{Severity::Note, "effect-absent", settings.package,
                                       "has no effect shadow, so the lights of the picture cast no shadows",
                                       "compile it with --effects auto,shadow, or render with --no-sun"});
         }
-        return checked ? std::move(package) : Result<Package>(checked.error());
+        return std::move(*given);
     }
     const base::Clock::time_point start = base::Clock::now();
-    compiler::CompileSettings settings = measure::compileSettings(arguments, plan, tracers, scene);
-    settings.progress = console.countTo("compiling");
-    console.report(effectWarnings(gltf::SceneList({&scene, 1}), settings));
-    Result<Package> package = scene_view::compileAndLoad(scene, settings, cache);
-    report.compileMs = base::millisecondsSince(start);
-    report.merge = nameOf(plan.merge);
+    Result<Package> package = scene_view::compileAndLoad(build, cache);
+    report.compileMs = base::millisecondsSince(start) + build.milliseconds;
+    report.merge = nameOf(settings.compile.plan.merge);
     return package;
 }
 
-// `given` is the package of --package, if there is one. Its errors are reported when it is used.
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
-                                             const std::optional<Result<Package>>& given) {
-    HeadlessOptions options = measure::deviceOptions(arguments);
+                                             const std::optional<Package>& given) {
+    HeadlessOptions options = measure::deviceOptions(settingsOf(arguments));
     options.pipelineStatistics = options.pipelineStatistics || arguments.pipelineStatistics;
-    if (given && *given) {
-        inspect::requirePackage(**given, options);
+    if (given) {
+        inspect::requirePackage(*given, options);
     }
     return Context::createHeadless(options);
 }
@@ -114,45 +126,32 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
         "look for NaN, infinite or very large values among the scene's factors, colours and lights"));
 }
 
-// Replaces --strategy auto by the strategy that is expected to be fastest.
-Status settleStrategy(const Console& console, const compiler::PlanOptions& plan, Context& context,
-                      const gltf::Scene& scene, const std::optional<Result<Package>>& given,
-                      RenderArguments& arguments, RenderReport& report) {
-    if (arguments.strategy) {
-        return okStatus();
+// Decides what the command line leaves open, and reports it with the options that change nothing.
+Result<compiler::Build> resolve(const Console& console, const RenderArguments& arguments, Context& context,
+                                const gltf::Scene& scene, const Package* package, RenderReport& report) {
+    compiler::Settings asked = settingsOf(arguments);
+    asked.renderer.pipelineStatistics = arguments.pipelineStatistics && context.handles().pipelineStatistics;
+    asked.compile.progress = console.countTo("compiling");
+    GLINT_TRY(const auto target, measure::targetOf(asked, context, package, scene));
+    GLINT_TRY(auto build, compiler::resolve(std::span(&scene, 1), asked, target));
+    console.report(build.messages);
+    if (const std::optional<compiler::StrategyAdvice>& advice = build.settings.compile.strategyChoice) {
+        console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
+        report.strategy = advice->choice.strategy;
+        report.strategyChoice = advice;
     }
-    if (given && !*given) {
-        return given->error();
-    }
-    std::vector<Diagnostic> warnings;
-    Result<compiler::StrategyAdvice> advice =
-        measure::adviseRender(arguments, plan, context, scene, given ? &**given : nullptr, warnings);
-    console.report(warnings);
-    if (!advice) {
-        return advice.error();
-    }
-    console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
-    report.strategy = advice->choice.strategy;
-    report.strategyChoice = *advice;
-    arguments.strategy = valueNamed<package::Strategy>(advice->choice.strategy);
-    arguments.compile.strategyChoice = std::move(*advice);
-    return okStatus();
-}
-
-// Reports options that were given and change nothing.
-void reportIdle(const Console& console, const RenderArguments& arguments, const compiler::PlanOptions& plan,
-                const gltf::Scene& scene, const std::optional<Result<Package>>& given) {
-    compiler::Settings settings = arguments;
-    if (given && *given) {
-        // The package has decided which effects there are.
-        settings.compile.effects = {false, (*given)->shape().effects.all};
-    }
-    console.report(idleSettings({&scene, 1}, compiler::kOfRender, settings, plan));
+    console.report(idleSettings(build));
     const Result<image::ImageFormat> format = image::imageFormat(arguments.output);
     if (arguments.exposure != "auto" && format && *format == image::ImageFormat::Exr) {
         console.report(idleWarning(arguments.scene, "--exposure " + arguments.exposure,
                                    "an EXR file keeps the light as it is"));
     }
+    if (arguments.pipelineStatistics && !asked.renderer.pipelineStatistics) {
+        console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
+                                  "has no VK_KHR_pipeline_executable_properties: there are no statistics",
+                                  "leave out --pipeline-statistics, or use another device"});
+    }
+    return build;
 }
 
 std::array<std::uint8_t, 3> colorOf(PixelPath path) {
@@ -256,21 +255,15 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
 }
 
 // Does all the work between reading the scene and writing the files.
-Status render(const Console& console, const RenderArguments& asked, gltf::Scene& scene,
-              const gltf::SceneList& scenes, const measure::PlanChoice& chosen,
-              std::optional<Result<Package>> given, CompileCache& cache, RenderReport& report) {
-    RenderArguments arguments = asked;
-    compiler::Settings& settings = arguments;
-    settings = withSettings(settings, chosen.decided);
-    const compiler::PlanOptions& plan = chosen.options;
+Status render(const Console& console, const RenderArguments& arguments, gltf::Scene& scene,
+              std::optional<Package> given, CompileCache& cache, RenderReport& report) {
     GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
     GLINT_TRY(const auto compared, readReference(arguments));
-    const std::optional<LinearImage>& reference = compared;
     scene_view::SceneViewData data = measure::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
     GLINT_TRY(const auto camera, chooseView(movement, arguments, scene, data, aspect));
     report.camera = camera.name;
-    if (measure::addsSun(arguments, scene)) {
+    if (compiler::addsSun(arguments, scene)) {
         report.sun = scene_view::sunLight();
         report.sunAutomatic = arguments.sun == compiler::Sun::Auto;
     }
@@ -283,44 +276,33 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
     report.start.deviceMs = base::millisecondsSince(begin);
     report.device = context->deviceName();
     report.driver = context->driverName();
-    GLINT_TRY_DO(settleStrategy(console, plan, *context, scene, given, arguments, report));
-    reportIdle(console, arguments, plan, scene, given);
-    console.progress("compiling " + arguments.scene);
-    const Result<Package> package = obtainPackage(console, arguments, plan, context->handles().tracers, scene,
-                                                  std::move(given), cache.modules(), report);
-    if (!package) {
-        return package.error();
+    GLINT_TRY(const auto build,
+              resolve(console, arguments, *context, scene, given ? &*given : nullptr, report));
+    if (console.refused()) {
+        return okStatus();
     }
-    GLINT_TRY(const auto environment, obtainEnvironment(console, arguments, *context, *package, report));
-    data.packageScene = scene_view::sceneIn(*package, scene).value_or(0);
-    scene_view::useLayoutOf(*package, scene, data);
-    GLINT_TRY_DO(readTextures(console, arguments, *context, *package, scene, cache, data, report));
+    console.progress("compiling " + arguments.scene);
+    GLINT_TRY(const auto package, obtainPackage(console, build, std::move(given), cache.modules(), report));
+    GLINT_TRY(const auto environment, obtainEnvironment(console, arguments, *context, package, report));
+    data.packageScene = scene_view::sceneIn(package, scene).value_or(0);
+    scene_view::useLayoutOf(package, scene, data);
+    GLINT_TRY_DO(readTextures(console, arguments, *context, package, scene, cache, data, report));
     cache.close(console);
-    report.alpha = nameOf(package->alpha());
-    report.cases = package->caseCount();
-    for (const package::CaseEntry& entry : package->cases()) {
-        report.caseNames.emplace_back(package->string(entry.name));
+    report.alpha = nameOf(package.alpha());
+    report.cases = package.caseCount();
+    for (const package::CaseEntry& entry : package.cases()) {
+        report.caseNames.emplace_back(package.string(entry.name));
     }
     console.progress("rendering " + arguments.scene);
-    RendererOptions options = measure::rendererOptions(arguments);
-    options.accumulate = arguments.samples > 1;
-    if (!arguments.coverage.empty()) {
-        options.bands = 1;  // the coverage is that of all pixels at once
-    }
-    options.pipelineStatistics = arguments.pipelineStatistics && context->handles().pipelineStatistics;
-    if (arguments.pipelineStatistics && !options.pipelineStatistics) {
-        console.report(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
-                                  "has no VK_KHR_pipeline_executable_properties: there are no statistics",
-                                  "leave out --pipeline-statistics, or use another device"});
-    }
     const FrameSetup setup{console,
                            arguments,
-                           options,
+                           build.settings,
+                           measure::rendererOptions(build.settings),
                            environment.get(),
                            movement,
                            camera,
                            aspect,
-                           reference ? &*reference : nullptr,
+                           compared ? &*compared : nullptr,
                            console.countTo("rendering sample")};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
@@ -334,7 +316,7 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         const Status ordered = checkOrder(report);
         return ordered ? Result<bool>(true) : Result<bool>(ordered.error());
     };
-    GLINT_TRY_DO(renderFrames(*context, *package, setup, scene, data, accept, report));
+    GLINT_TRY_DO(renderFrames(*context, package, setup, scene, data, accept, report));
     pipelineCache.save();
     if (!pipelineCache.path().empty()) {
         report.pipelines.cache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
@@ -348,9 +330,24 @@ Status render(const Console& console, const RenderArguments& asked, gltf::Scene&
         return done;
     }
     std::vector<Diagnostic> warnings;
-    done = measure::writeProfile(arguments.profileOutput, scenes, plan, report.hits, warnings);
+    done = writeProfile(arguments.profileOutput, build, report.hits, warnings);
     console.report(warnings);
     return done;
+}
+
+Status readAndRender(const Console& console, const RenderArguments& arguments, RenderReport& report) {
+    console.progress("reading " + arguments.scene);
+    CompileCache cache(arguments.cache, "");
+    std::optional<Package> given;
+    if (!arguments.package.empty()) {
+        GLINT_TRY(given, Package::load(arguments.package));
+    }
+    GLINT_TRY(const auto import,
+              importOptions(arguments, ImageReading::Files, cache.store(), given ? &*given : nullptr));
+    GLINT_TRY(auto scene, importScene(arguments.scene, import));
+    console.report(scene.warnings);
+    return console.refused() ? okStatus()
+                             : render(console, arguments, scene, std::move(given), cache, report);
 }
 
 int run(const Console& console, const RenderArguments& arguments) {
@@ -379,46 +376,11 @@ int run(const Console& console, const RenderArguments& arguments) {
         console.report(status.error());
         return kExitFailed;
     }
-    console.progress("reading " + arguments.scene);
-    CompileCache cache(arguments.cache, "");
-    Result<gltf::ImportOptions> import = importOptions(arguments, ImageReading::Files, cache.store());
-    if (!import) {
-        console.report(import.error());
-        return kExitFailed;
-    }
-    std::optional<Result<Package>> given;
-    if (!arguments.package.empty()) {
-        given = Package::load(arguments.package);
-        // Keys depend on it, and the scene has to have those of the package.
-        import->trustTextures = *given ? (*given)->trustTextures() : import->trustTextures;
-    }
-    Result<gltf::Scene> scene = importScene(arguments.scene, *import);
-    if (!scene) {
-        console.report(scene.error());
-        return kExitFailed;
-    }
-    console.report(scene->warnings);
-    const gltf::SceneList scenes({&*scene, 1});
-    compiler::Settings planned = static_cast<const compiler::Settings&>(arguments);
-    if (!arguments.package.empty()) {
-        planned.alpha = package::AlphaPolicy::Opaque;  // The package has decided, so nothing is chosen here.
-    }
-    const Result<measure::PlanChoice> plan = measure::choosePlan(planned, scenes);
-    if (!plan) {
-        console.report(plan.error());
-        return kExitFailed;
-    }
-    console.report(plan->warnings);
-    console.report(plan->notes);
-    if (console.refused()) {
-        return kExitFailed;
-    }
-    status = render(console, arguments, *scene, scenes, *plan, std::move(given), cache, report);
+    status = readAndRender(console, arguments, report);
     if (!status) {
         console.report(status.error());
-        return kExitFailed;
     }
-    if (console.refused()) {
+    if (!status || console.refused()) {
         return kExitFailed;
     }
     if (console.isJson()) {

@@ -3,7 +3,6 @@
 #include "cli/commands.h"
 #include "cli/compile/cache.h"
 #include "cli/explain/material_text.h"
-#include "cli/options/effect_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/pipeline_cache.h"
 #include "view/request.h"
@@ -44,18 +43,12 @@ view::Request requestOf(const Console& console, const ViewArguments& arguments, 
     request.observer = &console;
     request.modules = cache.modules();
     request.store = cache.store();
-    request.importOptions = [&cache](const compiler::Settings& settings) {
-        return importOptions(settings, ImageReading::Files, cache.store());
+    request.importOptions = [&cache](const compiler::Settings& settings, const Package* package) {
+        return importOptions(settings, ImageReading::Files, cache.store(), package);
     };
-    request.effectWarnings = [](const gltf::SceneList& scenes, const compiler::CompileSettings& settings) {
-        return effectWarnings(scenes, settings);
-    };
-    request.explain = [](const gltf::Scene& scene, const compiler::PlanOptions& options,
-                         const compiler::Plan& plan, int material) {
-        const gltf::SceneList scenes({&scene, 1});
+    request.explain = [](const compiler::Build& build, int material) {
         std::vector<view::Field> fields;
-        for (const std::vector<std::string>& row :
-             materialRows({scenes, options, plan}, material, Detail::Whole)) {
+        for (const std::vector<std::string>& row : materialRows(build, material, Detail::Whole)) {
             const std::size_t first = std::min(row[0].find_first_not_of(' '), row[0].size());
             fields.push_back({row[0].substr(first), row[1]});
         }

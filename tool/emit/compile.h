@@ -4,8 +4,7 @@
 #include "base/files.h"
 #include "emit/glsl/unit.h"
 #include "gltf/scene.h"
-#include "plan/plan.h"
-#include "settings/compile_settings.h"
+#include "resolve/resolve.h"
 #include "spirv/statistics.h"
 
 #include <glint/package_modules.h>
@@ -14,7 +13,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,10 +22,6 @@ namespace glint::compiler {
 
 class ModuleCache;
 class WarmModules;
-
-// Returns the names of the strategies, or tracers, in a set of bits.
-std::vector<std::string> strategyNames(std::uint32_t strategies);
-std::vector<std::string> tracerNames(std::uint32_t tracers);
 
 // One SPIR-V module of the package. Modules with equal bytes share `file`.
 struct CompiledModule {
@@ -76,10 +70,9 @@ struct PackagePlan {
     Plan plan;
     std::vector<PlannedModule> modules;
 };
-// Plans a package. Has the errors of compilePackage(), except those of compiling. `made` is what makePlan()
-// has made of the scenes with settings.plan, if that was needed before.
-Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
-                                std::optional<Plan> made = {});
+// Plans a package. Has the errors of compilePackage(), except those of compiling.
+Result<PackagePlan> planPackage(const Build& build);
+Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
 
 // How a compilation after an edit shows it early (emit/package/early.h).
 struct EarlyShowing {
@@ -92,15 +85,16 @@ struct EarlyShowing {
     std::function<bool()> isOutdated;
 };
 
-// Compiles one package for `scenes` (at least one): they share the cases, and each has its own tables.
+// Compiles one package for the scenes of a build: they share the cases, and each has its own tables.
 // Modules that `cache` has are not compiled; others are compiled and added to it. `warm` keeps modules in
-// memory in the same way, and their GLSL. Both may be null.
+// memory in the same way, and their GLSL. `showing` says how an edit is shown early. All may be null.
 // Errors: too many cases ("max-shaders"); GLSL or SPIR-V that does not compile or validate, with file and
-// line (a defect of Glint itself); with settings.modules, also those of takeModules(). `made` is that of
-// planPackage(). `showing` may be null.
-Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
-                                       ModuleCache* cache = nullptr, std::optional<Plan> made = {},
+// line (a defect of Glint itself); with CompileSettings::modules, also those of takeModules().
+Result<CompiledPackage> compilePackage(const Build& build, ModuleCache* cache = nullptr,
                                        WarmModules* warm = nullptr, const EarlyShowing* showing = nullptr);
+// Resolves the settings for `scenes` (at least one) and compiles. Has the errors of both.
+Result<CompiledPackage> compilePackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings,
+                                       ModuleCache* cache = nullptr);
 inline Result<CompiledPackage> compilePackage(const gltf::Scene& scene, const CompileSettings& settings,
                                               ModuleCache* cache = nullptr) {
     return compilePackage(std::span(&scene, 1), settings, cache);

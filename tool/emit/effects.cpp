@@ -18,34 +18,7 @@ namespace {
 constexpr std::size_t kFirstPair = 1024;
 constexpr std::size_t kPairsOfEffect = 4;
 
-// At rest, or at a time of an animation.
-bool isLit(const gltf::Scene& scene) {
-    return std::ranges::any_of(scene.lights,
-                               [](const gltf::Light& light) { return light.shines() || light.canShine; });
-}
-
 }  // namespace
-
-EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings) {
-    const bool lit = settings.addsLight || settings.emissiveLights == EmissiveLights::On ||
-                     settings.skyLight == SkyLight::On || std::ranges::any_of(scenes.scenes(), isLit);
-    EffectPlan plan = decideEffects(scenes.materials(), scenes.primitives(), {lit}, settings.effects);
-    if (settings.passes == package::Passes::Steps) {
-        // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
-        const bool lights = settings.answer == package::HitAnswer::Radiance;
-        const std::vector<materials::EffectDeclaration>& declared =
-            scenes.materials().empty() ? materials::builtinMaterialModel().effects
-                                       : scenes.materials().front().model().effects;
-        plan.effects = effectSetOf(declared, lights ? plan.effects.lights : 0U);
-        for (EffectDecision& decision : plan.decisions) {
-            if (decision.chosen && (plan.effects.all & decision.effect) == 0) {
-                decision.chosen = false;
-                decision.reason = "the steps of a host's own rays have no effects but the shadows of hits";
-            }
-        }
-    }
-    return plan;
-}
 
 std::string effectDefines(const materials::MaterialModel& model, const package::EffectSet& effects) {
     std::string text;

@@ -1,18 +1,13 @@
-// The effects of a package, and the GLSL that calls them.
+// The GLSL that calls the effects of a package.
 #pragma once
 
 #include "emit/compile.h"
-#include "gltf/scene_list.h"
-#include "plan/effects.h"
 
 #include <kainjow/mustache.hpp>
 
 #include <string>
 
 namespace glint::compiler {
-
-// Decides by the materials that primitives use, and by the lights.
-EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings);
 
 // Returns the effects' macros and bits for generated/scene.glsl.
 std::string effectDefines(const materials::MaterialModel& model, const package::EffectSet& effects);

@@ -33,10 +33,10 @@ std::vector<const materials::FeatureCode*> layersOf(const Plan& plan) {
 
 }  // namespace
 
-Result<FeatureKernel> compileFeatureKernel(const gltf::Scene& scene, const Plan& plan,
-                                           const CompileSettings& settings) {
-    const gltf::SceneList scenes({&scene, 1});
-    GLINT_TRY(auto sources, makeSourceSet(scenes, plan, settings));
+Result<FeatureKernel> compileFeatureKernel(const Build& build) {
+    const Plan& plan = build.plan;
+    const CompileSettings& settings = build.settings.compile;
+    GLINT_TRY(auto sources, makeSourceSet(*build.scenes, plan, settings));
     FeatureKernel kernel;
     kainjow::mustache::data layers(kainjow::mustache::data::type::list);
     for (const materials::FeatureCode* const layer : layersOf(plan)) {

@@ -48,9 +48,7 @@ struct FeatureKernel {
     std::vector<std::string> layers;  // names of declarations, from the lowest layer to the highest
 };
 
-// Compiles the kernel for a package of this scene alone, made with these settings. Has the errors of
-// compilePackage() that concern GLSL.
-Result<FeatureKernel> compileFeatureKernel(const gltf::Scene& scene, const Plan& plan,
-                                           const CompileSettings& settings);
+// Compiles the kernel for the package of a build. Has the errors of compilePackage() that concern GLSL.
+Result<FeatureKernel> compileFeatureKernel(const Build& build);
 
 }  // namespace glint::compiler

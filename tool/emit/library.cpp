@@ -1,7 +1,6 @@
 #include "emit/library.h"
 
 #include "cache/module_cache.h"
-#include "emit/builtin.h"
 #include "emit/context.h"
 #include "emit/glsl/flatten.h"
 #include "emit/glsl/prefix.h"
@@ -9,6 +8,7 @@
 #include "emit/glsl/readable.h"
 #include "emit/material_code.h"
 #include "emit/sources.h"
+#include "resolve/builtin.h"
 #include "spirv/compiler.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #include "emit/material_code.h"
 
 #include "emit/context.h"
-#include "emit/host.h"
+#include "resolve/host.h"
 
 #include <fmt/format.h>
 

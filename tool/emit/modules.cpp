@@ -2,7 +2,6 @@
 
 #include "emit/context.h"
 #include "emit/effects.h"
-#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "emit/module_drafts.h"
 #include "emit/switch_parts.h"
@@ -184,13 +183,8 @@ void addLightingParts(ModuleSource& module, const std::string& origin, std::stri
 }
 
 // Every module that shades surfaces evaluates what emissive lights emit.
-materials::FeatureMask emitterMask(const gltf::SceneList& scenes, const Plan& plan,
-                                   const CompileSettings& settings) {
-    if (settings.emissiveLights != EmissiveLights::On) {
-        return 0;
-    }
-    const EmitterFeatures features = emitterFeatures(scenes, plan, settings.plan.fallback);
-    return features.always | features.sometimes;
+materials::FeatureMask emitterMask(const Plan& plan, const CompileSettings& settings) {
+    return settings.emissiveLights == EmissiveLights::On ? plan.emitters.always | plan.emitters.sometimes : 0;
 }
 
 }  // namespace
@@ -223,7 +217,7 @@ Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& p
     context.set("editedInputs", fmt::format("{:#x}u", edited >> 32U));
     SourceSet own;
     const materials::FeatureMask evaluated =
-        shaderCase.always | shaderCase.sometimes | emitterMask(scenes, plan, settings);
+        shaderCase.always | shaderCase.sometimes | emitterMask(plan, settings);
     GLINT_TRY_DO(addMaterialCode(sources, *plan.model, evaluated, own));
     GLINT_TRY(auto text,
               makeText(info.source, moduleDefines(info, key, settings.precision), sources, context));
@@ -242,7 +236,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     WarmModules* warm) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
     MaterialCodeOfCases codeOfCases(sources, *plan.model);
-    const materials::FeatureMask ofEmitters = emitterMask(scenes, plan, settings);
+    const materials::FeatureMask ofEmitters = emitterMask(plan, settings);
     const SourceSet none;
     const Case fallback = fallbackCase(plan);
     const Case draft = draftCase(plan);

@@ -1,19 +1,20 @@
 #include "emit/sources.h"
 
-#include "emit/builtin.h"
+#include "base/files.h"
 #include "emit/context.h"
 #include "emit/effects.h"
-#include "emit/host.h"
 #include "emit/layers.h"
-#include "emit/lights.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
 #include "emit/modules.h"
+#include "resolve/builtin.h"
+#include "resolve/host.h"
 #include "scene/deformed.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 namespace glint::compiler {
@@ -78,8 +79,7 @@ std::string bindingDefines(const package::Bindings& bindings) {
 }
 
 // The features that decide what emissive lights emit.
-std::string emitterDefines(const gltf::SceneList& scenes, const Plan& plan, bool fallback) {
-    const EmitterFeatures features = emitterFeatures(scenes, plan, fallback);
+std::string emitterDefines(const EmitterFeatures& features) {
     std::string text = "// Emissive lights\n";
     defineFeatures(text, "GLINT_EMITTER", features.always, features.sometimes);
     text += fmt::format("#define GLINT_EMITTER_LAYERS {}\n", features.coveredByLayers ? 1 : 0);
@@ -141,7 +141,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += "// Some lights are found by rays of lobes, too.\n";
     text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky || sized));
     if (emissive) {
-        text += emitterDefines(scenes, plan, settings.plan.fallback);
+        text += emitterDefines(plan.emitters);
     }
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
@@ -187,6 +187,30 @@ std::optional<std::string_view> SourceSet::find(std::string_view name) const {
 SourceLookup SourceSet::lookup() const {
     return [this](std::string_view name) { return find(name); };
 }
+
+namespace {
+
+// Puts the files of the host's folder into `sources`. Messages about them name their paths. Has the errors of
+// hostFiles() and readFile().
+Status addHost(SourceSet& sources, const std::string& folder) {
+    constexpr std::uint64_t kMostBytes = 16ULL << 20;
+    GLINT_TRY(const auto files, hostFiles(folder));
+    for (const std::filesystem::path& file : files) {
+        GLINT_TRY(const auto bytes, base::readFile(file, kMostBytes));
+        const std::filesystem::path inner = file.lexically_relative(folder);
+        const std::string name =
+            (inner.has_parent_path() ? std::string() : std::string("host/")) + inner.generic_string();
+        // The name that shaders include leads to the file under its own path, which messages then name. Such
+        // a path must not be the name of another file of Glint's.
+        const std::string path = file.generic_string();
+        const std::string shown = path != name && sources.find(path) ? "./" + path : path;
+        sources.add(name, fmt::format("#include \"{}\"\n", shown));
+        sources.add(shown, std::string(base::asText(bytes)));
+    }
+    return okStatus();
+}
+
+}  // namespace
 
 Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
                                 const CompileSettings& settings) {

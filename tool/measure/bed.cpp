@@ -5,9 +5,8 @@
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
 #include <glint/measure/point.h>
-#include <glint/measure/profile.h>
 #include <glint/measure/render_settings.h>
-#include <glint/measure/strategy_advice.h>
+#include <glint/measure/target.h>
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/environment.h>
 #include <glint/scene_view/package.h>
@@ -54,16 +53,7 @@ SceneSize sizeOf(const scene_view::SceneViewData& data) {
     return size;
 }
 
-// Returns as words the swept settings for which `decides` is true.
-template <typename Decides>
-std::string decided(const compiler::Settings& settings, const Decides& decides) {
-    compiler::Configuration configuration = configurationOf(settings);
-    std::erase_if(configuration,
-                  [&](const auto& choice) { return !decides(*compiler::sweptSetting(choice.first)); });
-    return fmt::format("{}", fmt::join(compiler::wordsOf(configuration), " "));
-}
-
-// The passes of all cases count together.
+// A pass of a case counts with those of the others.
 std::string nameOfPass(const PassTiming& pass) {
     return pass.pass == Pass::ShadeCase ? std::string(kShadeCases) : pass.name;
 }
@@ -144,9 +134,10 @@ Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t sampl
 }
 
 Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const compiler::Settings& base,
-                                                   const gltf::Scene& scene, compiler::ModuleCache* cache,
+                                                   const gltf::Scene& scene, const SceneReader& reader,
+                                                   compiler::ModuleCache* cache,
                                                    compiler::CacheStore* store) {
-    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache, store));
+    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, reader, cache, store));
     const scene_view::SceneViewData data = sceneView(base, scene);
     GLINT_TRY(const auto camera,
               scene_view::chooseCamera(scene, data, base.camera,
@@ -161,7 +152,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
     GLINT_TRY(bed->context_, openDevice(base, bed->features_));
     bed->onCpu_ = isOnCpu(*bed->context_);
-    GLINT_TRY_DO(bed->settleChoices());
+    GLINT_TRY_DO(bed->resolveBase());
     if (!base.environment.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
@@ -175,35 +166,43 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     return bed;
 }
 
-// A bench compares with one value of each setting. Where a setting is `auto`, it is what is chosen for this
-// scene.
-Status BenchBed::settleChoices() {
-    GLINT_TRY(const auto plan, choosePlan(base_, gltf::SceneList({&scene_, 1})));
-    base_.alpha = plan.options.keys.alpha;
-    base_ = withSettings(std::move(base_), plan.decided);
-    if (base_.strategy) {
-        return okStatus();
+// A bench compares with one alpha policy and one strategy. Where they are `auto`, they are those that are
+// chosen for this scene.
+Status BenchBed::resolveBase() {
+    GLINT_TRY(const auto target, targetOf(base_, *context_, nullptr, scene_));
+    GLINT_TRY(build_, resolve(list_, base_, target));
+    observer_.report(build_.messages);
+    if (!base_.strategy) {
+        const compiler::StrategyChoice& choice = build_.settings.compile.strategyChoice->choice;
+        observer_.detail(fmt::format("strategy {}: {}", choice.strategy, choice.why));
     }
-    std::vector<Diagnostic> warnings;
-    const Result<compiler::StrategyAdvice> advice =
-        adviseRender(base_, plan.options, *context_, scene_, nullptr, warnings);
-    observer_.report(warnings);
-    if (!advice) {
-        return advice.error();
-    }
-    observer_.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
-    base_.strategy = valueNamed<package::Strategy>(advice->choice.strategy);
+    base_.alpha = build_.settings.alpha;
+    base_.strategy = build_.settings.strategy;
     return okStatus();
 }
 
-Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const compiler::Settings& settings,
+// A package that does not rely on what textures hold needs a scene that was read accordingly.
+Result<std::shared_ptr<const gltf::SceneList>> BenchBed::scenesFor(const Package* package) {
+    if (package == nullptr || package->trustTextures() == scene_.trustsTextures || !reader_) {
+        return list_;
+    }
+    if (!otherScene_) {
+        GLINT_TRY(auto read, reader_(package->trustTextures()));
+        otherScene_ = std::make_unique<const gltf::Scene>(std::move(read));
+        otherList_ = std::make_shared<const gltf::SceneList>(std::span(otherScene_.get(), 1));
+    }
+    return otherList_;
+}
+
+Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const compiler::Build& build,
                                                                          const Package& package) {
-    const scene_view::TextureOptions options = textureOptions(settings, *context_, package, store_);
+    const gltf::Scene& scene = build.scenes->scenes().front();
+    const scene_view::TextureOptions options = textureOptions(build.settings, *context_, package, store_);
     std::shared_ptr<const scene_view::TextureSet>& known =
-        textures_[{options.fit.compress, options.fit.decodeEmission}];
+        textures_[{&scene, options.fit.compress, options.fit.decodeEmission}];
     if (!known) {
         Result<std::shared_ptr<const scene_view::TextureSet>> loaded =
-            scene_view::loadTextures(scene_, options);
+            scene_view::loadTextures(scene, options);
         if (!loaded) {
             return loaded;
         }
@@ -213,30 +212,23 @@ Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const c
     return known;
 }
 
-Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::Settings& render) {
-    const gltf::SceneList scenes({&scene_, 1});
-    GLINT_TRY(const auto plan, choosePlan(render, scenes));
-    Result<Package> package = Diagnostic{};
-    if (render.package.empty()) {
-        package = scene_view::compileAndLoad(
-            scene_, compileSettings(render, plan.options, context_->handles().tracers, scene_), cache_);
-    } else {
-        package = Package::load(render.package);
-        if (package) {
-            const scene_view::PackageDemand demand{*render.strategy, render.renderer.tracer,
-                                                   !render.environment.empty()};
-            GLINT_TRY_DO(scene_view::checkPackage(*package, render.package, demand, scene_));
-        }
-    }
-    if (!package) {
-        return package.error();
-    }
+Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::Build& build,
+                                                               std::optional<Package> given) {
+    const compiler::Settings& settings = build.settings;
+    const gltf::Scene& scene = build.scenes->scenes().front();
     auto mounted = std::make_shared<MountedPackage>();
-    mounted->package = std::make_unique<Package>(std::move(*package));
-    scene_view::SceneViewData data = sceneView(render, scene_);
-    data.packageScene = scene_view::sceneIn(*mounted->package, scene_).value_or(0);
-    scene_view::useLayoutOf(*mounted->package, scene_, data);
-    GLINT_TRY(auto images, textures(render, *mounted->package));
+    mounted->settings = settings;
+    if (given) {
+        GLINT_TRY_DO(scene_view::checkPackage(*given, build));
+        mounted->package = std::make_unique<Package>(std::move(*given));
+    } else {
+        GLINT_TRY(auto compiled, scene_view::compileAndLoad(build, cache_));
+        mounted->package = std::make_unique<Package>(std::move(compiled));
+    }
+    scene_view::SceneViewData data = sceneView(settings, scene);
+    data.packageScene = scene_view::sceneIn(*mounted->package, scene).value_or(0);
+    scene_view::useLayoutOf(*mounted->package, scene, data);
+    GLINT_TRY(auto images, textures(build, *mounted->package));
     useTextures(std::move(images), data);
     GLINT_TRY(mounted->scene, GpuScene::upload(*context_, *mounted->package, data.view()));
     return mounted;
@@ -245,7 +237,7 @@ Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::S
 Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, const std::string& package) {
     compiler::Settings render = withSettings(base_, configuration);
     render.package = package;
-    return mount(std::move(render));
+    return mount(render);
 }
 
 Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t frames) {
@@ -267,35 +259,41 @@ Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t f
     return mounted;
 }
 
-Result<Mount> BenchBed::mount(compiler::Settings render) {
-    const std::string key = fmt::format("{} {} {}", render.package, fmt::join(render.compile.layers, ","),
-                                        decided(render, [](const compiler::Descriptor& row) {
-                                            // With --effects auto, the limit of roughness decides too.
-                                            return isCompiled(row) ||
-                                                   row.stage == compiler::SettingStage::Scene ||
-                                                   row.name == "max-roughness";
-                                        }));
-    std::shared_ptr<MountedPackage> shared = packages_[key].lock();
-    if (!shared) {
-        GLINT_TRY(shared, mountPackage(render));
-        packages_[key] = shared;
+Result<Mount> BenchBed::mount(const compiler::Settings& asked) {
+    std::optional<Package> given;
+    if (!asked.package.empty()) {
+        GLINT_TRY(given, Package::load(asked.package));
     }
-    const std::string rendererKey =
-        fmt::format("{} {}", key, decided(render, [](const compiler::Descriptor& row) {
-                        return row.stage == compiler::SettingStage::Renderer;
-                    }));
-    std::shared_ptr<Renderer> renderer = renderers_[rendererKey].lock();
-    if (!renderer) {
-        GLINT_TRY(renderer,
-                  Renderer::create(*context_, *shared->package, *shared->scene, rendererOptions(render)));
-        renderers_[rendererKey] = renderer;
-    }
+    GLINT_TRY(auto scenes, scenesFor(given ? &*given : nullptr));
+    GLINT_TRY(const auto target,
+              targetOf(asked, *context_, given ? &*given : nullptr, scenes->scenes().front()));
+    GLINT_TRY(const auto build, resolve(std::move(scenes), asked, target));
+    const compiler::Settings& settings = build.settings;
     Mount mount;
-    mount.package_ = std::move(shared);
-    mount.renderer_ = std::move(renderer);
-    mount.frame_ = frameOptions(render, camera_, sky_, environment_.get());
-    mount.samples_ = render.samples;
-    mount.ordersHits_ = (*render.strategy & package::orderedStrategies()) != 0;
+    for (const std::weak_ptr<MountedPackage>& known : packages_) {
+        const std::shared_ptr<MountedPackage> package = known.lock();
+        if (package && changeBetween(package->settings, settings) < compiler::Change::Build) {
+            mount.package_ = package;
+        }
+    }
+    if (!mount.package_) {
+        GLINT_TRY(mount.package_, mountPackage(build, std::move(given)));
+        packages_.push_back(mount.package_);
+    }
+    for (const KnownRenderer& known : renderers_) {
+        if (known.package.lock() == mount.package_ &&
+            changeBetween(known.settings, settings) < compiler::Change::Renderer) {
+            mount.renderer_ = known.renderer.lock();
+        }
+    }
+    if (!mount.renderer_) {
+        GLINT_TRY(mount.renderer_, Renderer::create(*context_, *mount.package_->package,
+                                                    *mount.package_->scene, rendererOptions(settings)));
+        renderers_.push_back({mount.package_, mount.renderer_, settings});
+    }
+    mount.frame_ = frameOptions(settings, camera_, sky_, environment_.get());
+    mount.samples_ = settings.samples;
+    mount.ordersHits_ = (*settings.strategy & package::orderedStrategies()) != 0;
     return mount;
 }
 

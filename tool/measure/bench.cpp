@@ -35,8 +35,8 @@ public:
           BenchReport& report)
         : observer_(observer), settings_(settings), bed_(bed), store_(store), report_(report) {}
 
-    Status run(const compiler::PlanOptions& plan) {
-        GLINT_TRY_DO(makeTruth(plan));
+    Status run() {
+        GLINT_TRY_DO(makeTruth());
         base_ = makePoint(PointKind::Default, {});
         const MeasureOptions options{static_cast<std::uint32_t>(settings_.rounds), report_.seed,
                                      static_cast<std::uint32_t>(settings_.batch), settings_.filter,
@@ -89,9 +89,9 @@ private:
         return settings_.depth != "search" ? 0 : settings_.quick ? 1 : kSearches;
     }
 
-    // Makes the reference, learns about the scene's light from it, and then decides the settings to sweep.
-    Status makeTruth(const compiler::PlanOptions& plan) {
-        compiler::BenchFacts facts = factsOf(bed_.base(), bed_.scene(), plan);
+    // Makes the reference, learns about the scene's light from it, and then decides which settings there are.
+    Status makeTruth() {
+        compiler::BenchFacts facts = factsOf(bed_.build());
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
         facts.positionFetch = bed_.features().positionFetch;
@@ -252,11 +252,11 @@ void describeScene(BenchBed& bed, BenchReport& report) {
 
 }  // namespace
 
-Status runBench(const Observer& observer, const BenchSettings& settings, const compiler::PlanOptions& plan,
-                BenchBed& bed, compiler::CacheStore* store, BenchReport& report) {
+Status runBench(const Observer& observer, const BenchSettings& settings, BenchBed& bed,
+                compiler::CacheStore* store, BenchReport& report) {
     describeScene(bed, report);
     report.base = configurationOf(bed.base());
-    return Bench(observer, settings, bed, store, report).run(plan);
+    return Bench(observer, settings, bed, store, report).run();
 }
 
 }  // namespace glint::measure

@@ -15,22 +15,24 @@ package::Effect effectOf(synthetic::Coherence coherence) {
         {coherence == synthetic::Coherence::Coherent ? "reflection" : "indirect-diffuse"});
 }
 
-compiler::CompileSettings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
-    compiler::PlanOptions plan;
-    plan.merge = compiler::MergePolicy::None;
-    compiler::CompileSettings compile = compileSettings(settings.render, plan, tracers, {});
-    compile.strategies = 0;
+compiler::Settings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
+    compiler::Settings asked = settings.render;
+    asked.profile.clear();
+    asked.packLobes.clear();
+    asked.compile.plan = {};
+    asked.compile.plan.merge = compiler::MergePolicy::None;
+    asked.alpha = package::AlphaPolicy::Opaque;
+    asked.sun = compiler::Sun::Off;
+    asked.strategy = package::strategyTable().front().strategy;
     for (const std::string& strategy : strategiesFor(tracers)) {
-        compile.strategies |= *valueNamed<package::Strategy>(strategy);
+        asked.furtherStrategies |= *valueNamed<package::Strategy>(strategy);
     }
-    compile.addsLight = false;
     // The settings cover scenes with both kinds of rays, so that they can share a package.
-    compile.effects = {false, compiler::builtinEffects({"reflection", "indirect-diffuse"})};
+    asked.compile.effects = {false, compiler::builtinEffects({"reflection", "indirect-diffuse"})};
     if (settings.shadows) {
-        compile.effects.named |= compiler::builtinEffects({"shadow"});
+        asked.compile.effects.named |= compiler::builtinEffects({"shadow"});
     }
-    compile.emitHeader = false;
-    return compile;
+    return asked;
 }
 
 // Returns the size of the code of each case's own shader.
@@ -67,7 +69,9 @@ Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uin
         group.scenes.push_back(synthetic::makeCasesScene(one));
     }
     group.options = std::move(options);
-    GLINT_TRY(group.package, compilePackage(group.scenes, settingsOf(settings, tracers), cache));
+    GLINT_TRY(const auto build,
+              compiler::resolve(group.scenes, settingsOf(settings, tracers), {.tracers = tracers}));
+    GLINT_TRY(group.package, compilePackage(build, cache));
     return group;
 }
 

@@ -126,16 +126,16 @@ private:
             measure.skipped = "uber could not run, which is what all are compared with";
             return okStatus();
         }
-        RendererOptions rendering = rendererOptions(settings_.render);
-        rendering.strategy = *valueNamed<package::Strategy>(measure.strategy);
-        if ((rendering.strategy & package::pipelineStrategies()) != 0) {
-            rendering.tracer.reset();
+        compiler::Settings asked = settings_.render;
+        asked.strategy = *valueNamed<package::Strategy>(measure.strategy);
+        if ((*asked.strategy & package::pipelineStrategies()) != 0) {
+            asked.renderer.tracer.reset();
         }
-        rendering.width = entry_.width;
-        rendering.height = entry_.height;
-        rendering.bands = 1;  // the model is that of one list
+        asked.renderer.width = entry_.width;
+        asked.renderer.height = entry_.height;
+        asked.renderer.bands = 1;  // the model is that of one list
         Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(context_, *group_.package, *scene_.scene, rendering);
+            Renderer::create(context_, *group_.package, *scene_.scene, rendererOptions(asked));
         if (!renderer) {
             measure.skipped = renderer.error().message;
             return okStatus();
@@ -143,7 +143,7 @@ private:
         measure.pipelineMs = (*renderer)->pipelineMaking().milliseconds;
         measure.bytes = (*renderer)->footprint().bytes;
         measure.tracer = package::nameOf((*renderer)->tracer());
-        if ((rendering.strategy & package::orderedStrategies()) != 0) {
+        if ((*asked.strategy & package::orderedStrategies()) != 0) {
             measure.ordering = package::nameOf((*renderer)->ordering());
         }
         runners_.push_back({index, std::move(*renderer)});

@@ -134,7 +134,7 @@ private:
     // out with its reason.
     Result<base::Json> measureScene(const gltf::Scene& scene) {
         observer_.progress("timing the scene");
-        GLINT_TRY(const auto bed, BenchBed::create(observer_, settings_.render, scene, cache_, store_));
+        GLINT_TRY(const auto bed, BenchBed::create(observer_, settings_.render, scene, {}, cache_, store_));
         base::Json strategies = base::Json::array();
         for (const package::StrategyInfo& info : package::strategyTable()) {
             GLINT_TRY(auto measured, measureStrategy(*bed, std::string(info.name)));

@@ -1,7 +1,7 @@
 // The sources of the page (tool/measure/page/), which are compiled into the tool.
 #pragma once
 
-#include "emit/builtin.h"
+#include "resolve/builtin.h"
 
 namespace glint::measure {
 

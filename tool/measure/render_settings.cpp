@@ -1,7 +1,4 @@
-#include "emit/effects.h"
-#include "emit/lights.h"
-#include "gltf/import.h"
-#include "gltf/scene_list.h"
+#include "resolve/light.h"
 
 #include <glint/measure/render_settings.h>
 
@@ -9,6 +6,7 @@
 #include <numbers>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace glint::measure {
 
@@ -40,69 +38,70 @@ std::set<std::string, std::less<>> namesOfChosen(const compiler::EffectPlan& pla
     return names;
 }
 
-// Returns whether hits of any primitive lose a lobe if they keep only those of the base.
-bool losesLobes(const gltf::Scene& scene, const compiler::PlanOptions& plan) {
-    const std::vector<materials::PrimitiveInputs> primitives = planningInputs(scene);
-    return std::ranges::any_of(primitives, [&](const materials::PrimitiveInputs& inputs) {
-        const materials::Material& material = scene.materials[static_cast<std::size_t>(inputs.material)];
-        return (compiler::makeKey(material, inputs, plan.keys) & materials::kLobeMask &
-                ~compiler::baseLobes()) != 0;
-    });
+// Adds what packages of the same scenes would have with other settings.
+void addAlternatives(const compiler::Build& build, compiler::BenchFacts& facts) {
+    compiler::CompileSettings asked = build.settings.compile;
+    asked.emissiveLights = build.asked.compile.emissiveLights;
+    asked.skyLight = build.asked.compile.skyLight;
+    asked.sizedLights = build.asked.compile.sizedLights;
+    asked.lightSamples.reset();
+    const auto planWith = [&](const auto& change) {
+        compiler::CompileSettings settings = asked;
+        change(settings);
+        return planLight(*build.scenes, settings);
+    };
+    facts.lightsMayEmit =
+        planWith([](auto& settings) { settings.emissiveLights = compiler::EmissiveLights::On; }).ok();
+    facts.skyMayLight = planWith([](auto& settings) { settings.skyLight = compiler::SkyLight::On; }).ok();
+    facts.sizedMayShow =
+        planWith([](auto& settings) { settings.sizedLights = compiler::SizedLights::On; }).ok();
+    if (const auto plan = planWith([](auto& settings) { settings.effects.maxReflectionRoughness = 1.0F; })) {
+        facts.effectsOfAnyRoughness = namesOfChosen(plan->effects);
+        facts.manyLights = plan->samples > 0;
+    }
+    const auto one = planWith([](auto& settings) { settings.maxBounces = 1; });
+    const auto several = planWith([](auto& settings) { settings.maxBounces = 2; });
+    facts.bouncesLight =
+        one && several &&
+        (one->emissive != several->emissive || one->sky != several->sky || one->sized != several->sized);
 }
 
 }  // namespace
 
-compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Scene& scene,
-                             const compiler::PlanOptions& plan) {
+compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
+    const gltf::Scene& scene = build.scenes->scenes()[index];
+    const gltf::SceneList::Range range = build.scenes->primitivesOf(index);
+    const compiler::Settings& settings = build.settings;
     compiler::BenchFacts facts;
     facts.masks = std::ranges::any_of(scene.materials, [](const materials::Material& material) {
         return material.alphaMode != materials::AlphaMode::Opaque;
     });
-    const std::vector<materials::PrimitiveInputs> primitives = planningInputs(scene);
-    facts.passesLight = std::ranges::any_of(primitives, [&](const materials::PrimitiveInputs& primitive) {
-        const materials::Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
-        return material.alphaMode == materials::AlphaMode::Blend ||
-               compiler::passesLight(material, primitive);
-    });
-    facts.furtherLobes = losesLobes(scene, plan);
+    for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+        const materials::PrimitiveInputs& primitive = build.scenes->primitives()[i];
+        const materials::Material& material =
+            build.scenes->materials()[static_cast<std::size_t>(primitive.material)];
+        facts.passesLight = facts.passesLight || material.alphaMode == materials::AlphaMode::Blend ||
+                            compiler::passesLight(material, primitive);
+        // Whether hits lose a lobe if they keep only those of the base.
+        facts.furtherLobes = facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] &
+                                                    materials::kLobeMask & ~compiler::baseLobes()) != 0;
+    }
     facts.textures = !scene.textures.empty();
-    compiler::CompileSettings compile = compileSettings(settings, plan, package::kAllTracers, scene);
-    const gltf::SceneList scenes({&scene, 1});
-    const compiler::EffectPlan effects = planEffects(scenes, compile);
-    facts.effects = namesOfChosen(effects);
-    facts.sendsRays = effects.effects.rays != 0;
-    facts.rayEffects = rayEffects(compile.effects);
-    compile.effects.maxReflectionRoughness = 1.0F;
-    facts.effectsOfAnyRoughness = namesOfChosen(planEffects(scenes, compile));
-    facts.emits = compiler::countEmitters(scene) > 0;
-    compiler::CompileSettings emissive = compileSettings(settings, plan, package::kAllTracers, scene);
-    emissive.emissiveLights = compiler::EmissiveLights::On;
-    facts.lightsMayEmit = compiler::emissiveLightsOf({&scene, 1}, emissive).ok();
-    emissive.skyLight = compiler::SkyLight::On;
-    facts.skyMayLight = compiler::skyLightOf({&scene, 1}, emissive).ok();
-    emissive.sizedLights = compiler::SizedLights::On;
-    facts.sizedMayShow = compiler::sizedLightsOf({&scene, 1}, emissive).ok();
+    facts.effects = namesOfChosen(build.plan.effects);
+    facts.sendsRays = build.plan.effects.effects.rays != 0;
+    facts.rayEffects = rayEffects(settings.compile.effects);
+    facts.emits = compiler::countEmitters(*build.scenes, index) > 0;
+    addAlternatives(build, facts);
     const scene_view::SceneViewData data = sceneView(settings, scene);
     facts.punctualLights = !data.lights.empty();
     const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
     facts.directionalLights = directional > 0;
     facts.placedLights = static_cast<std::size_t>(directional) < data.lights.size();
-    compiler::CompileSettings own = compileSettings(settings, plan, package::kAllTracers, scene);
-    const Result<compiler::EmissiveLights> emissiveLights = compiler::emissiveLightsOf({&scene, 1}, own);
-    own.emissiveLights = emissiveLights ? *emissiveLights : compiler::EmissiveLights::Off;
-    const compiler::LightCounts counts = compiler::countLights(scene, own);
+    const compiler::LightCounts counts = countLights(*build.scenes, index, settings.compile.emissiveLights);
     facts.lights = counts.positions + counts.emitters;
-    own.lightSamples.reset();
-    const Result<std::uint32_t> samples = compiler::lightSamplesOf({&scene, 1}, own);
-    facts.manyLights = samples && *samples > 0;
     facts.sizedLights =
         std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });
     return facts;
-}
-
-bool addsSun(const compiler::Settings& settings, const gltf::Scene& scene) {
-    const bool isUnlit = scene.lights.empty() && settings.environment.empty();
-    return settings.sun == compiler::Sun::On || (settings.sun == compiler::Sun::Auto && isUnlit);
 }
 
 HeadlessOptions deviceOptions(const compiler::Settings& settings) {
@@ -111,8 +110,11 @@ HeadlessOptions deviceOptions(const compiler::Settings& settings) {
     options.deviceName = settings.device;
     options.pipelineStatistics = settings.gpu == compiler::kThisDevice;
     options.positionFetch = settings.compile.positionFetch;
+    const auto has = [](const std::vector<std::string>& layers) {
+        return std::ranges::find(layers, "clocks") != layers.end();
+    };
     options.shaderClock =
-        std::ranges::find(settings.compile.layers, "clocks") != settings.compile.layers.end();
+        has(settings.compile.layers) || (settings.package.empty() && has(settings.readLayers));
     options.shaderFloat16 = settings.compile.precision == package::ShadingPrecision::Half;
     return options;
 }
@@ -127,7 +129,7 @@ void sizeLights(const compiler::Settings& settings, scene_view::SceneViewData& s
 
 scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gltf::Scene& scene) {
     scene_view::SceneViewData data = scene_view::makeSceneView(scene);
-    if (addsSun(settings, scene)) {
+    if (compiler::addsSun(settings, scene)) {
         data.lights.push_back(scene_view::sunLight());
     }
     sizeLights(settings, data);
@@ -148,34 +150,14 @@ scene_view::TextureOptions textureOptions(const compiler::Settings& settings, co
     return options;
 }
 
-compiler::CompileSettings compileSettings(const compiler::Settings& settings,
-                                          const compiler::PlanOptions& plan) {
-    compiler::CompileSettings compile = settings.compile;
-    compile.plan = plan;
-    compile.effects.maxReflectionRoughness = settings.frame.maxReflectionRoughness;
-    return compile;
-}
-
-compiler::CompileSettings compileSettings(const compiler::Settings& settings,
-                                          const compiler::PlanOptions& plan, std::uint32_t tracers,
-                                          const gltf::Scene& scene) {
-    compiler::CompileSettings compile = compileSettings(settings, plan);
-    compile.strategies = settings.strategy ? std::uint32_t{*settings.strategy} : package::allStrategies();
-    const bool queries = (tracers & package::kTracerRayQuery) != 0;
-    compile.tracers =
-        settings.renderer.tracer.value_or(queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
-    compile.environmentMap = !settings.environment.empty();
-    compile.addsLight = addsSun(settings, scene);
-    compile.sizesLights = settings.lightRadius > 0.0 || settings.sunAngle > 0.0;
-    return compile;
-}
-
 RendererOptions rendererOptions(const compiler::Settings& settings) {
     RendererOptions options = settings.renderer;
     options.strategy = settings.strategy.value_or(options.strategy);
     options.bounces = settings.compile.maxBounces;
     options.checkOrder = settings.validate;
     options.screenMarch = settings.frame.screenSteps > 0;
+    // Pipelines of cases swap in one after the other where the package can do without them for a while.
+    options.backgroundPipelines = options.backgroundPipelines && settings.compile.plan.fallback;
     if (options.pipelineThreads == 0) {
         options.pipelineThreads = static_cast<std::uint32_t>(settings.compile.jobs);
     }

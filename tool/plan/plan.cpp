@@ -192,14 +192,22 @@ bool countsHits(const PlanOptions& options) {
            (options.merge == MergePolicy::Auto && !options.hits.empty());
 }
 
-Plan makePlan(std::span<const materials::Material> materials,
-              std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options) {
+Plan planKeys(std::span<const materials::Material> materials,
+              std::span<const materials::PrimitiveInputs> primitives, const materials::KeyOptions& options) {
     Plan plan;
     if (!materials.empty()) {
         plan.model = &materials.front().model();
     }
     DroppedMap droppedBy;
-    collectKeys(materials, primitives, options.keys, plan, droppedBy);
+    collectKeys(materials, primitives, options, plan, droppedBy);
+    for (auto& [what, materialSet] : droppedBy) {
+        plan.dropped.push_back({what.first, what.second, {materialSet.begin(), materialSet.end()}});
+    }
+    return plan;
+}
+
+Plan planCases(Plan plan, std::span<const materials::PrimitiveInputs> primitives,
+               const PlanOptions& options) {
     shareHits(primitives, options, plan.keys);
     makeCases(options, plan);
 
@@ -219,9 +227,6 @@ Plan makePlan(std::span<const materials::Material> materials,
     plan.primaryAlways = primary.always;
     plan.primarySometimes = primary.sometimes;
     plan.keysPossible = plan.keys.empty() ? 0.0 : std::exp2(std::popcount(hits.always | hits.sometimes));
-    for (auto& [what, materialSet] : droppedBy) {
-        plan.dropped.push_back({what.first, what.second, {materialSet.begin(), materialSet.end()}});
-    }
     return plan;
 }
 

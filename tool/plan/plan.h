@@ -69,6 +69,16 @@ struct Case {
     }
 };
 
+// The features that decide what emissive triangles emit: those that all of them have, and those that some
+// have. If a layer covers the emission of one, they are all features. In a package with a fallback any
+// material of the plan's features may become a light, so none is taken for granted.
+struct EmitterFeatures {
+    materials::FeatureMask read = 0;  // that emission may depend on
+    materials::FeatureMask always = 0;
+    materials::FeatureMask sometimes = 0;
+    bool coveredByLayers = false;
+};
+
 // The keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes): the key of
 // a primitive's hits is part of its primary mask, and equals it if hits keep all lobes.
 struct Plan {
@@ -83,17 +93,25 @@ struct Plan {
     materials::FeatureMask primaryAlways = 0;
     materials::FeatureMask primarySometimes = 0;
     double keysPossible = 0.0;                  // 2^n, where n is the number of features that occur in keys
-    EffectPlan effects;                         // The compiler fills this in, and the next.
+    EffectPlan effects;                         // resolve() fills this in, and the next two.
     std::vector<package::LayerEntry> layers{};  // by the index of their images
+    EmitterFeatures emitters{};
 };
 
 // Returns whether the shares of hits are counted rather than expected from the primitives.
 bool countsHits(const PlanOptions& options);
 
-// Clusters the keys of `primitives` into cases. Requires every PrimitiveInputs::material to index
-// `materials`, and one model for all of these.
-Plan makePlan(std::span<const materials::Material> materials,
-              std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options);
+// Returns a plan with the keys of `primitives`, before hits and cases are known. Requires every
+// PrimitiveInputs::material to index `materials`, and one model for all of these.
+Plan planKeys(std::span<const materials::Material> materials,
+              std::span<const materials::PrimitiveInputs> primitives, const materials::KeyOptions& options);
+// Completes what planKeys() returned for `primitives` with options.keys: clusters the keys into cases.
+Plan planCases(Plan keys, std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options);
+// Does both.
+inline Plan makePlan(std::span<const materials::Material> materials,
+                     std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options) {
+    return planCases(planKeys(materials, primitives, options.keys), primitives, options);
+}
 
 // Returns the case of materials that have no case in the plan. It has every feature of the plan as one that a
 // material may have, and no shader ID, keys or materials.

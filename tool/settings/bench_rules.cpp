@@ -23,9 +23,10 @@ std::string withoutRays(std::string_view value, const BenchFacts& facts, const C
     return value.empty() && !facts.sendsRays ? "no effect sends rays whose hits are shaded" : "";
 }
 
-// The effects of a full reference send rays, even if those of the default don't.
+// The effects of a full reference send rays, even if those of the default don't. Some lights are there in
+// packages for several bounces alone.
 std::string withoutPaths(std::string_view value, const BenchFacts& facts, const Configuration& base) {
-    return facts.fullTransport ? std::string() : withoutRays(value, facts, base);
+    return facts.fullTransport || facts.bouncesLight ? std::string() : withoutRays(value, facts, base);
 }
 
 std::string withoutOrder(std::string_view value, const BenchFacts& facts, const Configuration& base) {

@@ -86,12 +86,12 @@ struct CompileSettings {
     bool addsLight = false;
     // True if the renderer gives lights a size. --sized-lights=auto takes that into account.
     bool sizesLights = false;
-    // The number of lights that a surface chooses by a hierarchy; 0 takes all. Without a value, the number of
-    // lights decides (emit/lights.h).
+    // How many lights a surface chooses by a hierarchy; 0: it takes all. No value leaves it to the number of
+    // lights (resolve/light.h).
     std::optional<std::uint32_t> lightSamples{};
-    EmissiveLights emissiveLights = EmissiveLights::Auto;  // emit/lights.h decides the meaning of Auto
-    SkyLight skyLight = SkyLight::Auto;                    // here, too
-    SizedLights sizedLights = SizedLights::Auto;           // here, too
+    EmissiveLights emissiveLights = EmissiveLights::Auto;
+    SkyLight skyLight = SkyLight::Auto;
+    SizedLights sizedLights = SizedLights::Auto;
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     // True if planning reads the contents of textures (gltf::ImportOptions::trustTextures). Packages with a
@@ -109,7 +109,7 @@ struct CompileSettings {
     bool emitLibrary = false;   // writes shading as functions in GLSL, in library/
     bool emitLinkable = false;  // writes the same functions as a SPIR-V module that can be linked, there
     bool debugInfo = false;     // keeps names in the SPIR-V
-    // A folder with files that replace those of shaders/host; empty: none (emit/host.h).
+    // A folder with files that stand in for those of shaders/host; empty: none (resolve/host.h).
     std::string host{};
     // The choice that led to `strategies`, for the manifest. Empty if the user named the strategies.
     std::optional<StrategyAdvice> strategyChoice{};

@@ -23,6 +23,7 @@ struct BenchFacts {
     bool lightsMayEmit = false;  // and packages with the default's effects can have them as lights
     bool skyMayLight = false;    // packages with the default's effects can have the sky as a light
     bool sizedMayShow = false;   // rays of packages with the default's effects can find area lights
+    bool bouncesLight = false;   // something is a light in packages for several bounces alone
     bool furtherLobes = false;   // hits of some materials lose a lobe with --hit-lobes base
     bool textures = false;
     bool placedLights = false;       // the picture has point or spot lights

@@ -27,8 +27,15 @@ constexpr std::span<const Named<Sun>> namesOf(Sun /*type*/) {
     return kSunNames;
 }
 
-// Parts of `compile`, `renderer` and `frame` depend on the scene or the device and are filled in when those
-// are known: compileSettings(), rendererOptions() and frameOptions() of measure/render_settings.h do that.
+// How shader IDs are kept from build to build.
+struct LockRequest {
+    std::string file{};      // empty: they aren't
+    bool frozen = false;     // error rather than change the file
+    bool prune = false;      // keys that no scene has go
+    bool isWritten = false;  // by the command; else the file must be there
+};
+
+// What a user asks for. What depends on the scene or the device is decided by resolve() (resolve/resolve.h).
 struct Settings {
     Settings();  // the settings of `glint render` without options
 
@@ -44,6 +51,14 @@ struct Settings {
     bool choosesShadows = false;
     bool choosesPrecision = false;
     double precisionError = 0.0;                  // relMSE that the choice of a precision may cost
+    // A package that is compiled for pictures has these strategies, too, so that a renderer of one of them
+    // can switch to it.
+    std::uint32_t furtherStrategies = 0;
+    // Layers that a package that is compiled for pictures has besides compile.layers, as a view or a denoiser
+    // reads them.
+    std::vector<std::string> readLayers{};
+    // Hits are counted for a profile, so every key has a case of its own.
+    bool countsHits = false;
     std::optional<package::AlphaPolicy> alpha{};  // none: as the scene needs
     Sun sun = Sun::Auto;
     std::optional<double> sky{};       // factor of the default sky's radiance; none: as bright as the lights
@@ -60,8 +75,9 @@ struct Settings {
     std::string environment;  // a map; empty: a gradient
     std::string camera;       // see scene_view::chooseCamera()
     std::string device;
-    std::string package;      // a folder; empty: one is compiled
-    std::string profile;      // hit counts, for the merge policies profile and auto
+    std::string package;  // a folder; empty: one is compiled
+    std::string profile;  // hit counts, for the merge policies profile and auto
+    LockRequest lock{};
     std::string calibration;  // a device file; empty: constants that are built in
     std::string sceneInFile;  // ImportOptions::scene; empty: the file's default
     std::string gpu;          // name or file of a table of a GPU's code, or kThisDevice; empty: none

@@ -2,16 +2,14 @@
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "emit/host.h"
-#include "emit/layers.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "materials/packs.h"
-#include "view/picture.h"
+#include "resolve/host.h"
+#include "resolve/layers.h"
 
-#include <glint/measure/profile.h>
 #include <glint/measure/render_settings.h>
-#include <glint/measure/strategy_advice.h>
+#include <glint/measure/target.h>
 #include <glint/scene_view/package.h>
 #include <glint/strategies.h>
 
@@ -20,6 +18,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <span>
 #include <utility>
 
 namespace glint::view {
@@ -145,15 +144,15 @@ void Builder::work() {
 
 Result<Build> Builder::build(const BuildOrder& order) {
     Build build;
-    build.settings = order.settings;
     changed_[order.picture].insert(order.changed.begin(), order.changed.end());
     made_.reset();
-    for (Status (*step)(Builder&, const BuildOrder&, Build&) :
-         {+[](Builder&self, const BuildOrder&what, Build&made) { return self.readScene(what, made); },
-          +[](Builder&self, const BuildOrder&what, Build&made) { return self.makePackage(what, made); },
-          +[](Builder&self, const BuildOrder&, Build&made) { return self.readTextures(made); }}) {
-        GLINT_TRY_DO(step(*this, order, build));
+    std::optional<Package> given;
+    if (!order.settings.package.empty()) {
+        GLINT_TRY(given, Package::load(order.settings.package));
     }
+    GLINT_TRY_DO(readScene(order, given ? &*given : nullptr, build));
+    GLINT_TRY_DO(makePackage(order, std::move(given), build));
+    GLINT_TRY_DO(readTextures(build));
     wholes_[order.picture].reset();
     if (made_) {
         wholes_[order.picture] = Whole{std::move(*made_), build, strategies_};
@@ -163,15 +162,15 @@ Result<Build> Builder::build(const BuildOrder& order) {
     return build;
 }
 
-Status Builder::readScene(const BuildOrder& order, Build& build) {
+Status Builder::readScene(const BuildOrder& order, const Package* package, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
     const compiler::Settings& settings = order.settings;
+    GLINT_TRY(const auto import, request_.importOptions(settings, package));
     const std::string key =
         fmt::format("{}|{}|{}|{}|{}|{}", order.scene, settings.sceneInFile, settings.variant,
-                    settings.strictPaths, settings.compile.trustTextures, fmt::join(settings.materials, "|"));
+                    settings.strictPaths, import.trustTextures, fmt::join(settings.materials, "|"));
     if (!order.changed.empty() || key != sceneKey_) {
         say("reading " + order.scene);
-        GLINT_TRY(const auto import, request_.importOptions(settings));
         GLINT_TRY(auto scene, importScene(order.scene, import));
         // The contents of pictures depend on their files alone.
         if (!scene_ || !haveSameFiles(*scene_, scene)) {
@@ -180,6 +179,7 @@ Status Builder::readScene(const BuildOrder& order, Build& build) {
         const std::lock_guard lock(mutex_);
         messages_.insert(messages_.end(), scene.warnings.begin(), scene.warnings.end());
         scene_ = std::make_shared<const gltf::Scene>(std::move(scene));
+        list_ = std::make_shared<const gltf::SceneList>(std::span(scene_.get(), 1));
         sceneKey_ = key;
     }
     build.scene = scene_;
@@ -207,7 +207,7 @@ std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture,
     };
     if (!whole || changed.empty() || !std::ranges::all_of(changed, isGlsl) ||
         whole->strategies != strategies_ || !haveSameFiles(*whole->build.scene, *build.scene) ||
-        changeBetween(whole->build.settings, build.settings) == Change::Build) {
+        changeBetween(whole->build.settings(), build.settings()) == compiler::Change::Build) {
         return std::nullopt;
     }
     return compiler::EarlyShowing{
@@ -235,55 +235,32 @@ bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage&
     return true;
 }
 
-Status Builder::makePackage(const BuildOrder& order, Build& build) {
+Status Builder::makePackage(const BuildOrder& order, std::optional<Package> given, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
-    compiler::Settings& settings = build.settings;
-    const gltf::SceneList scenes({build.scene.get(), 1});
-    compiler::Settings planned = settings;
-    std::optional<Package> given;
-    if (!settings.package.empty()) {
-        planned.alpha = package::AlphaPolicy::Opaque;  // the package has decided
-        GLINT_TRY(given, Package::load(settings.package));
-    }
-    GLINT_TRY(auto plan, measure::choosePlan(planned, scenes));
-    build.options = std::move(plan.options);
-    settings = withSettings(std::move(settings), plan.decided);
-    std::vector<Diagnostic> messages = std::move(plan.warnings);
-    messages.insert(messages.end(), plan.notes.begin(), plan.notes.end());
-    if (!settings.strategy) {
-        GLINT_TRY(auto advice, measure::adviseRender(settings, build.options, context_, *build.scene,
-                                                     given ? &*given : nullptr, messages));
-        settings.strategy = valueNamed<package::Strategy>(advice.choice.strategy);
-        settings.compile.strategyChoice = std::move(advice);
-    }
+    compiler::Settings asked = order.settings;
+    // The package also has the strategies that were asked for before, so that a renderer of one of them can
+    // switch to it.
+    asked.furtherStrategies = sceneKey_ == strategiesKey_ ? strategies_ : 0;
+    asked.renderer.backgroundPipelines = true;
+    asked.compile.progress = [this](std::size_t done, std::size_t all) {
+        say(fmt::format("compiling {} of {}", done, all));
+    };
+    GLINT_TRY(const auto target, measure::targetOf(asked, context_, given ? &*given : nullptr, *build.scene));
+    GLINT_TRY(build.resolved, compiler::resolve(list_, asked, target));
+    const compiler::Build& resolved = build.resolved;
     if (given) {
-        const scene_view::PackageDemand demand{*settings.strategy, settings.renderer.tracer,
-                                               !settings.environment.empty()};
-        GLINT_TRY_DO(scene_view::checkPackage(*given, settings.package, demand, *build.scene));
-        build.plan = compiler::makePlan(scenes.materials(), scenes.primitives(), build.options);
+        GLINT_TRY_DO(scene_view::checkPackage(*given, resolved));
         build.package = std::make_shared<const Package>(std::move(*given));
         for (const package::PackageLayer& layer : build.package->layers()) {
             build.layers.push_back(layer.name);
         }
     } else {
         say("compiling " + build.scene->path);
-        compiler::CompileSettings compile =
-            measure::compileSettings(settings, build.options, context_.handles().tracers, *build.scene);
-        compile.emitHeader = false;
-        compile.progress = [this](std::size_t done, std::size_t all) {
-            say(fmt::format("compiling {} of {}", done, all));
-        };
-        // The package also has the strategies that were asked for before, so that a renderer of one of them
-        // can switch to it.
-        strategies_ = sceneKey_ == strategiesKey_ ? strategies_ | compile.strategies : compile.strategies;
+        strategies_ = resolved.settings.compile.strategies;
         strategiesKey_ = sceneKey_;
-        compile.strategies = strategies_;
-        const std::vector<Diagnostic> ofEffects = request_.effectWarnings(scenes, compile);
-        messages.insert(messages.end(), ofEffects.begin(), ofEffects.end());
         const std::optional<compiler::EarlyShowing> showing = earlyShowing(order.picture, build);
         Result<compiler::CompiledPackage> compiled =
-            compilePackage(std::span(build.scene.get(), 1), compile, request_.modules, {}, &warm_,
-                           showing ? &*showing : nullptr);
+            compilePackage(resolved, request_.modules, &warm_, showing ? &*showing : nullptr);
         warm_.endRun();
         if (!compiled) {
             return compiled.error();
@@ -298,20 +275,19 @@ Status Builder::makePackage(const BuildOrder& order, Build& build) {
                     static_cast<std::uint32_t>(module.statistics.instructions);
             }
         }
-        build.plan = compiled->plan;
-        build.layers = possibleLayers(build.plan, compile);
+        build.layers = possibleLayers(resolved.plan, resolved.settings.compile);
         made_ = std::move(*compiled);
     }
     build.compileMs = base::millisecondsSince(start);
-    build.facts = measure::factsOf(settings, *build.scene, build.options);
+    build.facts = measure::factsOf(resolved);
     const std::lock_guard lock(mutex_);
-    messages_.insert(messages_.end(), messages.begin(), messages.end());
+    messages_.insert(messages_.end(), resolved.messages.begin(), resolved.messages.end());
     return okStatus();
 }
 
 Status Builder::readTextures(Build& build) {
     scene_view::TextureOptions options =
-        measure::textureOptions(build.settings, context_, *build.package, request_.store);
+        measure::textureOptions(build.settings(), context_, *build.package, request_.store);
     options.fit.allLevels = true;  // so that the coarse ones can be there first
     const std::string key = fmt::format("{} {}", options.fit.compress, options.fit.decodeEmission);
     if (!textures_ || key != texturesKey_) {

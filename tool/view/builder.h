@@ -5,7 +5,7 @@
 #include "emit/compile.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene.h"
-#include "plan/plan.h"
+#include "resolve/resolve.h"
 #include "settings/configuration.h"
 #include "view/request.h"
 
@@ -27,10 +27,8 @@ namespace glint::view {
 
 // The inputs of a picture, apart from the device's copy.
 struct Build {
-    compiler::Settings settings;  // those of the build; the strategy is chosen
+    compiler::Build resolved;  // of `scene`
     std::shared_ptr<const gltf::Scene> scene;
-    compiler::PlanOptions options;
-    compiler::Plan plan;
     std::shared_ptr<const Package> package;
     std::shared_ptr<const scene_view::TextureSet> textures;
     // The length of each case's own shader in SPIR-V instructions, by shader ID; 0: it has none, or it is
@@ -39,6 +37,11 @@ struct Build {
     std::vector<std::string> layers;      // names of those that its packages may have (PackageLayer::name)
     compiler::BenchFacts facts;           // of the scene, about settings that change nothing
     std::vector<base::InputFile> inputs;  // files to watch
+
+    // Without `auto`.
+    const compiler::Settings& settings() const {
+        return resolved.settings;
+    }
     // Wall clock.
     double readMs = 0.0;
     double compileMs = 0.0;
@@ -89,8 +92,8 @@ public:
 private:
     void work();
     Result<Build> build(const BuildOrder& order);
-    Status readScene(const BuildOrder& order, Build& build);
-    Status makePackage(const BuildOrder& order, Build& build);
+    Status readScene(const BuildOrder& order, const Package* package, Build& build);
+    Status makePackage(const BuildOrder& order, std::optional<Package> given, Build& build);
     Status readTextures(Build& build);
     std::optional<compiler::EarlyShowing> earlyShowing(std::size_t picture, const Build& build);
     bool publishEarly(std::size_t picture, const compiler::CompiledPackage& early);
@@ -101,6 +104,7 @@ private:
     compiler::WarmModules warm_;
     // The last scene and its textures, and the settings with which they were read.
     std::shared_ptr<const gltf::Scene> scene_;
+    std::shared_ptr<const gltf::SceneList> list_;  // of it
     std::string sceneKey_;
     std::shared_ptr<const scene_view::TextureSet> textures_;
     std::string texturesKey_;

@@ -18,22 +18,6 @@
 
 namespace glint::view {
 
-Change changeBetween(const compiler::Settings& before, const compiler::Settings& after) {
-    Change change = Change::None;
-    for (const compiler::Descriptor& row : compiler::settingsTable()) {
-        if ((row.commands & compiler::kOfRender) == 0 || row.values.text(before) == row.values.text(after)) {
-            continue;
-        }
-        // Settings that `glint compile` also takes change the package.
-        const bool isBuilt = compiler::isCompiled(row) || (row.commands & compiler::kOfCompile) != 0 ||
-                             row.stage == compiler::SettingStage::Scene;
-        const bool isMade = row.stage == compiler::SettingStage::Renderer;
-        change = std::max(change, isBuilt ? Change::Build : isMade ? Change::Renderer : Change::Frame);
-    }
-    return before.environment == after.environment && before.package == after.package ? change
-                                                                                      : Change::Build;
-}
-
 namespace {
 
 // Returns whether both are uploaded in the same way.
@@ -43,28 +27,17 @@ bool uploadsAlike(const compiler::Settings& a, const compiler::Settings& b) {
     });
 }
 
-bool drawAlike(const RendererOptions& a, const RendererOptions& b) {
-    return a.strategy == b.strategy && a.width == b.width && a.height == b.height && a.tracer == b.tracer &&
-           a.ordering == b.ordering && a.checkOrder == b.checkOrder && a.batchEffects == b.batchEffects &&
-           a.screenMarch == b.screenMarch && a.bands == b.bands && a.bounces == b.bounces &&
-           a.pipelineThreads == b.pipelineThreads;
+// The picture has the size of its part of the window.
+RendererOptions optionsOf(compiler::Settings settings, std::uint32_t width, std::uint32_t height) {
+    settings.renderer.width = width;
+    settings.renderer.height = height;
+    return measure::rendererOptions(settings);
 }
 
 }  // namespace
 
-RendererOptions Picture::optionsOf(const compiler::Settings& settings, const Package& package,
-                                   std::uint32_t width, std::uint32_t height) const {
-    RendererOptions options = measure::rendererOptions(settings);
-    options.width = width;
-    options.height = height;
-    options.accumulate = true;
-    // Pipelines of cases swap in one after the other where the package can do without them for a while.
-    options.backgroundPipelines = package.shape().fallback;
-    return options;
-}
-
 Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& notes) {
-    const std::string& file = build.settings.environment;
+    const std::string& file = build.settings().environment;
     const std::string key =
         file.empty() ? std::string() : fmt::format("{} {}", file, build.package->skyLight());
     if (key == environmentKey_) {
@@ -81,7 +54,7 @@ Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& not
 }
 
 SceneSource Picture::sourceOf(const Build& build) {
-    return {build.settings, build.scene, build.package, build.textures};
+    return {build.settings(), build.scene, build.package, build.textures};
 }
 
 // Returns whether the scene on the device can go on with the build's package.
@@ -89,7 +62,7 @@ bool Picture::isSameScene(const Build& build) const {
     // A scene that moves has its materials from the scene with which it was read.
     return isReady() &&
            (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
-           build.textures == build_.textures && uploadsAlike(build.settings, build_.settings);
+           build.textures == build_.textures && uploadsAlike(build.settings(), build_.settings());
 }
 
 bool Picture::load(const Build& build) {
@@ -138,7 +111,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     }
     lastChange_ = fmt::format("package replaced: {} pipelines made, {} kept", replaced->pipelinesMade,
                               replaced->pipelinesKept);
-    if (drawAlike(options, options_)) {
+    if (options == options_) {
         return true;
     }
     // The scene changes to the package with a sample of the renderer that it has. Then it can get another
@@ -161,7 +134,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     }
     const bool isLoaded = loaded.has_value();
     GLINT_TRY_DO(readEnvironment(build, notes));
-    const RendererOptions options = optionsOf(build.settings, *build.package, width, height);
+    const RendererOptions options = optionsOf(build.settings(), width, height);
     GLINT_TRY(const auto replaced, loaded ? Result<bool>(false) : replace(build, options));
     if (!replaced) {
         const bool keepsPose = posed_ && build.scene == build_.scene;
@@ -185,7 +158,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     }
     build_ = std::move(build);
     beforeEarly_.reset();
-    settings_ = build_.settings;
+    settings_ = build_.settings();
     options_ = options;
     sky_ = measure::chooseSky(settings_, scene(), data());
     restart();
@@ -213,8 +186,8 @@ Status Picture::takeBackEarly() {
 }
 
 Status Picture::change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height) {
-    const RendererOptions options = optionsOf(settings, *build_.package, width, height);
-    if (!drawAlike(options, options_)) {
+    const RendererOptions options = optionsOf(settings, width, height);
+    if (options != options_) {
         GLINT_TRY(device_.renderer, Renderer::create(context_, *build_.package, gpuScene(), options));
         options_ = options;
         inFlight_.clear();

@@ -18,18 +18,7 @@
 
 namespace glint::view {
 
-// The kind of rebuild that a change of a setting needs. A later one includes those before it.
-enum class Change : std::uint8_t {
-    None,
-    Frame,     // the picture starts anew
-    Renderer,  // another renderer
-    Build,     // another package, or another upload of the scene
-};
-
-// Returns the kind of rebuild that a change of settings needs. It follows from the table of settings.
-Change changeBetween(const compiler::Settings& before, const compiler::Settings& after);
-
-// The moment of an animation that a picture shows.
+// Which moment of an animation a picture shows.
 struct Moment {
     std::vector<std::size_t> animations;  // indices into Scene::animations
     double seconds = 0.0;
@@ -65,7 +54,7 @@ public:
     bool showEarly(const Build& early);
     Status takeBackEarly();
     // Takes settings of stages after the package, or another size. The device must be idle unless
-    // changeBetween() is Change::Frame.
+    // changeBetween() is compiler::Change::Frame.
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
 
     // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move,
@@ -143,8 +132,6 @@ private:
     bool isSameScene(const Build& build) const;
     Status adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame);
     Status readEnvironment(const Build& build, std::vector<Diagnostic>& notes);
-    RendererOptions optionsOf(const compiler::Settings& settings, const Package& package, std::uint32_t width,
-                              std::uint32_t height) const;
     Result<bool> replace(Build& build, const RendererOptions& options);
 
     Context& context_;

@@ -3,12 +3,12 @@
 
 #include "cache/module_cache.h"
 #include "gltf/import.h"
-#include "gltf/scene_list.h"
-#include "plan/plan.h"
+#include "resolve/build.h"
 #include "settings/settings.h"
 
 #include <glint/context.h>
 #include <glint/measure/observer.h>
+#include <glint/package.h>
 #include <glint/result.h>
 
 #include <functional>
@@ -39,14 +39,10 @@ struct Request {
     // The cache of compiled modules; both may be null.
     compiler::ModuleCache* modules = nullptr;
     compiler::CacheStore* store = nullptr;
-    std::function<Result<gltf::ImportOptions>(const compiler::Settings&)> importOptions;
-    // Returns the warnings of `glint compile` about effects.
-    std::function<std::vector<Diagnostic>(const gltf::SceneList&, const compiler::CompileSettings&)>
-        effectWarnings;
-    // Returns the explanation of `glint explain` for a material, an index into Scene::materials.
-    std::function<std::vector<Field>(const gltf::Scene&, const compiler::PlanOptions&, const compiler::Plan&,
-                                     int)>
-        explain;
+    // Says how the scene is read, for a package that is there already if it is not null.
+    std::function<Result<gltf::ImportOptions>(const compiler::Settings&, const Package*)> importOptions;
+    // Returns what `glint explain` says of a material, an index into Scene::materials.
+    std::function<std::vector<Field>(const compiler::Build&, int)> explain;
     // Called with the device when it is there, and before it goes: the driver's pipelines are kept in a file.
     std::function<void(Context&)> opened;
     std::function<void(Context&)> closing;

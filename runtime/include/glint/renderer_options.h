@@ -74,6 +74,8 @@ struct RendererOptions {
     // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
     // without DeviceHandles::pipelineStatistics.
     bool pipelineStatistics = false;
+
+    friend bool operator==(const RendererOptions&, const RendererOptions&) = default;
 };
 
 // The most pixels of a band if RendererOptions::bands is 0. Discrete GPUs have no such limit.

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <iostream>
+#include <span>
 
 int main(int argc, char** argv) {
     glint::gltf::ImportOptions import;
@@ -21,13 +22,17 @@ int main(int argc, char** argv) {
     const glint::SceneView view = data.view();
     const glint::Result<glint::scene_view::CameraChoice> camera =
         glint::scene_view::chooseCamera(*scene, data, "auto", 16.0 / 9.0);
-    const glint::Result<glint::Package> package = glint::scene_view::compileAndLoad(*scene, {});
+    const auto build = glint::compiler::resolve(std::span(&*scene, 1), glint::compiler::CompileSettings());
+    if (!build) {
+        std::cerr << glint::toString(build.error()) << '\n';
+        return 1;
+    }
+    const glint::Result<glint::Package> package = glint::scene_view::compileAndLoad(*build);
     if (!camera || !package) {
         std::cerr << glint::toString(camera ? package.error() : camera.error()) << '\n';
         return 1;
     }
-    const glint::Status matches = glint::scene_view::checkPackage(
-        *package, "memory", {glint::package::kStrategyUber, {}, false}, *scene);
+    const glint::Status matches = glint::scene_view::checkPackage(*package, *build);
     if (!matches) {
         std::cerr << glint::toString(matches.error()) << '\n';
         return 1;

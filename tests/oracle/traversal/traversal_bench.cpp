@@ -176,7 +176,7 @@ Result<Package> packageOf(const gltf::Scene& scene) {
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.plan.maxShaders = 1;
-    return scene_view::compileAndLoad(scene, settings);
+    return scene_view::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings));
 }
 
 class SceneBench {

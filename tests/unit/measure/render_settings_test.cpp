@@ -1,4 +1,5 @@
 #include "render/scene_builder.h"
+#include "resolve/resolve.h"
 
 #include <glint/measure/render_settings.h>
 #include <glint/measure/settings.h>
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,7 +39,9 @@ std::vector<std::string> lightsToTry(const gltf::Scene& scene, EmissiveLights em
     compiler::Settings settings;
     settings.compile.emissiveLights = emissive;
     settings.sun = compiler::Sun::On;
-    const compiler::BenchFacts facts = factsOf(settings, scene, {});
+    const Result<compiler::Build> build =
+        resolve(std::span(&scene, 1), settings, {.tracers = package::kAllTracers});
+    const compiler::BenchFacts facts = factsOf(*build);
     const std::vector<Setting> tried = settingsFor(facts, compiler::configurationOf(settings), false);
     std::vector<std::string> values = std::ranges::find(tried, "lights", &Setting::name)->values;
     std::erase(values, "auto");

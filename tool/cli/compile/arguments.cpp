@@ -5,11 +5,9 @@
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
 #include "emit/compile.h"
-#include "emit/host.h"
 #include "emit/package/embed_source.h"
 #include "materials/packs.h"
-
-#include <glint/measure/render_settings.h>
+#include "resolve/host.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -52,7 +50,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
     addSettings(command, compiler::kOfCompile, arguments.settings);
     addCalibration(command, arguments.settings);
     addProfileInput(command, arguments.settings);
-    addLockOptions(command, arguments.lock, true);
+    addLockOptions(command, arguments.settings.lock, true);
     addHostOption(command, arguments.settings);
     addFlag(command, "--environment-map", arguments.settings.compile.environmentMap,
             "rays that leave the scene see an environment map, which\n"
@@ -133,7 +131,7 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
     addShaderOptions(command, arguments);
 }
 
-void settleCompile(const CLI::App& command, CompileArguments& arguments) {
+void finishCompile(const CLI::App& command, CompileArguments& arguments) {
     if (arguments.output.empty() && arguments.embed.empty() && !arguments.dryRun) {
         throw CLI::ValidationError("--output", "is missing; give -o DIR, --embed FILE.cpp or --dry-run");
     }
@@ -144,7 +142,7 @@ void settleCompile(const CLI::App& command, CompileArguments& arguments) {
         throw CLI::ExcludesError(kWatch, "--json");
     }
     checkProfile(command, arguments.settings);
-    settleSettings(command, arguments.settings);
+    checkSettings(command, arguments.settings);
     if (arguments.depfile.targets.empty()) {
         arguments.depfile.targets = {arguments.planOnly.empty() ? mainOutputs(arguments).front()
                                                                 : planFile(arguments)};
@@ -209,23 +207,23 @@ std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
     return files;
 }
 
-compiler::CompileSettings settingsOf(const CompileArguments& arguments, const compiler::PlanOptions& plan) {
+compiler::Settings settingsOf(const CompileArguments& arguments) {
     const auto emits = [&](const char* what) {
         return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
     };
-    compiler::CompileSettings settings = measure::compileSettings(arguments.settings, plan);
-    settings.emitHeader = emits("header");
-    settings.emitGlsl = emits("glsl");
-    settings.emitLibrary = emits("library");
-    settings.emitLinkable = emits("linkable");
-    settings.modules = arguments.modules;
+    compiler::Settings settings = arguments.settings;
+    settings.compile.emitHeader = emits("header");
+    settings.compile.emitGlsl = emits("glsl");
+    settings.compile.emitLibrary = emits("library");
+    settings.compile.emitLinkable = emits("linkable");
+    settings.compile.modules = arguments.modules;
     return settings;
 }
 
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
     std::vector<std::filesystem::path> files;
-    for (const std::string& file : {arguments.settings.profile, arguments.lock.file, arguments.settingsFile,
-                                    arguments.settings.calibration}) {
+    for (const std::string& file : {arguments.settings.profile, arguments.settings.lock.file,
+                                    arguments.settingsFile, arguments.settings.calibration}) {
         if (!file.empty()) {
             files.emplace_back(file);
         }

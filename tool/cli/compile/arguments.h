@@ -3,7 +3,6 @@
 
 #include "cli/compile/depfile.h"
 #include "cli/options/cache_options.h"
-#include "cli/options/lock_option.h"
 #include "cli/options/setting_options.h"
 
 #include <CLI/CLI.hpp>
@@ -20,7 +19,6 @@ struct CompileArguments {
     std::string output;
     std::string embed;  // a C++ source; empty: none
     compiler::Settings settings;
-    LockArguments lock;
     std::vector<std::string> emit{"header"};
     CacheArguments cache;
     DepfileArguments depfile;
@@ -42,9 +40,10 @@ void addCompileOptions(CLI::App& command, CompileArguments& arguments);
 Status checkOutputs(const CompileArguments& arguments);
 // Fills in the members that follow from the parsed `command`. Throws a CLI::ParseError if options contradict
 // each other.
-void settleCompile(const CLI::App& command, CompileArguments& arguments);
+void finishCompile(const CLI::App& command, CompileArguments& arguments);
 
-compiler::CompileSettings settingsOf(const CompileArguments& arguments, const compiler::PlanOptions& plan);
+// Returns the settings with what else the package is to contain.
+compiler::Settings settingsOf(const CompileArguments& arguments);
 
 // Returns the build file of --plan-only.
 std::string planFile(const CompileArguments& arguments);

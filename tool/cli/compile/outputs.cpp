@@ -43,15 +43,15 @@ private:
 
 }  // namespace
 
-Status writeOutputs(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
+Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackage& package,
                     const CompileOutputs& outputs) {
     const HeldSignals held;
     Staging staging;
-    if (outputs.lockChoice.text) {
-        GLINT_TRY_DO(staging.add(outputs.lock.file, *outputs.lockChoice.text));
+    if (build.lockText) {
+        GLINT_TRY_DO(staging.add(build.settings.lock.file, *build.lockText));
     }
     if (!outputs.embed.empty()) {
-        GLINT_TRY_DO(staging.addEmbedded(scenes, package, outputs.embed));
+        GLINT_TRY_DO(staging.addEmbedded(*build.scenes, package, outputs.embed));
     }
     // The dependency file comes last, because it tells Make and Ninja that the others exist.
     if (!outputs.depfile.file.empty()) {

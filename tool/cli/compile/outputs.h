@@ -3,9 +3,7 @@
 #pragma once
 
 #include "cli/compile/depfile.h"
-#include "cli/options/lock_option.h"
 #include "emit/compile.h"
-#include "gltf/scene_list.h"
 
 #include <glint/result.h>
 
@@ -15,19 +13,17 @@
 
 namespace glint::cli {
 
-// Members that are empty are not written.
+// Members that are empty are not written. The build says whether the lock file is.
 struct CompileOutputs {
     std::filesystem::path folder;  // of the package
     std::filesystem::path embed;   // a C++ source
-    const LockArguments& lock;
-    const LockChoice& lockChoice;
     const DepfileArguments& depfile;
     std::span<const std::string> dependencies;
 };
 
 // A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
 // writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
-Status writeOutputs(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
+Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackage& package,
                     const CompileOutputs& outputs);
 
 }  // namespace glint::cli

@@ -85,7 +85,7 @@ Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
     try {
         std::vector<std::string> words(completed.words.rbegin(), completed.words.rend());
         app.parse(words);
-        settleCompile(command, arguments);
+        finishCompile(command, arguments);
     } catch (const CLI::ParseError& error) {
         const std::string message = explain(error, command);
         const std::optional<Diagnostic> ofFile = blameFile(completed, message);
@@ -227,8 +227,8 @@ private:
             inputs_ = run.inputs;
         }
         watchFiles(!done);
-        if (!arguments_.lock.file.empty()) {
-            watch_.accept(arguments_.lock.file);
+        if (!arguments_.settings.lock.file.empty()) {
+            watch_.accept(arguments_.settings.lock.file);
         }
         bool fresh = false;
         if (done) {

@@ -15,22 +15,19 @@ namespace {
 using Drop = std::pair<std::string, std::string>;  // feature, reason
 
 // Returns the features that a material asks for and does not get, over all of its primitives.
-std::set<Drop> dropsOf(const PlannedScenes& planned, int material) {
+std::set<Drop> dropsOf(const compiler::Build& build, int material) {
     std::set<Drop> drops;
-    for (const materials::PrimitiveInputs& inputs : planned.scenes.primitives()) {
-        if (inputs.material == material) {
-            std::vector<Drop> found;
-            compiler::makeKey(planned.scenes.materials()[static_cast<std::size_t>(material)], inputs,
-                              planned.options.keys, &found);
-            drops.insert(found.begin(), found.end());
+    for (const compiler::DroppedFeature& dropped : build.plan.dropped) {
+        if (std::ranges::binary_search(dropped.materials, material)) {
+            drops.emplace(dropped.feature, dropped.reason);
         }
     }
     return drops;
 }
 
-std::vector<const compiler::Key*> keysOf(const PlannedScenes& planned, int material) {
+std::vector<const compiler::Key*> keysOf(const compiler::Build& build, int material) {
     std::vector<const compiler::Key*> keys;
-    for (const compiler::Key& key : planned.plan.keys) {
+    for (const compiler::Key& key : build.plan.keys) {
         if (std::binary_search(key.materials.begin(), key.materials.end(), material)) {
             keys.push_back(&key);
         }
@@ -39,11 +36,11 @@ std::vector<const compiler::Key*> keysOf(const PlannedScenes& planned, int mater
 }
 
 // Returns JSON pointers of the primitives of one material that have this key.
-std::vector<std::string> primitivesOf(const PlannedScenes& planned, const compiler::Key& key, int material) {
+std::vector<std::string> primitivesOf(const compiler::Build& build, const compiler::Key& key, int material) {
     std::vector<std::string> pointers;
     for (const int index : key.primitives) {
         const materials::PrimitiveInputs& inputs =
-            planned.scenes.primitives()[static_cast<std::size_t>(index)];
+            build.scenes->primitives()[static_cast<std::size_t>(index)];
         if (inputs.material == material) {
             pointers.push_back(fmt::format("/meshes/{}/primitives/{}", inputs.mesh, inputs.primitive));
         }
@@ -51,28 +48,28 @@ std::vector<std::string> primitivesOf(const PlannedScenes& planned, const compil
     return pointers;
 }
 
-const compiler::Case& caseOf(const PlannedScenes& planned, const compiler::Key& key) {
-    return planned.plan.cases[static_cast<std::size_t>(key.shaderId)];
+const compiler::Case& caseOf(const compiler::Build& build, const compiler::Key& key) {
+    return build.plan.cases[static_cast<std::size_t>(key.shaderId)];
 }
 
 // Returns the masks of primary surfaces of one material whose hits have this key. If hits keep all lobes, it
 // is only the key itself.
-std::set<materials::FeatureMask> primaryMasksOf(const PlannedScenes& planned, const compiler::Key& key,
+std::set<materials::FeatureMask> primaryMasksOf(const compiler::Build& build, const compiler::Key& key,
                                                 int material) {
     std::set<materials::FeatureMask> masks;
     for (const int index : key.primitives) {
         const auto primitive = static_cast<std::size_t>(index);
-        if (planned.scenes.primitives()[primitive].material == material) {
-            masks.insert(planned.plan.primaryMaskOfPrimitive[primitive]);
+        if (build.scenes->primitives()[primitive].material == material) {
+            masks.insert(build.plan.primaryMaskOfPrimitive[primitive]);
         }
     }
     return masks;
 }
 
-base::Json primaryToJson(const PlannedScenes& planned, const compiler::Key& key, int material) {
+base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key, int material) {
     base::Json list = base::Json::array();
-    for (const materials::FeatureMask mask : primaryMasksOf(planned, key, material)) {
-        list.push_back(featuresToJson(*planned.plan.model, mask));
+    for (const materials::FeatureMask mask : primaryMasksOf(build, key, material)) {
+        list.push_back(featuresToJson(*build.plan.model, mask));
     }
     return list;
 }
@@ -91,8 +88,8 @@ std::string whyText(const compiler::Case& shader) {
                        keys > 1 ? fmt::format(" ({} keys)", keys) : std::string());
 }
 
-std::string sharesText(const PlannedScenes& planned, const compiler::Key& key, const compiler::Case& shader) {
-    const bool counted = countsHits(planned.options);
+std::string sharesText(const compiler::Build& build, const compiler::Key& key, const compiler::Case& shader) {
+    const bool counted = countsHits(build.settings.compile.plan);
     const std::string ofCase =
         shader.keys.size() > 1 ? fmt::format(", its case {:.2f} %", 100.0 * shader.share) : std::string();
     return fmt::format("{:.2f} %{}, {}", 100.0 * key.share, ofCase,
@@ -101,13 +98,13 @@ std::string sharesText(const PlannedScenes& planned, const compiler::Key& key, c
 
 }  // namespace
 
-base::Json materialToJson(const PlannedScenes& planned, int material) {
+base::Json materialToJson(const compiler::Build& build, int material) {
     base::Json keys = base::Json::array();
-    for (const compiler::Key* key : keysOf(planned, material)) {
-        const compiler::Case& shader = caseOf(planned, *key);
+    for (const compiler::Key* key : keysOf(build, material)) {
+        const compiler::Case& shader = caseOf(build, *key);
         keys.push_back(base::Json{{"mask", fmt::format("0x{:016x}", key->mask)},
-                                  {"features", featuresToJson(*planned.plan.model, key->mask)},
-                                  {"onPrimarySurfaces", primaryToJson(planned, *key, material)},
+                                  {"features", featuresToJson(*build.plan.model, key->mask)},
+                                  {"onPrimarySurfaces", primaryToJson(build, *key, material)},
                                   {"share", compiler::shareToJson(key->share)},
                                   {"case",
                                    {{"id", shader.shaderId},
@@ -115,51 +112,51 @@ base::Json materialToJson(const PlannedScenes& planned, int material) {
                                     {"keys", shader.keys.size()},
                                     {"share", compiler::shareToJson(shader.share)},
                                     {"reason", toString(shader.reason)},
-                                    {"always", featuresToJson(*planned.plan.model, shader.always)},
-                                    {"sometimes", featuresToJson(*planned.plan.model, shader.sometimes)}}},
-                                  {"primitives", primitivesOf(planned, *key, material)}});
+                                    {"always", featuresToJson(*build.plan.model, shader.always)},
+                                    {"sometimes", featuresToJson(*build.plan.model, shader.sometimes)}}},
+                                  {"primitives", primitivesOf(build, *key, material)}});
     }
     base::Json dropped = base::Json::array();
-    for (const auto& [feature, reason] : dropsOf(planned, material)) {
+    for (const auto& [feature, reason] : dropsOf(build, material)) {
         dropped.push_back(base::Json{{"feature", feature}, {"reason", reason}});
     }
     return {{"index", material},
-            {"name", planned.scenes.materialName(material)},
+            {"name", build.scenes->materialName(material)},
             {"keys", keys},
             {"dropped", dropped},
-            {"animated", changesOf(planned.scenes, material)}};
+            {"animated", changesOf(*build.scenes, material)}};
 }
 
-std::vector<std::vector<std::string>> materialRows(const PlannedScenes& planned, int material,
+std::vector<std::vector<std::string>> materialRows(const compiler::Build& build, int material,
                                                    Detail detail) {
-    const std::vector<const compiler::Key*> keys = keysOf(planned, material);
+    const std::vector<const compiler::Key*> keys = keysOf(build, material);
     if (keys.empty()) {
         return {};
     }
     std::vector<std::vector<std::string>> rows;
     for (const compiler::Key* key : keys) {
-        const compiler::Case& shader = caseOf(planned, *key);
-        const std::vector<std::string> primitives = primitivesOf(planned, *key, material);
+        const compiler::Case& shader = caseOf(build, *key);
+        const std::vector<std::string> primitives = primitivesOf(build, *key, material);
         const std::string more =
             primitives.size() > 1 ? fmt::format(" and {} more", primitives.size() - 1) : std::string();
         rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
-        rows.push_back({"    features", featureList(*planned.plan.model, key->mask)});
-        for (const materials::FeatureMask mask : primaryMasksOf(planned, *key, material)) {
+        rows.push_back({"    features", featureList(*build.plan.model, key->mask)});
+        for (const materials::FeatureMask mask : primaryMasksOf(build, *key, material)) {
             if (mask != key->mask) {
-                rows.push_back({"    primary only", featureList(*planned.plan.model, mask & ~key->mask)});
+                rows.push_back({"    primary only", featureList(*build.plan.model, mask & ~key->mask)});
             }
         }
         rows.push_back(
             {"    case", shaderTitle(static_cast<std::uint64_t>(shader.shaderId), shader.name, detail)});
         rows.push_back({"    why", whyText(shader)});
-        rows.push_back({"    hits", sharesText(planned, *key, shader)});
-        rows.push_back({"    branches on", featureList(*planned.plan.model, shader.sometimes)});
+        rows.push_back({"    hits", sharesText(build, *key, shader)});
+        rows.push_back({"    branches on", featureList(*build.plan.model, shader.sometimes)});
         rows.push_back({"    primitives", primitives.front() + more});
     }
-    for (const auto& [feature, reason] : dropsOf(planned, material)) {
+    for (const auto& [feature, reason] : dropsOf(build, material)) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
     }
-    for (const std::string& change : changesOf(planned.scenes, material)) {
+    for (const std::string& change : changesOf(*build.scenes, material)) {
         rows.push_back({"  animated", fmt::format("{}: kept for all values between", change)});
     }
     return rows;

@@ -9,8 +9,8 @@
 namespace glint::cli {
 
 // Returns rows of a label and a text. There are none if no primitive has the material.
-std::vector<std::vector<std::string>> materialRows(const PlannedScenes& planned, int material, Detail detail);
+std::vector<std::vector<std::string>> materialRows(const compiler::Build& build, int material, Detail detail);
 // Returns a member of `materials` of `explain --json`: docs/cli.md lists its members.
-base::Json materialToJson(const PlannedScenes& planned, int material);
+base::Json materialToJson(const compiler::Build& build, int material);
 
 }  // namespace glint::cli

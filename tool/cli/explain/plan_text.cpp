@@ -15,12 +15,12 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-const compiler::Case& caseOf(const PlannedScenes& planned, int shaderId) {
-    return planned.plan.cases[static_cast<std::size_t>(shaderId)];
+const compiler::Case& caseOf(const compiler::Build& build, int shaderId) {
+    return build.plan.cases[static_cast<std::size_t>(shaderId)];
 }
 
-std::string titleOf(const PlannedScenes& planned, int shaderId, Detail detail) {
-    return shaderTitle(static_cast<std::uint64_t>(shaderId), caseOf(planned, shaderId).name, detail);
+std::string titleOf(const compiler::Build& build, int shaderId, Detail detail) {
+    return shaderTitle(static_cast<std::uint64_t>(shaderId), caseOf(build, shaderId).name, detail);
 }
 
 std::string percent(double share) {
@@ -32,19 +32,19 @@ std::string counted(std::size_t count, const std::string& what) {
 }
 
 // Returns the first names, and how many more there are.
-std::string materialsText(const PlannedScenes& planned, const std::vector<int>& materials) {
+std::string materialsText(const compiler::Build& build, const std::vector<int>& materials) {
     constexpr std::size_t kShown = 3;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < std::min(materials.size(), kShown); ++i) {
-        names.push_back(planned.scenes.materialName(materials[i]));
+        names.push_back(build.scenes->materialName(materials[i]));
     }
     const std::string more =
         materials.size() > kShown ? fmt::format(" and {} more", materials.size() - kShown) : std::string();
     return fmt::format("{}{}", fmt::join(names, "; "), more);
 }
 
-std::string headText(const PlannedScenes& planned) {
-    const int budget = budgetOf(planned.options);
+std::string headText(const compiler::Build& build) {
+    const int budget = budgetOf(build.settings.compile.plan);
     const std::string limit = budget > 0 ? fmt::format(", at most {}", budget) : std::string();
     return fmt::format(
         "{}: {} in {}, --merge {}{}; hits {}\n\n"
@@ -54,9 +54,10 @@ std::string headText(const PlannedScenes& planned) {
         "spared        {:.0f} for each case that sharing makes unnecessary\n"
         "instructions  of the case's shader; they and the fetches are estimated\n"
         "apart         instructions of shaders of its keys alone, on average over its hits\n",
-        planned.scenes.fileNames(), counted(planned.plan.keys.size(), "key"),
-        counted(caseCount(planned.plan), "case"), nameOf(planned.options.merge), limit,
-        countsHits(planned.options) ? "counted by the profile" : "expected from areas", compiler::kCaseCost);
+        build.scenes->fileNames(), counted(build.plan.keys.size(), "key"),
+        counted(caseCount(build.plan), "case"), nameOf(build.settings.compile.plan.merge), limit,
+        countsHits(build.settings.compile.plan) ? "counted by the profile" : "expected from areas",
+        compiler::kCaseCost);
 }
 
 // Without the columns that other tables have, too, where a line has to fit a terminal.
@@ -72,21 +73,21 @@ std::string fitting(Rows rows, Detail detail) {
     return formatTable(rows, detail);
 }
 
-std::string overviewText(const PlannedScenes& planned, const compiler::PlanCost& cost, Detail detail) {
+std::string overviewText(const compiler::Build& build, const compiler::PlanCost& cost, Detail detail) {
     Rows rows{
         {"case", "keys", "hits", "instructions", "apart", "fetches", "branches", "in vain", "spared", "why"}};
     double saved = 0.0;
     for (const compiler::CaseCost& entry : cost.cases) {
-        const compiler::Case& shaderCase = caseOf(planned, entry.shaderId);
+        const compiler::Case& shaderCase = caseOf(build, entry.shaderId);
         saved += entry.saved;
-        rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(shaderCase.keys.size()),
+        rows.push_back({titleOf(build, entry.shaderId, detail), std::to_string(shaderCase.keys.size()),
                         percent(shaderCase.share), fmt::format("{:.0f}", entry.code.instructions),
                         fmt::format("{:.0f}", entry.ownInstructions),
                         fmt::format("{:.0f}", entry.code.fetches), std::to_string(entry.branches.size()),
                         fmt::format("{:.2f}", entry.inVain), fmt::format("{:.0f}", entry.saved),
                         std::string(toString(shaderCase.reason))});
     }
-    rows.push_back({"all", std::to_string(planned.plan.keys.size()), "", "", "", "", "",
+    rows.push_back({"all", std::to_string(build.plan.keys.size()), "", "", "", "", "",
                     fmt::format("{:.2f}", cost.inVain), fmt::format("{:.0f}", saved), ""});
     for (std::size_t column = 2; column < 7; ++column) {
         rows.back()[column] = "-";
@@ -94,9 +95,9 @@ std::string overviewText(const PlannedScenes& planned, const compiler::PlanCost&
     return fitting(std::move(rows), detail);
 }
 
-std::string nearestText(const PlannedScenes& planned, const compiler::NearestCase& nearest, Detail detail) {
+std::string nearestText(const compiler::Build& build, const compiler::NearestCase& nearest, Detail detail) {
     return fmt::format("with case {}, the nearest: {:.2f} more in vain, {:.0f} spared",
-                       titleOf(planned, nearest.shaderId, detail), nearest.adds, compiler::kCaseCost);
+                       titleOf(build, nearest.shaderId, detail), nearest.adds, compiler::kCaseCost);
 }
 
 std::string fetchesText(const compiler::CodeEstimate& code) {
@@ -109,12 +110,12 @@ std::string leavingText(const compiler::KeyCost& cost) {
 }
 
 // Describes a case of several keys.
-std::string mergedText(const PlannedScenes& planned, const compiler::CaseCost& entry, Detail detail) {
-    const compiler::Case& shaderCase = caseOf(planned, entry.shaderId);
+std::string mergedText(const compiler::Build& build, const compiler::CaseCost& entry, Detail detail) {
+    const compiler::Case& shaderCase = caseOf(build, entry.shaderId);
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
               {"  merged", fmt::format("{:.2f} in vain, {:.0f} spared ({} fewer)", entry.inVain, entry.saved,
                                        counted(shaderCase.keys.size() - 1, "case"))},
-              {"  all have", featureList(*planned.plan.model, shaderCase.always)}};
+              {"  all have", featureList(*build.plan.model, shaderCase.always)}};
     std::string label = "  branches on";
     for (const compiler::BranchCost& branch : entry.branches) {
         rows.push_back({label, fmt::format("{}, in {} of its hits: {:.2f}", branch.feature->name,
@@ -123,31 +124,31 @@ std::string mergedText(const PlannedScenes& planned, const compiler::CaseCost& e
     }
     label = "  keys";
     for (const compiler::KeyCost& key : entry.keys) {
-        const compiler::Key& planKey = planned.plan.keys[static_cast<std::size_t>(key.key)];
+        const compiler::Key& planKey = build.plan.keys[static_cast<std::size_t>(key.key)];
         rows.push_back({label, fmt::format("{}: {} of all hits, {:.0f} instructions, {}; {}",
-                                           materialsText(planned, planKey.materials), percent(planKey.share),
+                                           materialsText(build, planKey.materials), percent(planKey.share),
                                            key.own.instructions, fetchesText(key.own), leavingText(key))});
         const materials::FeatureMask besides = planKey.mask & ~shaderCase.always;
-        rows.push_back({"", besides != 0 ? "  with " + featureList(*planned.plan.model, besides)
-                                         : "  with nothing else"});
+        rows.push_back(
+            {"", besides != 0 ? "  with " + featureList(*build.plan.model, besides) : "  with nothing else"});
         label.clear();
     }
     if (entry.nearest) {
-        rows.push_back({"  no further", nearestText(planned, *entry.nearest, detail)});
+        rows.push_back({"  no further", nearestText(build, *entry.nearest, detail)});
     }
-    return fmt::format("case {}\n{}", titleOf(planned, entry.shaderId, detail), formatFields(rows, detail));
+    return fmt::format("case {}\n{}", titleOf(build, entry.shaderId, detail), formatFields(rows, detail));
 }
 
 // Cases of one key: what keeps each from sharing one.
-std::string singlesText(const PlannedScenes& planned, const compiler::PlanCost& cost, Detail detail) {
+std::string singlesText(const compiler::Build& build, const compiler::PlanCost& cost, Detail detail) {
     Rows rows{{"case", "nearest", "in vain", "spared", "materials"}};
     for (const compiler::CaseCost& entry : cost.cases) {
-        const compiler::Case& shaderCase = caseOf(planned, entry.shaderId);
+        const compiler::Case& shaderCase = caseOf(build, entry.shaderId);
         if (shaderCase.keys.size() == 1 && entry.nearest) {
-            rows.push_back({titleOf(planned, entry.shaderId, detail), std::to_string(entry.nearest->shaderId),
+            rows.push_back({titleOf(build, entry.shaderId, detail), std::to_string(entry.nearest->shaderId),
                             fmt::format("{:.2f}", std::max(0.0, entry.nearest->adds)),
                             fmt::format("{:.0f}", compiler::kCaseCost),
-                            materialsText(planned, shaderCase.materials)});
+                            materialsText(build, shaderCase.materials)});
         }
     }
     return rows.size() == 1 ? std::string()
@@ -155,7 +156,7 @@ std::string singlesText(const PlannedScenes& planned, const compiler::PlanCost& 
                                   formatTable(rows, detail);
 }
 
-std::string policiesText(const PlannedScenes& planned, const compiler::PlanCost& cost) {
+std::string policiesText(const compiler::Build& build, const compiler::PlanCost& cost) {
     Rows rows{{"--merge", "cases", "in vain", "for cases", "all", ""}};
     const auto add = [&](compiler::MergePolicy merge, std::size_t cases, double inVain,
                          const std::string& note) {
@@ -164,11 +165,11 @@ std::string policiesText(const PlannedScenes& planned, const compiler::PlanCost&
                         fmt::format("{:.0f}", all - inVain), fmt::format("{:.2f}", all), note});
     };
     for (const compiler::PolicyCost& policy : cost.policies) {
-        const bool isThis = policy.merge == planned.options.merge;
+        const bool isThis = policy.merge == build.settings.compile.plan.merge;
         add(policy.merge, policy.cases, policy.inVain, isThis ? "this plan" : "");
     }
-    if (planned.options.merge == compiler::MergePolicy::Profile) {
-        add(compiler::MergePolicy::Profile, caseCount(planned.plan), cost.inVain, "this plan");
+    if (build.settings.compile.plan.merge == compiler::MergePolicy::Profile) {
+        add(compiler::MergePolicy::Profile, caseCount(build.plan), cost.inVain, "this plan");
     }
     return "\nThe same keys under every policy\n\n" + formatTable(rows);
 }
@@ -180,21 +181,21 @@ base::Json toJson(const compiler::CodeEstimate& code) {
             {"lobeBranches", code.lobeBranches}};
 }
 
-base::Json keyToJson(const PlannedScenes& planned, const compiler::KeyCost& cost) {
-    const compiler::Key& key = planned.plan.keys[static_cast<std::size_t>(cost.key)];
+base::Json keyToJson(const compiler::Build& build, const compiler::KeyCost& cost) {
+    const compiler::Key& key = build.plan.keys[static_cast<std::size_t>(cost.key)];
     return {{"mask", fmt::format("0x{:016x}", key.mask)},
-            {"features", featuresToJson(*planned.plan.model, key.mask)},
-            {"materials", materialsToJson(planned.scenes, key.materials)},
+            {"features", featuresToJson(*build.plan.model, key.mask)},
+            {"materials", materialsToJson(*build.scenes, key.materials)},
             {"share", compiler::shareToJson(key.share)},
             {"own", {{"instructions", cost.own.instructions}, {"textureFetches", cost.own.fetches}}},
             {"leavingAdds", cost.leavingAdds}};
 }
 
-base::Json caseToJson(const PlannedScenes& planned, const compiler::CaseCost& cost) {
-    const compiler::Case& shaderCase = caseOf(planned, cost.shaderId);
+base::Json caseToJson(const compiler::Build& build, const compiler::CaseCost& cost) {
+    const compiler::Case& shaderCase = caseOf(build, cost.shaderId);
     base::Json keys = base::Json::array();
     for (const compiler::KeyCost& key : cost.keys) {
-        keys.push_back(keyToJson(planned, key));
+        keys.push_back(keyToJson(build, key));
     }
     base::Json branches = base::Json::array();
     for (const compiler::BranchCost& branch : cost.branches) {
@@ -211,8 +212,8 @@ base::Json caseToJson(const PlannedScenes& planned, const compiler::CaseCost& co
             {"name", shaderCase.name},
             {"reason", toString(shaderCase.reason)},
             {"share", compiler::shareToJson(shaderCase.share)},
-            {"always", featuresToJson(*planned.plan.model, shaderCase.always)},
-            {"sometimes", featuresToJson(*planned.plan.model, shaderCase.sometimes)},
+            {"always", featuresToJson(*build.plan.model, shaderCase.always)},
+            {"sometimes", featuresToJson(*build.plan.model, shaderCase.sometimes)},
             {"estimate", toJson(cost.code)},
             {"ownInstructions", cost.ownInstructions},
             {"inVain", cost.inVain},
@@ -235,25 +236,25 @@ std::string sumOf(const compiler::StrategyEstimate& estimate,
 
 }  // namespace
 
-std::string planText(const PlannedScenes& planned, Detail detail) {
-    if (planned.plan.keys.empty()) {
+std::string planText(const compiler::Build& build, Detail detail) {
+    if (build.plan.keys.empty()) {
         return "no primitives: no keys, no cases\n";
     }
-    const compiler::PlanCost cost = costPlan(planned.plan, planned.options);
-    std::string text = headText(planned) + "\n" + overviewText(planned, cost, detail);
+    const compiler::PlanCost cost = costPlan(build.plan, build.settings.compile.plan);
+    std::string text = headText(build) + "\n" + overviewText(build, cost, detail);
     for (const compiler::CaseCost& entry : cost.cases) {
         if (entry.keys.size() > 1) {
-            text += "\n" + mergedText(planned, entry, detail);
+            text += "\n" + mergedText(build, entry, detail);
         }
     }
-    return text + singlesText(planned, cost, detail) + policiesText(planned, cost);
+    return text + singlesText(build, cost, detail) + policiesText(build, cost);
 }
 
-base::Json planToJson(const PlannedScenes& planned) {
-    const compiler::PlanCost cost = costPlan(planned.plan, planned.options);
+base::Json planToJson(const compiler::Build& build) {
+    const compiler::PlanCost cost = costPlan(build.plan, build.settings.compile.plan);
     base::Json cases = base::Json::array();
     for (const compiler::CaseCost& entry : cost.cases) {
-        cases.push_back(caseToJson(planned, entry));
+        cases.push_back(caseToJson(build, entry));
     }
     base::Json policies = base::Json::array();
     for (const compiler::PolicyCost& policy : cost.policies) {
@@ -262,10 +263,10 @@ base::Json planToJson(const PlannedScenes& planned) {
                                       {"inVain", policy.inVain},
                                       {"cost", compiler::totalCost(policy.inVain, policy.cases)}});
     }
-    const int budget = budgetOf(planned.options);
+    const int budget = budgetOf(build.settings.compile.plan);
     return {{"maxShaders", budget > 0 ? base::Json(budget) : base::Json()},
-            {"hits", countsHits(planned.options) ? "counted" : "expected"},
-            {"keys", planned.plan.keys.size()},
+            {"hits", countsHits(build.settings.compile.plan) ? "counted" : "expected"},
+            {"keys", build.plan.keys.size()},
             {"inVain", cost.inVain},
             {"caseCost", compiler::kCaseCost},
             {"cost", compiler::totalCost(cost.inVain, cost.cases.size())},

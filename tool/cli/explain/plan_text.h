@@ -4,24 +4,16 @@
 
 #include "cli/report.h"
 #include "cli/table.h"
-#include "gltf/scene_list.h"
-#include "plan/plan.h"
-#include "plan/strategy_choice.h"
+#include "resolve/build.h"
 
 #include <string>
 
 namespace glint::cli {
 
-struct PlannedScenes {
-    const gltf::SceneList& scenes;
-    const compiler::PlanOptions& options;
-    const compiler::Plan& plan;
-};
-
-std::string planText(const PlannedScenes& planned, Detail detail);
+std::string planText(const compiler::Build& build, Detail detail);
 
 // Returns the members that `explain --plan --json` adds to the plan's options: docs/cli.md lists them.
-base::Json planToJson(const PlannedScenes& planned);
+base::Json planToJson(const compiler::Build& build);
 
 // Returns a table of milliseconds, the recommended strategy and the reason.
 std::string strategiesText(const compiler::StrategyAdvice& advice);

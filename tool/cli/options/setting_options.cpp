@@ -97,11 +97,14 @@ void addSetting(CLI::App& command, const compiler::Descriptor& row, compiler::Se
 
 // Returns the settings that decide whether those of `which` change anything. A package for several strategies
 // counts as one of a strategy that sorts hits, if it has such a one.
-compiler::Settings decisive(compiler::SettingCommand which, compiler::Settings settings) {
-    if (which == compiler::kOfCompile) {
-        const std::uint32_t ordered = settings.compile.strategies & package::orderedStrategies();
+compiler::Settings decisive(const compiler::Build& build) {
+    compiler::Settings settings = build.asked;
+    settings.strategy = build.settings.strategy;
+    if (!build.draws) {
+        const std::uint32_t all = build.settings.compile.strategies;
+        const std::uint32_t ordered = all & package::orderedStrategies();
         for (const package::Strategy strategy : package::strategies()) {
-            if (((ordered != 0 ? ordered : settings.compile.strategies) & strategy) != 0) {
+            if (((ordered != 0 ? ordered : all) & strategy) != 0) {
                 settings.strategy = strategy;
             }
         }
@@ -138,27 +141,21 @@ void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Se
 namespace {
 
 // Packages for scenes that are edited, and for hosts that bring textures of their own, trust no textures.
-void settleTrust(const CLI::App& command, compiler::Settings& settings) {
-    const char* const changes = settings.compile.plan.fallback   ? "--fallback"
-                                : !settings.compile.host.empty() ? "--host"
-                                                                 : nullptr;
-    if (changes == nullptr || !settings.compile.trustTextures) {
-        return;
-    }
-    if (givenOption(command, "--trust-textures") != nullptr) {
+void checkTrust(const CLI::App& command, const compiler::Settings& settings) {
+    if (settings.compile.trustTextures && !trustsTextures(settings) &&
+        givenOption(command, "--trust-textures") != nullptr) {
         throw CLI::ValidationError(
             "--trust-textures",
             fmt::format("can't be combined with {}, with which textures may hold anything at run time; "
                         "leave out one of them",
-                        changes));
+                        settings.compile.plan.fallback ? "--fallback" : "--host"));
     }
-    settings.compile.trustTextures = false;
 }
 
 }  // namespace
 
-void settleSettings(const CLI::App& command, compiler::Settings& settings) {
-    settleTrust(command, settings);
+void checkSettings(const CLI::App& command, const compiler::Settings& settings) {
+    checkTrust(command, settings);
     if (const CLI::Option* const effects = givenOption(command, "--effects")) {
         for (const std::string alone : {"none", "all"}) {
             const bool named = std::ranges::find(effects->results(), alone) != effects->results().end();
@@ -249,27 +246,49 @@ void addHostOption(CLI::App& command, compiler::Settings& settings) {
         .group("Shaders");
 }
 
+void addLockOptions(CLI::App& command, compiler::LockRequest& request, bool isWritten) {
+    request.isWritten = isWritten;
+    CLI::Option& lock = addText(command, "--lock", request.file, "FILE",
+                                isWritten ? "keep shader IDs from build to build in this file, which\n"
+                                            "is created, and extended by new keys; commit it"
+                                          : "take shader IDs from this file, which glint compile\n"
+                                            "--lock keeps");
+    lock.group("Shaders");
+    if (!isWritten) {
+        return;
+    }
+    CLI::Option& frozen = addFlag(command, "--locked", request.frozen,
+                                  "fail, and write nothing, if the lock file would change\n(needs --lock)");
+    CLI::Option& prune = addFlag(command, "--lock-prune", request.prune,
+                                 "remove keys that no scene has from the lock file, which\n"
+                                 "frees their IDs (needs --lock, excludes --locked)");
+    frozen.needs(&lock);
+    prune.needs(&lock)->excludes(&frozen);
+    for (CLI::Option* option : {&frozen, &prune}) {
+        option->group("Shaders");
+    }
+}
+
 Diagnostic idleWarning(const std::string& where, const std::string& words, const std::string& reason) {
     return makeWarning("setting-idle", where, fmt::format("{} changes nothing: {}", words, reason),
                        "leave it out");
 }
 
-std::vector<Diagnostic> idleSettings(std::span<const gltf::Scene> scenes, compiler::SettingCommand which,
-                                     const compiler::Settings& given, compiler::PlanOptions plan) {
+std::vector<Diagnostic> idleSettings(const compiler::Build& build) {
     std::vector<Diagnostic> warnings;
-    const std::string where = scenes.empty() ? std::string() : scenes.front().path;
-    if (!given.calibration.empty() && !given.compile.strategyChoice) {
+    const compiler::Settings& given = build.asked;
+    const std::string where = build.scenes->scenes().front().path;
+    if (!given.calibration.empty() && !build.settings.compile.strategyChoice) {
         warnings.push_back(idleWarning(where, "--calibration", "only --strategy auto reads it"));
     }
     if (given.given.empty()) {
         return warnings;
     }
-    const compiler::Settings settings = decisive(which, given);
-    const compiler::Configuration base = configurationOf(settings);
-    plan.keys.keptLobes = materials::kLobeMask;  // whether --hit-lobes has any to take away
+    const compiler::SettingCommand which = build.draws ? compiler::kOfRender : compiler::kOfCompile;
+    const compiler::Configuration base = configurationOf(decisive(build));
     std::vector<compiler::BenchFacts> facts;
-    for (const gltf::Scene& scene : scenes) {
-        facts.push_back(measure::factsOf(settings, scene, plan));
+    for (std::size_t i = 0; i < build.scenes->scenes().size(); ++i) {
+        facts.push_back(measure::factsOf(build, i));
     }
     for (const compiler::Descriptor& row : compiler::settingsTable()) {
         if ((row.commands & which) == 0 || std::ranges::find(given.given, row.name) == given.given.end()) {
@@ -284,15 +303,14 @@ std::vector<Diagnostic> idleSettings(std::span<const gltf::Scene> scenes, compil
         }
         if (!reason.empty()) {
             warnings.push_back(idleWarning(
-                where, fmt::format("{}", fmt::join(optionWords(row, row.values.text(settings)), " ")),
-                reason));
+                where, fmt::format("{}", fmt::join(optionWords(row, row.values.text(given)), " ")), reason));
         }
     }
     return warnings;
 }
 
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
-                                          base::Memo* texels) {
+                                          base::Memo* texels, const Package* package) {
     GLINT_TRY(const auto model, materials::loadMaterialModel(settings.materials));
     for (const std::string& name : settings.compile.effects.ofPacks) {
         if (findEffect(model->effects, name) == 0) {
@@ -308,7 +326,7 @@ Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, Im
     }
     gltf::ImportOptions options;
     options.keepImageFiles = images == ImageReading::Files;
-    options.trustTextures = settings.compile.trustTextures;
+    options.trustTextures = package != nullptr ? package->trustTextures() : trustsTextures(settings);
     options.memo = texels;
     options.memoScope = texels != nullptr ? compiler::programIdentity() : "";
     options.scene = settings.sceneInFile;

@@ -3,7 +3,6 @@
 #include "base/suggest.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
-#include "cli/render/open_image_denoise.h"
 #include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
@@ -131,9 +130,8 @@ void addViewOptions(CLI::App& command, RenderArguments& arguments) {
         .group("Picture");
 }
 
-// Adds the layers of the view to those that are compiled. Throws a CLI::ParseError if the line contradicts
-// itself.
-void settleView(const CLI::App& command, RenderArguments& arguments) {
+// Throws a CLI::ParseError if the line contradicts itself about views.
+void checkView(const CLI::App& command, const RenderArguments& arguments) {
     const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view);
     const bool compares = view && view->info->readsReference;
     if (command.count(kViewReference) > 0 && !compares) {
@@ -157,26 +155,13 @@ void settleView(const CLI::App& command, RenderArguments& arguments) {
                               "and no view",
                               fmt::join(layers, ",")));
     }
-    if (arguments.package.empty()) {
-        for (std::string& layer : measure::layersFor(*view)) {
-            arguments.compile.layers.push_back(std::move(layer));
-        }
-    }
 }
 
-// Adds the layers that the denoiser reads. Throws a CLI::ParseError if the line contradicts itself.
-void settleDenoising(RenderArguments& arguments) {
-    if (!arguments.denoise) {
-        return;
-    }
-    if (!arguments.view.empty()) {
+// Throws a CLI::ParseError if the line contradicts itself about denoising.
+void checkDenoising(const RenderArguments& arguments) {
+    if (arguments.denoise && !arguments.view.empty()) {
         throw CLI::ValidationError("--denoise",
                                    "changes the picture that --view replaces; leave out one of them");
-    }
-    std::vector<std::string>& layers = arguments.compile.layers;
-    if (arguments.package.empty()) {
-        const std::vector<std::string> wanted = denoiserLayers();
-        layers.insert(layers.end(), wanted.begin(), wanted.end());
     }
 }
 
@@ -199,10 +184,9 @@ void addRenderReports(CLI::App& command, RenderArguments& arguments) {
         .group("Report");
 }
 
-// Hits are counted by case, so every key needs its own case, in a strategy that orders hits. Chooses --merge
-// none. Throws a CLI::ParseError if the command line asks for something else. Does nothing unless hits are
-// counted.
-void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
+// Hits are counted by case, so every key needs its own case, in a strategy that orders hits. Throws a
+// CLI::ParseError if the command line asks for something else. Does nothing unless hits are counted.
+void checkProfileOutput(const CLI::App& command, const RenderArguments& arguments) {
     if (arguments.profileOutput.empty()) {
         return;
     }
@@ -222,7 +206,6 @@ void settleProfileOutput(const CLI::App& command, RenderArguments& arguments) {
                              compiler::sweptSetting("strategy")->values.text(arguments) +
                              ", which does not order hits by shader; use --strategy " + countingStrategies());
     }
-    arguments.compile.plan.merge = compiler::MergePolicy::None;
 }
 
 }  // namespace
@@ -271,7 +254,7 @@ void checkSceneOptions(const CLI::App& command, RenderArguments& arguments) {
         throw CLI::ValidationError("--sky",
                                    "sets the sky that --environment replaces; leave out one of them");
     }
-    settleSettings(command, arguments);
+    checkSettings(command, arguments);
 }
 
 void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>& arguments,
@@ -304,9 +287,9 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         if (!arguments->compile.layers.empty() && format && *format != image::ImageFormat::Exr) {
             throw CLI::ValidationError("--layers", "needs a file that has room for layers; give -o FILE.exr");
         }
-        settleView(command, *arguments);
-        settleDenoising(*arguments);
-        settleProfileOutput(command, *arguments);
+        checkView(command, *arguments);
+        checkDenoising(*arguments);
+        checkProfileOutput(command, *arguments);
         checkProfile(command, *arguments);
         then();
     });

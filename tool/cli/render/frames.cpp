@@ -34,7 +34,7 @@ public:
             data_.moves = setup_.movement->moments.size() > 1;
         }
         // Once for all pictures: a sequence would flicker otherwise.
-        sky_ = measure::chooseSky(setup_.arguments, scene_, data_);
+        sky_ = measure::chooseSky(setup_.settings, scene_, data_);
         if (setup_.environment == nullptr) {
             report_.sky = sky_;
         }
@@ -65,7 +65,7 @@ public:
         report_.hasDetails = !setup_.arguments.stats.empty();
         report_.countsLight = !setup_.arguments.stats.empty();
         report_.traffic.shape = trafficShape(package, setup_.renderer);
-        report_.traffic.shape.binsRays = setup_.arguments.frame.binning != Binning::None;
+        report_.traffic.shape.binsRays = setup_.settings.frame.binning != Binning::None;
         return okStatus();
     }
 
@@ -89,8 +89,7 @@ public:
         if (!warned_) {
             warn(scene_view::nothingSeen(scene_, data_, camera_));
         }
-        FrameOptions options =
-            measure::frameOptions(setup_.arguments, camera_.view, sky_, setup_.environment);
+        FrameOptions options = measure::frameOptions(setup_.settings, camera_.view, sky_, setup_.environment);
         options.timing = Timing::Passes;
         options.time = static_cast<float>(frame.seconds);
         // Counting takes time that would be added to that of the passes, so it is on only if the counts are
@@ -167,7 +166,7 @@ private:
         scene_view::applyPose(scene_view::poseAt(scene_, setup_.movement->animations, moment.seconds),
                               scene_);
         scene_view::poseSceneView(scene_, data_);
-        measure::sizeLights(setup_.arguments, data_);
+        measure::sizeLights(setup_.settings, data_);
         if (scene_view::framesEverything(scene_, setup_.arguments.camera)) {
             return okStatus();  // that one stands still
         }

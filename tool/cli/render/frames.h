@@ -21,6 +21,7 @@ namespace glint::cli {
 struct FrameSetup {
     const Console& console;
     const RenderArguments& arguments;
+    const compiler::Settings& settings;  // that were decided
     RendererOptions renderer;
     const Environment* environment = nullptr;  // null: none
     const std::optional<Movement>& movement;   // nothing: the rest pose

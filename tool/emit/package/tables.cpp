@@ -1,6 +1,5 @@
 #include "emit/package/tables.h"
 
-#include "emit/lights.h"
 #include "emit/sources.h"
 #include "scene/deformed.h"
 
@@ -323,8 +322,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Effects, effects);
     writer.add(SectionKind::Features, features);
     if (settings.emissiveLights == EmissiveLights::On) {
-        const EmitterFeatures emitted = emitterFeatures(scenes, plan, settings.plan.fallback);
-        writer.add(SectionKind::Emission, std::vector{emissionOf(layout, emitted)});
+        writer.add(SectionKind::Emission, std::vector{emissionOf(layout, plan.emitters)});
     }
     if (!plan.layers.empty()) {
         writer.add(SectionKind::Layers, plan.layers);

@@ -41,8 +41,9 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
     if ((evaluator->context_->handles().tracers & package::kTracerRayQuery) == 0) {
         settings.tracers = package::kTracerRayPipeline;
     }
-    GLINT_TRY(const auto compiled, compilePackage(scene, settings));
-    GLINT_TRY(auto kernel, compileFeatureKernel(scene, compiled.plan, settings));
+    GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
+    GLINT_TRY(const auto compiled, compilePackage(build));
+    GLINT_TRY(auto kernel, compileFeatureKernel(build));
     evaluator->layers_ = std::move(kernel.layers);
     GLINT_TRY(auto package, scene_view::loadPackage(compiled));
     evaluator->package_ = std::make_unique<Package>(std::move(package));

@@ -1,5 +1,4 @@
-// Builds of the pictures, and the changes of files and settings that start them.
-#include "settings/table.h"
+// Builds of the pictures, and what makes them build again: files and settings.
 #include "view/window/window.h"
 
 #include <fmt/format.h>
@@ -11,12 +10,7 @@ namespace glint::view {
 void Window::order(std::size_t index, std::span<const std::string> changed) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
-    BuildOrder order{index, one.wanted, scene_, {changed.begin(), changed.end()}};
-    // As on the command line, textures may have any contents if there is a fallback or a host.
-    order.settings.compile.trustTextures = one.wanted.compile.trustTextures &&
-                                           !one.wanted.compile.plan.fallback &&
-                                           one.wanted.compile.host.empty();
-    builder_->start(std::move(order));
+    builder_->start({index, one.wanted, scene_, {changed.begin(), changed.end()}});
 }
 
 void Window::pollFiles() {
@@ -154,38 +148,22 @@ Status Window::followSettings(std::size_t index) {
     if (!one.picture.isReady()) {
         return okStatus();
     }
-    compiler::Settings next = one.wanted;
-    // The picture keeps settings that need a build until that build is there.
-    if (changeBetween(one.ordered, one.wanted) == Change::Build) {
+    // Until the other build is there, the picture keeps what only that build has.
+    if (changeBetween(one.ordered, one.wanted) == compiler::Change::Build) {
         order(index);
     }
-    if (changeBetween(one.picture.build().settings, next) == Change::Build) {
-        const compiler::Settings built = one.picture.settings();
-        for (const compiler::Descriptor& row : compiler::settingsTable()) {
-            compiler::Settings probe = built;
-            if ((row.commands & compiler::kOfRender) != 0) {
-                row.values.set(probe, row.values.text(next));
-                if (changeBetween(built, probe) == Change::Build) {
-                    row.values.set(next, row.values.text(built));
-                }
-            }
-        }
-        next.environment = built.environment;
-        next.package = built.package;
-    }
-    next.strategy = one.picture.build().settings.strategy;
-    next.compile.strategyChoice = one.picture.build().settings.compile.strategyChoice;
+    compiler::Settings next = withoutRebuilding(one.picture.build().settings(), one.wanted);
     const auto [width, height] = pictureExtent();
     next.renderer.width = width;
     next.renderer.height = height;
-    const Change change = changeBetween(one.picture.settings(), next);
-    if (change == Change::None) {
+    const compiler::Change change = changeBetween(one.picture.settings(), next);
+    if (change == compiler::Change::None) {
         return okStatus();
     }
     if (!builder_->isBusy(index) && !one.buildFailed) {
         error_.reset();
     }
-    if (change != Change::Frame) {
+    if (change != compiler::Change::Frame) {
         GLINT_TRY_DO(presenter_->waitForFrames());
         finishSamples();
         one.history.clear();

@@ -87,7 +87,9 @@ void Window::saveScreenshot() {
     const std::string animation = animationChoice_ >= static_cast<int>(picture.scene().animations.size())
                                       ? std::string("all")
                                       : std::to_string(animationChoice_);
-    compiler::Settings settings = picture.settings();
+    // What was asked for says the same as what was decided, in fewer words.
+    compiler::Settings settings = withoutRebuilding(picture.build().resolved.asked, picture.settings());
+    settings.strategy = picture.settings().strategy;
     // A camera that frames everything was placed for another moment.
     const bool isPlaced = poses_ && scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera);
     const std::string camera = isPlaced ? scene_view::toText(camera_.placed()) : camera_.name();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "gltf/scene.h"
+#include "resolve/resolve.h"
 
 #include <glint/context.h>
 #include <glint/environment.h>
@@ -16,13 +17,15 @@
 #include <glint/scene_view/sky.h>
 #include <glint/scene_view/textures.h>
 
-#include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 namespace glint::compiler {
@@ -49,6 +52,7 @@ double stretchMs(std::span<const PassTiming> stretches, Pass pass);
 
 // A package, and the scene on the device in the form that the package needs.
 struct MountedPackage {
+    compiler::Settings settings;  // of the build
     std::unique_ptr<Package> package;
     std::unique_ptr<GpuScene> scene;
 };
@@ -104,14 +108,18 @@ struct SceneSize {
     std::uint32_t instances = 0;
 };
 
+// Reads the scene of a bed again, with other trust in textures than at first.
+using SceneReader = std::function<Result<gltf::Scene>(bool trustsTextures)>;
+
 class BenchBed {
 public:
     // Reads the environment map, and chooses the camera and the device. Messages go to `observer`.
-    // `observer`, `scene`, `cache` and `store`, which may be null, must outlive the result. `store` keeps
-    // compressed textures. Errors of
+    // `observer`, `scene`, `cache` and `store`, which may be null, must outlive the result. `reader` may be
+    // null if no packages are given. `store` keeps compressed textures. Errors of
     // Context::createHeadless() and of files.
     static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const compiler::Settings& base,
-                                                    const gltf::Scene& scene, compiler::ModuleCache* cache,
+                                                    const gltf::Scene& scene, const SceneReader& reader,
+                                                    compiler::ModuleCache* cache,
                                                     compiler::CacheStore* store);
 
     // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
@@ -125,8 +133,12 @@ public:
     Context& context() {
         return *context_;
     }
+    // What the user asks for, with the strategy and the alpha policy that are compared with.
     const compiler::Settings& base() const {
         return base_;
+    }
+    const compiler::Build& build() const {
+        return build_;
     }
     const gltf::Scene& scene() const {
         return scene_;
@@ -151,22 +163,36 @@ public:
     }
 
 private:
-    BenchBed(const Observer& observer, compiler::Settings base, const gltf::Scene& scene,
+    BenchBed(const Observer& observer, compiler::Settings base, const gltf::Scene& scene, SceneReader reader,
              compiler::ModuleCache* cache, compiler::CacheStore* store)
-        : observer_(observer), base_(std::move(base)), scene_(scene), cache_(cache), store_(store) {}
-    Status settleChoices();
-    Result<Mount> mount(compiler::Settings render);
-    Result<std::shared_ptr<MountedPackage>> mountPackage(const compiler::Settings& arguments);
-    Result<std::shared_ptr<const scene_view::TextureSet>> textures(const compiler::Settings& settings,
+        : observer_(observer),
+          base_(std::move(base)),
+          scene_(scene),
+          list_(std::make_shared<const gltf::SceneList>(std::span(&scene, 1))),
+          reader_(std::move(reader)),
+          cache_(cache),
+          store_(store) {}
+    Status resolveBase();
+    Result<Mount> mount(const compiler::Settings& asked);
+    Result<std::shared_ptr<MountedPackage>> mountPackage(const compiler::Build& build,
+                                                         std::optional<Package> given);
+    Result<std::shared_ptr<const gltf::SceneList>> scenesFor(const Package* package);
+    Result<std::shared_ptr<const scene_view::TextureSet>> textures(const compiler::Build& build,
                                                                    const Package& package);
 
     const Observer& observer_;
     compiler::Settings base_;
+    compiler::Build build_;
     const gltf::Scene& scene_;
+    std::shared_ptr<const gltf::SceneList> list_;
+    SceneReader reader_;
+    std::unique_ptr<const gltf::Scene> otherScene_;  // read by it
+    std::shared_ptr<const gltf::SceneList> otherList_;
     compiler::ModuleCache* cache_;
     compiler::CacheStore* store_;
-    // Textures by whether they are compressed, and whether emission is unpacked as well.
-    std::map<std::array<bool, 2>, std::shared_ptr<const scene_view::TextureSet>> textures_;
+    // By the scene, by whether they are compressed, and whether emission is unpacked as well.
+    std::map<std::tuple<const gltf::Scene*, bool, bool>, std::shared_ptr<const scene_view::TextureSet>>
+        textures_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;
     CameraView camera_;
@@ -176,9 +202,13 @@ private:
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
     SceneSize size_;
-    // The keys hold everything that decides about the values.
-    std::map<std::string, std::weak_ptr<MountedPackage>> packages_;
-    std::map<std::string, std::weak_ptr<Renderer>> renderers_;
+    struct KnownRenderer {
+        std::weak_ptr<MountedPackage> package;
+        std::weak_ptr<Renderer> renderer;
+        compiler::Settings settings;
+    };
+    std::vector<std::weak_ptr<MountedPackage>> packages_;
+    std::vector<KnownRenderer> renderers_;
 };
 
 }  // namespace glint::measure

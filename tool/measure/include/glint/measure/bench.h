@@ -48,12 +48,12 @@ struct BenchSettings {
     double maxError = 0.0;  // 0: none
 };
 
-// Makes the reference, measures one setting at a time, then pairs, then the proposals of a search, and fills
-// in the members of `report` that follow: scene except its file, machine, reference, base, settings, points,
-// front, strategies, advice. The caller has set the others (file, rounds, seed, batch, quick, metric) before.
-// `plan` is that of the bed's scene and settings. A point that can't be measured is a warning. `store` keeps
-// the reference; it may be null. Errors: of the reference and of the device, "validation".
-Status runBench(const Observer& observer, const BenchSettings& settings, const compiler::PlanOptions& plan,
-                BenchBed& bed, compiler::CacheStore* store, BenchReport& report);
+// Makes the reference, measures one setting at a time, then pairs, then what a search proposes, and fills in
+// the members of `report` that follow: scene but its file, machine, reference, base, settings, points, front,
+// strategies, advice. The caller has set the others (file, rounds, seed, batch, quick, metric) before. A
+// point that can't be measured is a warning. `store` keeps the reference; it may be null. Errors: of the
+// reference and of the device, "validation".
+Status runBench(const Observer& observer, const BenchSettings& settings, BenchBed& bed,
+                compiler::CacheStore* store, BenchReport& report);
 
 }  // namespace glint::measure

@@ -1,7 +1,8 @@
-// Settings as compiler and runtime take them, once the scene and the device are known.
+// Settings as the runtime takes them.
 #pragma once
 
 #include "gltf/scene.h"
+#include "resolve/build.h"
 #include "settings/configuration.h"
 
 #include <glint/context.h>
@@ -12,17 +13,13 @@
 #include <glint/scene_view/textures.h>
 
 #include <cstdint>
-#include <vector>
 
 namespace glint::measure {
 
-// Returns the facts of the scene and the request on which the values worth trying depend. BenchFacts of the
+// Returns the facts of one of a build's scenes on which the values worth trying depend. BenchFacts of the
 // device are left out.
-compiler::BenchFacts factsOf(const compiler::Settings& settings, const gltf::Scene& scene,
-                             const compiler::PlanOptions& plan);
+compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t scene = 0);
 
-// Returns whether the picture gets a light that the scene lacks.
-bool addsSun(const compiler::Settings& settings, const gltf::Scene& scene);
 HeadlessOptions deviceOptions(const compiler::Settings& settings);
 // Returns the scene as it is uploaded, with the light that it may lack and the sizes of lights.
 scene_view::SceneViewData sceneView(const compiler::Settings& settings, const gltf::Scene& scene);
@@ -31,14 +28,7 @@ scene_view::TextureOptions textureOptions(const compiler::Settings& settings, co
                                           const Package& package, compiler::CacheStore* cache);
 // Gives lights the sizes that the settings ask for.
 void sizeLights(const compiler::Settings& settings, scene_view::SceneViewData& scene);
-// Returns the settings of a package with these strategies and tracers.
-compiler::CompileSettings compileSettings(const compiler::Settings& settings,
-                                          const compiler::PlanOptions& plan);
-// Returns the settings of the package that is compiled for a picture if none is given. `tracers` are those of
-// the device.
-compiler::CompileSettings compileSettings(const compiler::Settings& settings,
-                                          const compiler::PlanOptions& plan, std::uint32_t tracers,
-                                          const gltf::Scene& scene);
+// Returns what a renderer is asked for. The strategy must be decided.
 RendererOptions rendererOptions(const compiler::Settings& settings);
 // Returns the sky that `sky` asks for. With `auto` it follows the lights at the pose of `scene`, from which
 // `view` was made. A scene without lights of its own keeps the default sky, to which the sun belongs.

@@ -8,7 +8,6 @@
 #include <glint/result.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -18,25 +17,16 @@ namespace glint::scene_view {
 // Returns nothing if the package does not know the scene.
 std::optional<std::uint32_t> sceneIn(const Package& package, const gltf::Scene& scene);
 
-// The requirements on a package that was compiled earlier.
-struct PackageDemand {
-    package::Strategy strategy = package::kDefaultStrategy;
-    std::optional<package::Tracer> tracer;  // absent: any
-    bool environmentMap = false;
-};
-
-// Error "package-mismatch" unless `package` was compiled as required and from this scene: it must have the
-// same materials, and for each primitive the same material and features. Error "package-tracer" if it lacks
-// the tracer. `folder` is the place that errors name.
-Status checkPackage(const Package& package, const std::filesystem::path& folder, const PackageDemand& demand,
-                    const gltf::Scene& scene);
+// Error "package-mismatch" unless `package` has what a build of one scene asks for, and was compiled from
+// this scene: it must have the same materials, and for each primitive the same material and features. Error
+// "package-tracer" if it lacks the tracer. Errors name Settings::package as their place.
+Status checkPackage(const Package& package, const compiler::Build& build);
 
 // Loads a package that was just compiled, from memory. Has the errors of Package::load().
 Result<Package> loadPackage(const compiler::CompiledPackage& compiled);
 
-// Compiles `scene` and loads the package, without files that the runtime does not read. Modules that `cache`
-// has are not compiled; it may be null. Has the errors of compilePackage().
-Result<Package> compileAndLoad(const gltf::Scene& scene, compiler::CompileSettings settings,
-                               compiler::ModuleCache* cache = nullptr);
+// Compiles a package and loads it. Modules that `cache` has are not compiled; it may be null. Has the errors
+// of compilePackage().
+Result<Package> compileAndLoad(const compiler::Build& build, compiler::ModuleCache* cache = nullptr);
 
 }  // namespace glint::scene_view

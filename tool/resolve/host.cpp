@@ -1,16 +1,13 @@
-#include "emit/host.h"
+#include "resolve/host.h"
 
-#include "base/files.h"
 #include "base/suggest.h"
-#include "emit/builtin.h"
-#include "emit/sources.h"
+#include "resolve/builtin.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <system_error>
-#include <utility>
 
 namespace glint::compiler {
 
@@ -18,7 +15,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uint64_t kMaxFileBytes = 16ULL << 20;
 constexpr std::string_view kHostFolder = "host/";
 constexpr const char* kHint = "name a folder that has files of shaders/host, as docs/host.md describes";
 
@@ -121,23 +117,6 @@ Result<std::vector<std::string>> replacedHostFiles(const std::string& folder) {
 bool isHostPlace(const std::string& where, const std::string& folder) {
     const std::string begin = (fs::path(folder) / "").generic_string();
     return where.starts_with(begin) || where.starts_with("./" + begin);
-}
-
-Status addHost(SourceSet& sources, const std::string& folder) {
-    GLINT_TRY(const auto files, hostFiles(folder));
-    for (const fs::path& file : files) {
-        GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
-        const fs::path inner = file.lexically_relative(folder);
-        const std::string name =
-            (inner.has_parent_path() ? "" : std::string(kHostFolder)) + inner.generic_string();
-        // The name that shaders include leads to the file under its own path, which messages then name. Such
-        // a path must not be the name of another file of Glint's.
-        const std::string path = file.generic_string();
-        const std::string shown = path != name && sources.find(path) ? "./" + path : path;
-        sources.add(name, fmt::format("#include \"{}\"\n", shown));
-        sources.add(shown, std::string(base::asText(bytes)));
-    }
-    return okStatus();
 }
 
 }  // namespace glint::compiler

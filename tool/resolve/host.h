@@ -10,8 +10,6 @@
 
 namespace glint::compiler {
 
-class SourceSet;
-
 // Returns the files of a host's folder, sorted: those of the folder, which stand in for files of shaders/host
 // with the same names, and the .glsl and .h files of folders in it, which they may include. No folder gives
 // no file. Errors: "host-folder" if it can't be listed or replaces nothing, "host-unknown" for a file that
@@ -24,9 +22,5 @@ Result<std::vector<std::string>> replacedHostFiles(const std::string& folder);
 
 // Returns whether a message's place is in a file of the host's folder.
 bool isHostPlace(const std::string& where, const std::string& folder);
-
-// Puts the folder's files into `sources`. Messages about them name their paths. Has the errors of hostFiles()
-// and readFile().
-Status addHost(SourceSet& sources, const std::string& folder);
 
 }  // namespace glint::compiler

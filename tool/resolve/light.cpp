@@ -1,0 +1,269 @@
+#include "resolve/light.h"
+
+#include "resolve/host.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <interop/lights.h>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace glint::compiler {
+
+namespace {
+
+// The files of a host that decide where emissive triangles and their materials are, those that decide what
+// the sky is and who samples it, and that of punctual lights.
+constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "geometry.glsl", "material.glsl"};
+constexpr std::string_view kSkyFiles[] = {"lights.glsl", "sky.glsl"};
+constexpr std::string_view kLightFiles[] = {"lights.glsl"};
+
+// At rest, or at a time of an animation.
+bool isLit(const gltf::Scene& scene) {
+    return std::ranges::any_of(scene.lights,
+                               [](const gltf::Light& light) { return light.shines() || light.canShine; });
+}
+
+const std::vector<materials::EffectDeclaration>& declaredEffects(const gltf::SceneList& scenes) {
+    return scenes.materials().empty() ? materials::builtinMaterialModel().effects
+                                      : scenes.materials().front().model().effects;
+}
+
+class LightPlanner {
+public:
+    LightPlanner(const gltf::SceneList& scenes, const CompileSettings& settings,
+                 std::vector<std::string> replaced)
+        : scenes_(scenes),
+          settings_(settings),
+          replaced_(std::move(replaced)),
+          lit_(planEffects(true)),
+          plan_{.effects = lit_} {}
+
+    Result<LightPlan> plan() && {
+        GLINT_TRY(plan_.emissive, decide(settings_.emissiveLights, [&] { return emits(); }, kEmitterFiles,
+                                         {"emissive-lights", "", "the lights or the geometry"}));
+        GLINT_TRY(plan_.sky,
+                  decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
+                         kSkyFiles, {"sky-light", " and a sky", "the lights or the sky"}));
+        GLINT_TRY(plan_.sized,
+                  decide(settings_.sizedLights,
+                         [&] { return settings_.sizedLights == SizedLights::On || settings_.sizesLights; },
+                         kLightFiles, {"sized-lights", "", "the lights"}));
+        GLINT_TRY_DO(countSamples());
+        const bool isAnyLit = settings_.addsLight || plan_.emissive == EmissiveLights::On ||
+                              plan_.sky == SkyLight::On || std::ranges::any_of(scenes_.scenes(), isLit);
+        if (!isAnyLit) {
+            plan_.effects = planEffects(false);
+        }
+        return std::move(plan_);
+    }
+
+private:
+    // How messages speak of a kind of lights.
+    struct Wording {
+        std::string_view option;
+        std::string_view needs;
+        std::string_view ofHost;
+    };
+
+    EffectPlan planEffects(bool lit) const {
+        EffectPlan plan = decideEffects(scenes_.materials(), scenes_.primitives(), {lit}, settings_.effects);
+        if (settings_.passes == package::Passes::Steps) {
+            // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
+            const bool lights = settings_.answer == package::HitAnswer::Radiance;
+            plan.effects = effectSetOf(declaredEffects(scenes_), lights ? plan.effects.lights : 0U);
+            for (EffectDecision& decision : plan.decisions) {
+                if (decision.chosen && (plan.effects.all & decision.effect) == 0) {
+                    decision.chosen = false;
+                    decision.reason =
+                        "the steps of a host's own rays have no effects but the shadows of hits";
+                }
+            }
+        }
+        return plan;
+    }
+
+    // Whether there are as many emissive triangles as the setting takes.
+    bool emits() const {
+        std::size_t most = 0;
+        for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
+            most = std::max(most, countEmitters(scenes_, i));
+        }
+        return most > 0 && (settings_.emissiveLights == EmissiveLights::On || most <= kMostEmitters);
+    }
+
+    // Whether rays bring the sky's light, and that of surfaces in front of it, to surfaces that scatter it.
+    // Where none do, the ambient term stands for both: samples of the sky would replace it by the first
+    // alone.
+    bool scatters() const {
+        const std::vector<materials::EffectDeclaration>& declared = declaredEffects(scenes_);
+        return !scenes_.materials().empty() &&
+               std::ranges::any_of(declared, [&](const materials::EffectDeclaration& effect) {
+                   return (lit_.effects.rays & materials::findEffect(declared, effect.name)) != 0 &&
+                          !effect.refines.empty();
+               });
+    }
+
+    bool replaces(std::span<const std::string_view> files) const {
+        return settings_.passes == package::Passes::Steps ||
+               std::ranges::any_of(files, [&](std::string_view file) {
+                   return std::ranges::find(replaced_, file) != replaced_.end();
+               });
+    }
+
+    // Returns On or Off. `isUseful` says whether these lights would change the picture. `files` are those of
+    // a host that has them itself.
+    template <typename Choice, typename IsUseful>
+    Result<Choice> decide(Choice asked, const IsUseful& isUseful, std::span<const std::string_view> files,
+                          const Wording& wording) const {
+        const bool isOn = asked == Choice::On;
+        if (asked == Choice::Off || (!isOn && settings_.maxBounces == 1) || !isUseful()) {
+            return Choice::Off;
+        }
+        const std::string why = replaces(files)            ? fmt::format("{} are the host's", wording.ofHost)
+                                : lit_.effects.lights == 0 ? "the package has no effect shadow"
+                                                           : "";
+        if (isOn && !why.empty()) {
+            return makeError(std::string(wording.option), "",
+                             fmt::format("--{} needs shadow rays{} of Glint's own: {}", wording.option,
+                                         wording.needs, why),
+                             fmt::format("add the effect shadow, or leave out --{}", wording.option));
+        }
+        return why.empty() ? Choice::On : Choice::Off;
+    }
+
+    // Without a number in the settings it is the most of lightSamplesFor() over the scenes. A host that has
+    // its own lights, or that sends its own rays, has no hierarchy.
+    Status countSamples() {
+        const bool ofHost = replaces(kLightFiles);
+        if (settings_.lightSamples) {
+            plan_.samples = *settings_.lightSamples;
+            return !ofHost || plan_.samples == 0
+                       ? okStatus()
+                       : Status(makeError(
+                             "lights", "",
+                             fmt::format(
+                                 "--lights {} needs the hierarchy of Glint's renderer, and the lights "
+                                 "are the host's",
+                                 plan_.samples),
+                             "leave out --lights, and let the host's hostLight() choose"));
+        }
+        for (std::size_t i = 0; i < scenes_.scenes().size() && !ofHost; ++i) {
+            plan_.samples = std::max(plan_.samples, lightSamplesFor(countLights(scenes_, i, plan_.emissive)));
+        }
+        return okStatus();
+    }
+
+    const gltf::SceneList& scenes_;
+    const CompileSettings& settings_;
+    const std::vector<std::string> replaced_;  // files of shaders/host
+    const EffectPlan lit_;                     // of a package with a light
+    LightPlan plan_;
+};
+
+}  // namespace
+
+Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings) {
+    GLINT_TRY(auto replaced, replacedHostFiles(settings.host));
+    return LightPlanner(scenes, settings, std::move(replaced)).plan();
+}
+
+std::size_t countEmitters(const gltf::SceneList& scenes, std::size_t index) {
+    const gltf::Scene& scene = scenes.scenes()[index];
+    const gltf::SceneList::Range range = scenes.primitivesOf(index);
+    std::vector<std::size_t> ofMeshes(scene.meshes.size());
+    for (const materials::PrimitiveInputs& primitive :
+         scenes.primitives().subspan(range.first, range.count)) {
+        if (isEmitter(scenes.materials()[static_cast<std::size_t>(primitive.material)], primitive)) {
+            const auto mesh = static_cast<std::size_t>(primitive.mesh);
+            ofMeshes[mesh] +=
+                scene.meshes[mesh].primitives[static_cast<std::size_t>(primitive.primitive)].indices.size() /
+                3;
+        }
+    }
+    std::size_t count = 0;
+    for (const gltf::Node& node : scene.nodes) {
+        if (node.mesh >= 0 && node.canShow) {
+            const std::size_t copies =
+                node.instancing < 0 ? 1 : scene.instancings[static_cast<std::size_t>(node.instancing)].count;
+            count += copies * ofMeshes[static_cast<std::size_t>(node.mesh)];
+        }
+    }
+    return count;
+}
+
+LightCounts countLights(const gltf::SceneList& scenes, std::size_t index, EmissiveLights emissive) {
+    const auto hasPosition = [](const gltf::Light& light) {
+        return light.type != gltf::LightType::Directional;
+    };
+    LightCounts counts;
+    counts.positions =
+        static_cast<std::size_t>(std::ranges::count_if(scenes.scenes()[index].lights, hasPosition));
+    counts.emitters = emissive == EmissiveLights::On ? countEmitters(scenes, index) : 0;
+    counts.areApart = counts.emitters > 0 && counts.positions <= gpu::kMostLightsApart;
+    return counts;
+}
+
+bool addsSun(const Settings& settings, const gltf::Scene& scene) {
+    const bool isUnlit = scene.lights.empty() && settings.environment.empty();
+    return settings.sun == Sun::On || (settings.sun == Sun::Auto && isUnlit);
+}
+
+EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan, bool fallback) {
+    const materials::MaterialModel& model = *plan.model;
+    materials::FeatureMask covers = 0;
+    for (const materials::FeatureCode& code : model.code) {
+        covers |= code.coversEmission ? model.features[static_cast<std::size_t>(code.feature)].mask() : 0;
+    }
+    std::vector<materials::FeatureMask> masks;
+    EmitterFeatures result;
+    for (std::size_t i = 0; i < scenes.primitives().size(); ++i) {
+        const materials::PrimitiveInputs& primitive = scenes.primitives()[i];
+        if (isEmitter(scenes.materials()[static_cast<std::size_t>(primitive.material)], primitive)) {
+            masks.push_back(plan.primaryMaskOfPrimitive[i]);
+            result.coveredByLayers = result.coveredByLayers || (masks.back() & covers) != 0;
+        }
+    }
+    if (fallback) {
+        masks = {0, plan.primaryAlways | plan.primarySometimes};
+        result.coveredByLayers = (masks.back() & covers) != 0;
+    }
+    result.read = covers;
+    for (const char* const name :
+         {"emissiveTexture", "emissiveStrength", "texCoord0", "texCoord1", "textureTransform"}) {
+        result.read |= model.mask(name);
+    }
+    if (result.coveredByLayers) {
+        result.read = ~materials::FeatureMask{0};
+    }
+    materials::FeatureMask any = 0;
+    result.always = masks.empty() ? 0 : result.read;
+    for (const materials::FeatureMask mask : masks) {
+        any |= mask & result.read;
+        result.always &= mask;
+    }
+    result.sometimes = any & ~result.always;
+    return result;
+}
+
+package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
+                                       const CompileSettings& settings) {
+    using enum package::ShadowThrough;
+    if (settings.shadowThrough == Alpha || plan.effects.effects.lights == 0) {
+        return Alpha;
+    }
+    const bool passesBlended = settings.plan.keys.alpha == package::AlphaPolicy::Stochastic;
+    const auto asked = [&](const materials::PrimitiveInputs& primitive) {
+        const materials::Material& material =
+            scenes.materials()[static_cast<std::size_t>(primitive.material)];
+        return (passesBlended && material.alphaMode == materials::AlphaMode::Blend) ||
+               (settings.shadowThrough == Glass && passesLight(material, primitive));
+    };
+    return std::ranges::any_of(scenes.primitives(), asked) ? settings.shadowThrough : Alpha;
+}
+
+}  // namespace glint::compiler

@@ -1,0 +1,54 @@
+// Which effects a package has, and which lights its surfaces take: all of them, or some that a hierarchy
+// chooses; whether triangles that emit light, the sky and lights with a size are among them. Effects depend
+// on lights, which need the effect `shadow`, so both are decided together.
+#pragma once
+
+#include "gltf/scene_list.h"
+#include "plan/effects.h"
+#include "plan/light_samples.h"
+#include "plan/plan.h"
+#include "settings/settings.h"
+
+#include <glint/result.h>
+
+#include <cstdint>
+
+namespace glint::compiler {
+
+// `--emissive-lights=auto` takes no more triangles of a scene as lights.
+inline constexpr std::size_t kMostEmitters = std::size_t{1} << 18;
+
+// None of the values is Auto.
+struct LightPlan {
+    EffectPlan effects;
+    EmissiveLights emissive = EmissiveLights::Off;  // Off where nothing emits light
+    SkyLight sky = SkyLight::Off;
+    SizedLights sized = SizedLights::Off;
+    std::uint32_t samples = 0;  // CompileSettings::lightSamples
+};
+
+// Decides by the materials that primitives use, by the lights of the scenes, and by the files of shaders/host
+// that the host replaces. Errors: those of hostFiles(); "emissive-lights", "sky-light", "sized-lights" and
+// "lights" if the settings demand what a host with lights of its own, or a package without shadow rays, can't
+// have.
+Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings);
+
+// Returns the number of triangles of all instances of a scene that emit light, now or at a time of an
+// animation.
+std::size_t countEmitters(const gltf::SceneList& scenes, std::size_t scene);
+
+// Returns what a hierarchy over the lights of a scene may choose: point and spot lights, and the emissive
+// triangles where these are lights.
+LightCounts countLights(const gltf::SceneList& scenes, std::size_t scene, EmissiveLights emissive);
+
+// Returns whether a picture gets a light that its scene lacks.
+bool addsSun(const Settings& settings, const gltf::Scene& scene);
+
+EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan, bool fallback);
+
+// Returns CompileSettings::shadowThrough for a package, or Alpha if it would change nothing: without shadows,
+// and where no material has what light would pass otherwise.
+package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
+                                       const CompileSettings& settings);
+
+}  // namespace glint::compiler

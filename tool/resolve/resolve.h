@@ -1,0 +1,49 @@
+// Decides everything that follows from scenes, settings and the place where shaders will run. It alone knows
+// what `auto` stands for.
+#pragma once
+
+#include "gltf/scene_list.h"
+#include "resolve/build.h"
+#include "settings/settings.h"
+
+#include <glint/result.h>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint::compiler {
+
+// The scenes of `scenes` must outlive the result. Errors: those of reading a profile and a lock; "lock-outdated";
+// "hit-lobe-unknown"; "calibration-strategies" if there are constants for no strategy that can run; those of
+// planLight() and resolveLayers(); and settings that contradict each other ("strategy", "tracer", "passes",
+// "bounces", "bindings", "position-fetch").
+Result<Build> resolve(std::shared_ptr<const gltf::SceneList> scenes, const Settings& settings,
+                      const Target& target = {});
+Result<Build> resolve(std::span<const gltf::Scene> scenes, const Settings& settings,
+                      const Target& target = {});
+// Decides about a package whose keys are to be made with `settings.plan` as it is.
+Result<Build> resolve(std::span<const gltf::Scene> scenes, const CompileSettings& settings);
+
+// Returns whether planning relies on what textures hold. Packages with a fallback or a host do not, because
+// textures may hold anything at run time. Scenes have to be read accordingly. `package` may be null.
+bool trustsTextures(const Settings& settings, const DecidedPackage* package = nullptr);
+
+// Returns the names of the strategies, or tracers, in a set of bits.
+std::vector<std::string> strategyNames(std::uint32_t strategies);
+std::vector<std::string> tracerNames(std::uint32_t tracers);
+
+// What has to be made anew when settings change. A later one includes those before it.
+enum class Change : std::uint8_t {
+    None,
+    Frame,     // the picture starts anew
+    Renderer,  // another renderer
+    Build,     // another package, or another upload of the scene
+};
+// Returns what has to be made anew. It follows from the table of settings.
+Change changeBetween(const Settings& before, const Settings& after);
+// Returns the settings of a build with those of `wanted` that need no other build.
+Settings withoutRebuilding(Settings built, const Settings& wanted);
+
+}  // namespace glint::compiler
