@@ -1,7 +1,6 @@
 #include "resolve/lock_file.h"
 
 #include "base/files.h"
-#include "base/staged_file.h"
 #include "base/suggest.h"
 #include "base/text.h"
 #include "plan/lock.h"

@@ -34,7 +34,7 @@ void append(Words& words, spv::Op opcode, std::initializer_list<std::uint32_t> o
     words.insert(words.end(), operands);
 }
 
-bool isChain(std::uint32_t opcode) {
+bool isAccessChain(std::uint32_t opcode) {
     return opcode == spv::OpAccessChain || opcode == spv::OpInBoundsAccessChain;
 }
 
@@ -258,7 +258,7 @@ private:
     void dropUse(std::uint32_t id) {
         constexpr std::uint32_t kOfItself = 1;
         const ParsedInstruction* const definition = definitions_[id];
-        if (definition != nullptr && --uses_[id] == kOfItself && isChain(definition->opcode) &&
+        if (definition != nullptr && --uses_[id] == kOfItself && isAccessChain(definition->opcode) &&
             !moved_.contains(id) && isNameless(id)) {
             edits_[definition->at].removes = true;
             dropUse(renamed(module_.words[definition->at + kPointerOperand]));
@@ -303,7 +303,7 @@ private:
 
     Place placeOf(std::uint32_t address) const {
         const ParsedInstruction* const definition = definitions_[address];
-        if (definition == nullptr || !isChain(definition->opcode) || !types_.isAddress(definition->type)) {
+        if (definition == nullptr || !isAccessChain(definition->opcode) || !types_.isAddress(definition->type)) {
             return {renamed(address), {}, 0};
         }
         const std::span<const std::uint32_t> chain = module_.wordsOf(*definition);
@@ -503,7 +503,7 @@ private:
             std::ranges::find(hoisted, id) != hoisted.end()) {
             return true;
         }
-        if (moved_.contains(id) || (!isChain(definition->opcode) && definition->opcode != spv::OpIAdd)) {
+        if (moved_.contains(id) || (!isAccessChain(definition->opcode) && definition->opcode != spv::OpIAdd)) {
             return false;
         }
         for (std::size_t at = definition->at + kPointerOperand; at < definition->at + definition->length;
