@@ -166,6 +166,18 @@ TEST_F(StrategyAuto, DeviceFilesFitTheirSchema) {
     }
 }
 
+TEST_F(StrategyAuto, ReportsOfDevicesFitTheirSchema) {
+    std::size_t reports = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(GLINT_SOURCE_DIR "/benchmarks/data/devices")) {
+        if (entry.path().extension() == ".json") {
+            expectFits("device-report", Json::parse(readText(entry.path())));
+            ++reports;
+        }
+    }
+    EXPECT_GT(reports, 0U);
+}
+
 TEST_F(StrategyAuto, BadDeviceFilesAreRefused) {
     const Json good = plantedDevice("uber");
     expectRefused(Json::array(), "bad.json: error: is no device file");
