@@ -128,6 +128,18 @@ public:
         }
         return id;
     }
+    // Returns a structure of one member that nothing writes. Drivers read uniform values of such memory once
+    // for all threads.
+    std::uint32_t readOnlyOf(std::uint32_t type) {
+        std::uint32_t& id = readOnly_[type];
+        if (id == 0) {
+            id = bound_++;
+            append(decorations_, spv::OpMemberDecorate, {id, 0, spv::DecorationNonWritable});
+            append(decorations_, spv::OpMemberDecorate, {id, 0, spv::DecorationOffset, 0});
+            append(added_, spv::OpTypeStruct, {id, type});
+        }
+        return id;
+    }
     std::uint32_t addressOf(std::uint32_t type) {
         std::uint32_t& id = pointers_[type];
         if (id == 0) {
@@ -156,6 +168,9 @@ public:
     const Words& added() const {
         return added_;
     }
+    const Words& decorations() const {
+        return decorations_;
+    }
 
 private:
     const ParsedModule& module_;
@@ -165,7 +180,9 @@ private:
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vectors_;       // by scalar and count
     std::map<std::uint32_t, std::uint32_t> pointers_;                                // by pointee
     std::map<std::uint32_t, std::uint32_t> indices_;                                 // constants by value
+    std::map<std::uint32_t, std::uint32_t> readOnly_;                                // structures by member
     Words added_;
+    Words decorations_;
 };
 
 // --- Addresses ------------------------------------------------------------------------------------
@@ -175,9 +192,10 @@ struct Place {
     std::uint32_t base = 0;                                      // ID of the address
     std::vector<std::pair<std::uint32_t, std::uint32_t>> terms;  // IDs of indices and their strides
     std::uint32_t offset = 0;
+    bool isReadOnly = false;  // nothing writes there while the shader runs
 
     auto sum() const {
-        return std::tie(base, terms);
+        return std::tie(base, terms, isReadOnly);
     }
 };
 
@@ -304,7 +322,7 @@ private:
     Place placeOf(std::uint32_t address) const {
         const ParsedInstruction* const definition = definitions_[address];
         if (definition == nullptr || !isAccessChain(definition->opcode) || !types_.isAddress(definition->type)) {
-            return {renamed(address), {}, 0};
+            return {renamed(address), {}};
         }
         const std::span<const std::uint32_t> chain = module_.wordsOf(*definition);
         Place place = placeOf(renamed(chain[kPointerOperand]));
@@ -317,9 +335,11 @@ private:
                 type = words[2];
             } else if (types_.opcodeOf(type) == spv::OpTypeStruct && number) {
                 place.offset += offsetOf(type, *number);
+                place.isReadOnly =
+                    place.isReadOnly || types_.decoration(type, spv::DecorationNonWritable, number);
                 type = words[2 + *number];
             } else {
-                return {renamed(address), {}, 0};
+                return {renamed(address), {}};
             }
         }
         return place;
@@ -469,8 +489,7 @@ private:
             sorted.push_back(&load);
         }
         std::ranges::stable_sort(sorted, [](const Load* a, const Load* b) {
-            return std::tie(a->place.base, a->place.terms, a->place.offset) <
-                   std::tie(b->place.base, b->place.terms, b->place.offset);
+            return std::tuple(a->place.sum(), a->place.offset) < std::tuple(b->place.sum(), b->place.offset);
         });
         Window window;
         std::uint32_t end = 0;
@@ -579,13 +598,19 @@ private:
             before.insert(before.end(), indices.begin(), indices.end());
             address = part;
         }
-        const std::uint32_t pointer = types_.addressOf(type);
         if (type == load.value.type) {
             return address;
         }
         const std::uint32_t cast = types_.newId();
-        append(before, spv::OpBitcast, {pointer, cast, address});
-        return cast;
+        const std::uint32_t pointer = types_.addressOf(type);
+        if (!load.place.isReadOnly) {
+            append(before, spv::OpBitcast, {pointer, cast, address});
+            return cast;
+        }
+        const std::uint32_t member = types_.newId();
+        append(before, spv::OpBitcast, {types_.addressOf(types_.readOnlyOf(type)), cast, address});
+        append(before, spv::OpAccessChain, {pointer, member, cast, types_.index(0)});
+        return member;
     }
 
     // Takes the value of a load out of a vector, from component `begin` on.
@@ -619,6 +644,12 @@ private:
                 to.push_back(module_.isId[from] ? renamed(module_.words[from]) : module_.words[from]);
             }
         };
+        // Decorations come before types (SPIR-V 2.4).
+        const auto type = std::ranges::find_if(module_.globals, [](const ParsedInstruction& it) {
+            return it.opcode >= spv::OpTypeVoid && it.opcode <= spv::OpTypeForwardPointer;
+        });
+        keepUntil(type->at);
+        to.insert(to.end(), types_.decorations().begin(), types_.decorations().end());
         keepUntil(module_.functions.front().body.front().at);
         to.insert(to.end(), types_.added().begin(), types_.added().end());
         for (const auto& [at, edit] : edits_) {
