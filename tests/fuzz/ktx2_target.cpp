@@ -19,7 +19,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         require(!problem.empty(), "a header that is refused has a reason");
         return 0;
     }
-    require(glint::gltf::readBlockHeader(bytes, image, problem), "a file that is read has a header");
+    require(glint::gltf::kBasisu.readHeader(bytes, image, problem), "a file that is read has a header");
     require(image.width > 0 && image.height > 0 && image.levels > 0, "an image has a size");
     // Large images are slow to decode and show nothing that smaller ones do not.
     constexpr int kLargest = 512;
@@ -40,7 +40,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                                                    static_cast<std::uint32_t>(fitted->levels)),
             "an image has the levels that it says");
     }
-    if (!glint::gltf::decodeBlockFile(bytes, image, problem)) {
+    if (!glint::gltf::kBasisu.decode(bytes, image, problem)) {
         require(!problem.empty(), "an image that can't be decoded has a reason");
         return 0;
     }

@@ -343,7 +343,10 @@ bool morphColors(Primitive& primitive, const std::vector<double>& weights) {
 void settleColors(Document& document, Scene& scene) {
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         Mesh& mesh = scene.meshes[m];
-        const auto node = std::ranges::find(scene.nodes, static_cast<int>(m), &Node::mesh);
+        // The search takes long in a scene of many meshes, and few have morph targets.
+        const auto node = mesh.weights.empty()
+                              ? scene.nodes.end()
+                              : std::ranges::find(scene.nodes, static_cast<int>(m), &Node::mesh);
         const std::vector<double>& weights = node == scene.nodes.end() ? mesh.weights : node->weights;
         for (Primitive& primitive : mesh.primitives) {
             if (morphColors(primitive, weights) && weightsVary(scene, static_cast<int>(m), weights)) {

@@ -57,6 +57,18 @@ TEST(GltfGeometry, TurnsStripsAndFansIntoLists) {
     EXPECT_EQ(onlyPrimitive(import(fan)).indices, (std::vector<std::uint32_t>{1, 2, 0, 2, 3, 0}));
 }
 
+// tinygltf refuses a document for each of these, or leaves the primitive out.
+TEST(GltfGeometry, ReadsPastWhatNoPictureNeeds) {
+    GltfBuilder builder;
+    builder.addTriangle()["attributes"]["_NOTE"] = "text";
+    builder.append("accessors", {{"componentType", 1}, {"type", "VEC9"}});
+    builder.append("bufferViews", {{"buffer", 0}, {"byteLength", 12}, {"byteStride", 6}});
+    builder.append("images", {{"uri", "missing.png"}, {"bufferView", 0}});
+    builder.root["extensions"]["KHR_lights_punctual"]["lights"] = Json::array({{{"type", "spot"}}});
+    builder.root["meshes"][0]["extensions"]["EXT_unknown"] = {{"size", 5000000000}, {"list", Json::array()}};
+    EXPECT_EQ(onlyPrimitive(import(builder)).indices.size(), 3U);
+}
+
 TEST(GltfGeometry, SkipsPointsAndLines) {
     for (const int mode : {0, 1, 2, 3}) {
         GltfBuilder builder;

@@ -158,15 +158,30 @@ void fitCameras(Json& cameras) {
     }
 }
 
+// Moves a member into another document if there is one.
+void moveMember(Json& from, const char* name, Json& to) {
+    if (const auto member = from.find(name); member != from.end()) {
+        to[name] = std::move(*member);
+        from.erase(member);
+    }
+}
+
+// Lets tinygltf read a document, which is gone afterwards. Returns why tinygltf refuses it, or an empty text.
+std::string consume(Json& document, tinygltf::Model& model) {
+    std::string error;
+    std::string warning;
+    const bool isRead = tinygltf::TinyGLTF().LoadASCIIFromString(&model, &error, &warning,
+                                                                 reinterpret_cast<const char*>(&document),
+                                                                 sizeof document, "", tinygltf::NO_REQUIRE);
+    return isRead ? "" : error.empty() ? "tinygltf does not read it" : error;
+}
+
 }  // namespace
 
 std::string readModel(Json& root, const std::vector<bool>& used, tinygltf::Model& model) {
     Json untrusted = Json::object();
     for (const char* const name : kUntrusted) {
-        if (const auto member = root.find(name); member != root.end()) {
-            untrusted[name] = std::move(*member);
-            root.erase(member);
-        }
+        moveMember(root, name, untrusted);
     }
     leaveOutUnread(root);
     for (const char* const name : {"accessors", "animations", "bufferViews", "cameras", "meshes", "nodes",
@@ -181,16 +196,20 @@ std::string readModel(Json& root, const std::vector<bool>& used, tinygltf::Model
     fitAnimations(memberOf(root, "animations"));
     fitCameras(memberOf(root, "cameras"));
 
-    std::string error;
-    std::string warning;
-    tinygltf::TinyGLTF reader;
-    const bool isRead =
-        reader.LoadASCIIFromString(&model, &error, &warning, reinterpret_cast<const char*>(&root),
-                                   sizeof root, "", tinygltf::NO_REQUIRE);
+    // Nodes are read by themselves, so that the JSON of all else is gone before they take memory.
+    Json nodes = Json::object();
+    moveMember(root, "nodes", nodes);
+    tinygltf::Model nodesAlone;
+    nodesAlone.nodes.reserve(memberOf(nodes, "nodes").size());
+    model.accessors.reserve(used.size());
+    model.meshes.reserve(memberOf(root, "meshes").size());
+    std::string problem = consume(root, model);
+    problem = problem.empty() ? consume(nodes, nodesAlone) : problem;
     root = std::move(untrusted);
-    if (!isRead) {
-        return error.empty() ? "tinygltf does not read it" : error;
+    if (!problem.empty()) {
+        return problem;
     }
+    model.nodes = std::move(nodesAlone.nodes);
     model.bufferViews.pop_back();
     for (std::size_t i = 0; i < model.bufferViews.size(); ++i) {
         model.bufferViews[i].byteStride = withheld.strides[i];

@@ -513,6 +513,8 @@ Status importNodes(Document& document, Scene& scene) {
         int parent;  // index into scene.nodes
     };
     std::vector<Pending> pending;
+    scene.nodes.reserve(static_cast<std::size_t>(
+        std::ranges::count_if(extent.parts, [](Part part) { return part != Part::None; })));
     for (auto root = extent.roots.rbegin(); root != extent.roots.rend(); ++root) {
         pending.push_back({*root, -1});
     }
