@@ -272,7 +272,7 @@ bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments
     return addFiles(run.outputs, embedded);
 }
 
-// What a run reads, and what is decided about it.
+// The scenes of a run, and all decisions about them.
 struct Resolved {
     std::vector<gltf::Scene> scenes;
     compiler::Build build;

@@ -44,7 +44,7 @@ namespace glint::cli {
 
 namespace {
 
-// Returns what the pictures need: the settings of the command line, and what is read of each picture.
+// Returns the settings of the command line, with the needs of views, denoiser and reports.
 compiler::Settings settingsOf(const RenderArguments& arguments) {
     compiler::Settings asked = arguments;
     if (const std::optional<measure::ViewChoice> view = measure::parseView(arguments.view)) {

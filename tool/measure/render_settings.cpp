@@ -82,7 +82,7 @@ compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
             build.scenes->materials()[static_cast<std::size_t>(primitive.material)];
         facts.passesLight = facts.passesLight || material.alphaMode == materials::AlphaMode::Blend ||
                             compiler::passesLight(material, primitive);
-        // Whether hits lose a lobe if they keep only those of the base.
+        // Hits that keep only the lobes of the base lose a lobe.
         facts.furtherLobes = facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] &
                                                     materials::kLobeMask & ~compiler::baseLobes()) != 0;
     }

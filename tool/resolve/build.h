@@ -1,5 +1,5 @@
-// What is decided about a package and its pictures. resolve() of resolve/resolve.h decides it, once; all that
-// comes after takes the Build as it is.
+// All decisions about a package and its pictures. resolve() of resolve/resolve.h makes them, once; later
+// steps take the Build as it is.
 #pragma once
 
 #include "gltf/scene_list.h"
@@ -27,7 +27,7 @@ struct KnownCosts {
     std::optional<GpuCosts> gpu{};  // `device` is what withGpu() makes of the measured one
 };
 
-// What a package that is there already has decided.
+// The decisions of a package that exists already.
 struct DecidedPackage {
     package::PackageShape shape;
     package::AlphaPolicy alpha{};
@@ -41,7 +41,7 @@ struct DecidedPackage {
     std::vector<CaseHits> hits;       // of the scene, as they are expected
 };
 
-// Where shaders will run.
+// The place where shaders will run.
 struct Target {
     KnownCosts costs{};
     // The tracers (bits) of the device that draws pictures. No value is a package for any device.

@@ -60,7 +60,8 @@ std::vector<LayerEntry> entriesOf(const LayerInfo& info, const Plan& plan, std::
     return entries;
 }
 
-// How many bounces of the package's paths have layers of their own; 0 if paths have one bounce.
+// Returns the number of bounces of the package's paths that have layers of their own; 0 if paths have one
+// bounce.
 std::uint32_t layerBouncesOf(const Plan& plan, const CompileSettings& settings) {
     const bool hasPaths = plan.effects.effects.rays != 0 && settings.maxBounces > 1;
     return hasPaths ? std::min(settings.maxBounces, package::kMostLayerBounces) : 0;

@@ -1,4 +1,4 @@
-// Which layers a package has.
+// The layers of a package.
 #pragma once
 
 #include "plan/plan.h"

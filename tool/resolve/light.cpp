@@ -63,7 +63,7 @@ public:
     }
 
 private:
-    // How messages speak of a kind of lights.
+    // The words of messages about a kind of lights.
     struct Wording {
         std::string_view option;
         std::string_view needs;
@@ -87,7 +87,7 @@ private:
         return plan;
     }
 
-    // Whether there are as many emissive triangles as the setting takes.
+    // Returns whether there are emissive triangles, and no more than the setting takes.
     bool emits() const {
         std::size_t most = 0;
         for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
@@ -96,9 +96,9 @@ private:
         return most > 0 && (settings_.emissiveLights == EmissiveLights::On || most <= kMostEmitters);
     }
 
-    // Whether rays bring the sky's light, and that of surfaces in front of it, to surfaces that scatter it.
-    // Where none do, the ambient term stands for both: samples of the sky would replace it by the first
-    // alone.
+    // Returns whether rays bring the light of the sky, and of surfaces in front of it, to surfaces that
+    // scatter it. If none do, the ambient term stands for both: samples of the sky would replace it by the
+    // first alone.
     bool scatters() const {
         const std::vector<materials::EffectDeclaration>& declared = declaredEffects(scenes_);
         return !scenes_.materials().empty() &&

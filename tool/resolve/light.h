@@ -1,5 +1,5 @@
-// Which effects a package has, and which lights its surfaces take: all of them, or some that a hierarchy
-// chooses; whether triangles that emit light, the sky and lights with a size are among them. Effects depend
+// The effects of a package, and the lights that its surfaces take: all of them, or some that a hierarchy
+// chooses; with or without triangles that emit light, the sky and area lights. Effects depend
 // on lights, which need the effect `shadow`, so both are decided together.
 #pragma once
 

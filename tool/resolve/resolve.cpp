@@ -116,7 +116,7 @@ std::vector<std::string> runnableStrategies(const Target& target, std::optional<
             names.emplace_back(name);
         }
     }
-    // What the device lacks is reported when the package is used.
+    // Features that the device lacks are reported when the package is used.
     return names.empty() && target.package ? strategyNames(target.package->shape.strategies) : names;
 }
 
@@ -151,7 +151,7 @@ public:
     }
 
 private:
-    // What follows from what the package is for.
+    // Decides the settings that follow from the purpose of the package.
     void takePurpose() {
         compile_.trustTextures = trustsTextures(settings_, package());
         compile_.effects.maxReflectionRoughness = settings_.frame.maxReflectionRoughness;
@@ -222,7 +222,7 @@ private:
         return okStatus();
     }
 
-    // Says what `--alpha auto` stands for where a scene has surfaces that are not opaque.
+    // Chooses the policy of `--alpha auto`, and reports it if a scene has surfaces that are not opaque.
     void decideAlpha() {
         using enum package::AlphaPolicy;
         const std::optional<package::AlphaPolicy> asked =
@@ -444,7 +444,7 @@ std::vector<std::string> tracerNames(std::uint32_t tracers) {
 namespace {
 
 Change changeOf(const Descriptor& row) {
-    // What `glint compile` also takes has a part in the package.
+    // Settings that `glint compile` also takes change the package.
     const bool isBuilt =
         isCompiled(row) || (row.commands & kOfCompile) != 0 || row.stage == SettingStage::Scene;
     return isBuilt ? Change::Build : row.stage == SettingStage::Renderer ? Change::Renderer : Change::Frame;

@@ -1,5 +1,5 @@
 // Decides everything that follows from scenes, settings and the place where shaders will run. It alone knows
-// what `auto` stands for.
+// the meaning of `auto`.
 #pragma once
 
 #include "gltf/scene_list.h"
@@ -15,10 +15,10 @@
 
 namespace glint::compiler {
 
-// The scenes of `scenes` must outlive the result. Errors: those of reading a profile and a lock; "lock-outdated";
-// "hit-lobe-unknown"; "calibration-strategies" if there are constants for no strategy that can run; those of
-// planLight() and resolveLayers(); and settings that contradict each other ("strategy", "tracer", "passes",
-// "bounces", "bindings", "position-fetch").
+// The scenes of `scenes` must outlive the result. Errors: those of reading a profile and a lock;
+// "lock-outdated"; "hit-lobe-unknown"; "calibration-strategies" if there are constants for no strategy that
+// can run; those of planLight() and resolveLayers(); and settings that contradict each other ("strategy",
+// "tracer", "passes", "bounces", "bindings", "position-fetch").
 Result<Build> resolve(std::shared_ptr<const gltf::SceneList> scenes, const Settings& settings,
                       const Target& target = {});
 Result<Build> resolve(std::span<const gltf::Scene> scenes, const Settings& settings,
@@ -34,14 +34,14 @@ bool trustsTextures(const Settings& settings, const DecidedPackage* package = nu
 std::vector<std::string> strategyNames(std::uint32_t strategies);
 std::vector<std::string> tracerNames(std::uint32_t tracers);
 
-// What has to be made anew when settings change. A later one includes those before it.
+// The kind of rebuild that a change of settings needs. A later one includes those before it.
 enum class Change : std::uint8_t {
     None,
     Frame,     // the picture starts anew
     Renderer,  // another renderer
     Build,     // another package, or another upload of the scene
 };
-// Returns what has to be made anew. It follows from the table of settings.
+// Returns the kind of rebuild. It follows from the table of settings.
 Change changeBetween(const Settings& before, const Settings& after);
 // Returns the settings of a build with those of `wanted` that need no other build.
 Settings withoutRebuilding(Settings built, const Settings& wanted);

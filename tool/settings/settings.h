@@ -27,7 +27,7 @@ constexpr std::span<const Named<Sun>> namesOf(Sun /*type*/) {
     return kSunNames;
 }
 
-// How shader IDs are kept from build to build.
+// A request to keep shader IDs from build to build.
 struct LockRequest {
     std::string file{};      // empty: they aren't
     bool frozen = false;     // error rather than change the file
@@ -35,7 +35,8 @@ struct LockRequest {
     bool isWritten = false;  // by the command; else the file must be there
 };
 
-// What a user asks for. What depends on the scene or the device is decided by resolve() (resolve/resolve.h).
+// The settings that a user asks for. resolve() (resolve/resolve.h) decides those that depend on the scene or
+// the device.
 struct Settings {
     Settings();  // the settings of `glint render` without options
 

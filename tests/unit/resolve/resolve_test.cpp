@@ -1,4 +1,4 @@
-// What is decided from scenes, settings and the place where shaders will run.
+// Tests the decisions that follow from scenes, settings and the place where shaders will run.
 #include "resolve/resolve.h"
 
 #include "render/scene_builder.h"
@@ -107,7 +107,7 @@ std::set<std::string> effectsOf(const Build& build) {
     return names;
 }
 
-// Whether triangles are lights is decided before whether an effect of lights is of use.
+// Triangles become lights before effects of lights are found useless.
 TEST(Resolve, EmittersCallForShadowsInEveryCommand) {
     const gltf::Scene scene = sceneOfEmitters();
     Settings settings;
@@ -120,7 +120,7 @@ TEST(Resolve, EmittersCallForShadowsInEveryCommand) {
         EXPECT_FALSE(idsOf(build).contains("effect-unused"));
         EXPECT_EQ(build.settings.compile.emissiveLights, EmissiveLights::On);
         EXPECT_EQ(effectsOf(build), std::set<std::string>{"shadow"});
-        // So the bounces change the picture, although no effect sends rays.
+        // The bounces then change the picture, although no effect sends rays.
         const Descriptor& bounces = *sweptSetting("bounces");
         EXPECT_EQ(idleReason(bounces, measure::factsOf(build), configurationOf(settings)), "");
     }
@@ -210,7 +210,7 @@ TEST(Resolve, KeepsWhatNeedsAnotherBuild) {
     EXPECT_EQ(changeBetween(build.settings, shown), Change::Renderer);
 }
 
-// What `explain` prints of a build.
+// Returns the parts of a build that `explain` prints.
 std::string explained(const Build& build) {
     std::string text = fmt::format("{} {}", fmt::join(effectsOf(build), ","), build.excess.value_or(""));
     for (const Key& key : build.plan.keys) {
@@ -224,7 +224,7 @@ std::string explained(const Build& build) {
     return text;
 }
 
-// What packages and pictures are made from.
+// Returns the parts of a build from which packages and pictures are made.
 std::string made(const Build& build, SettingCommand command) {
     std::string text = explained(build);
     for (const Descriptor& row : settingsTable()) {
@@ -257,7 +257,7 @@ std::vector<std::string> otherValues(const Descriptor& row) {
 // A command that takes a setting uses it, or says that it changes nothing.
 TEST(Resolve, EverySettingOfACommandChangesWhatItMakes) {
     const gltf::Scene scene = richScene();
-    // Who reads a scene asks for it by trustsTextures(), and profiles are files.
+    // Readers of scenes ask for the first by trustsTextures(). A profile is a file.
     const std::set<std::string_view> readsFiles{"trust-textures=off", "merge=profile"};
     int pairs = 0;
     for (const SettingCommand command : {kOfCompile, kOfExplain, kOfRender}) {

@@ -87,7 +87,7 @@ void Window::saveScreenshot() {
     const std::string animation = animationChoice_ >= static_cast<int>(picture.scene().animations.size())
                                       ? std::string("all")
                                       : std::to_string(animationChoice_);
-    // What was asked for says the same as what was decided, in fewer words.
+    // The settings that were asked for say the same as the decided ones, in fewer words.
     compiler::Settings settings = withoutRebuilding(picture.build().resolved.asked, picture.settings());
     settings.strategy = picture.settings().strategy;
     // A camera that frames everything was placed for another moment.

@@ -133,7 +133,7 @@ public:
     Context& context() {
         return *context_;
     }
-    // What the user asks for, with the strategy and the alpha policy that are compared with.
+    // The settings of the user, with the strategy and the alpha policy of the default.
     const compiler::Settings& base() const {
         return base_;
     }

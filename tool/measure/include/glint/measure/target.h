@@ -1,5 +1,5 @@
-// Where shaders will run, as resolve() needs to know it: the costs of a device, what it can trace, and what a
-// package has decided.
+// The place where shaders will run, for resolve(): the costs of a device, its tracers, and the decisions of a
+// package.
 #pragma once
 
 #include "gltf/scene.h"
