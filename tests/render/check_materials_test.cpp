@@ -198,7 +198,7 @@ TEST(CheckMaterials, ProofsHoldForWaxAndFindAMissingCheck) {
     for (const verify::FeatureProofOutcome& outcome : *outcomes) {
         const bool isSound = outcome.feature == sound.name;
         EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted") << outcome.message << outcome.place;
-        EXPECT_EQ(measure::failureOf(outcome).has_value(), !isSound);
+        EXPECT_EQ(verify::failureOf(outcome).has_value(), !isSound);
     }
 }
 

@@ -1,6 +1,7 @@
 #include "image/image_file.h"
 
 #include "base/files.h"
+#include "base/image_limits.h"
 #include "base/png_bounds.h"
 #include "image/exr_bounds.h"
 #include "image/tone.h"
@@ -199,12 +200,12 @@ TEST(ExrBounds, BlocksOfPixelsAreSmall) {
 }
 
 TEST(ImageSize, HasLimits) {
-    EXPECT_TRUE(image::checkImageSize(1, 1, ""));
-    EXPECT_TRUE(image::checkImageSize(16384, 4096, ""));
-    EXPECT_FALSE(image::checkImageSize(0, 4, ""));
-    EXPECT_FALSE(image::checkImageSize(16385, 1, ""));
-    EXPECT_FALSE(image::checkImageSize(16384, 4097, ""));
-    EXPECT_FALSE(image::checkImageSize(std::int64_t{1} << 40, std::int64_t{1} << 40, ""));
+    EXPECT_TRUE(base::checkImageSize(1, 1, ""));
+    EXPECT_TRUE(base::checkImageSize(16384, 4096, ""));
+    EXPECT_FALSE(base::checkImageSize(0, 4, ""));
+    EXPECT_FALSE(base::checkImageSize(16385, 1, ""));
+    EXPECT_FALSE(base::checkImageSize(16384, 4097, ""));
+    EXPECT_FALSE(base::checkImageSize(std::int64_t{1} << 40, std::int64_t{1} << 40, ""));
 }
 
 }  // namespace
