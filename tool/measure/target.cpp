@@ -23,7 +23,9 @@ compiler::DecidedPackage decidedBy(const Package& package, const gltf::Scene& sc
                                      .emissiveLights = package.emission() != nullptr,
                                      .skyLight = package.skyLight(),
                                      .sizedLights = package.sizedLights(),
-                                     .lightSamples = package.lightSamples()};
+                                     .lightSamples = package.lightSamples(),
+                                     .cases = {},
+                                     .hits = {}};
     for (const package::CaseEntry& entry : package.cases()) {
         decided.cases.push_back({entry.always, entry.sometimes, entry.keyCount == 0});
     }
