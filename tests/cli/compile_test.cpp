@@ -67,6 +67,14 @@ TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
     EXPECT_FALSE(std::filesystem::exists(path("package")));
 }
 
+TEST_F(CompileCommand, ExplainWarnsOfSettingsThatChangeNothing) {
+    const Outcome outcome = run({"explain", scene(), "--no-trust-textures"});
+    EXPECT_EQ(outcome.exit, 0);
+    EXPECT_TRUE(has(outcome.err, "--no-trust-textures changes nothing: there are no textures"))
+        << outcome.err;
+    EXPECT_FALSE(has(run({"explain", scene()}).err, "setting-idle"));
+}
+
 TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
     const auto warnings = [&](const std::vector<std::string>& more) {
         std::vector<std::string> line{"compile", scene(), "--dry-run", "--json"};

@@ -7,6 +7,7 @@
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/cache.h"
+#include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
 #include "cli/report.h"
 #include "gltf/import.h"
@@ -32,6 +33,7 @@ Status bench(const Console& console, const BenchArguments& arguments, const gltf
     CompileCache cache(arguments.render.cache, "");
     GLINT_TRY(const auto bed, measure::BenchBed::create(console, arguments.render, scene, reader,
                                                         cache.modules(), cache.store()));
+    console.report(idleSettings(bed->build()));
     if (console.refused()) {
         return okStatus();
     }

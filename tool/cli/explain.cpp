@@ -234,6 +234,7 @@ Status explain(const Console& console, const ExplainArguments& arguments) {
     GLINT_TRY(const auto materials, chooseMaterials(*scenes, arguments.material));
     GLINT_TRY(const auto build, compiler::resolve(scenes, asked, target));
     console.report(build.messages);
+    console.report(idleSettings(build));
     if (build.excess) {
         console.report(makeWarning("max-shaders", scene.path, *build.excess));
     }
