@@ -397,6 +397,7 @@ private:
                 }
             }
         }
+        join(stretch);
     }
 
     void add(const Load& load, std::vector<Load>& stretch) {

@@ -326,6 +326,25 @@ TEST(WideLoads, LeaveOtherTypes) {
     EXPECT_TRUE(words) << toString(words.error());
 }
 
+// Nothing behind the loads writes to memory behind an address, and no block follows.
+TEST(WideLoads, JoinInTheLastBlock) {
+    const std::string glsl = R"(#version 460
+        #extension GL_EXT_buffer_reference : require
+        layout(local_size_x = 64) in;
+        struct Record { vec3 place; float size; };
+        layout(buffer_reference, std430, buffer_reference_align = 16) buffer Records { Record data[]; };
+        layout(push_constant) uniform Push { Records from; } pushed;
+        layout(set = 0, binding = 0) buffer Results { float sums[]; } results;
+        void main() {
+            Record r = pushed.from.data[gl_GlobalInvocationID.x];
+            results.sums[gl_GlobalInvocationID.x] = r.place.x + r.size;
+        })";
+    const auto words = compiler::compileShader({"last.comp", compiler::ShaderStage::Compute, glsl}, {});
+    ASSERT_TRUE(words) << toString(words.error());
+    const Status valid = compiler::validateSpirv(*words, "last.comp");
+    EXPECT_TRUE(valid) << toString(valid.error());
+}
+
 TEST(WideLoads, ReadTheSameOnce) {
     EXPECT_EQ(loadedComponents(R"(
         float size = pushed.records.data[i].size;
