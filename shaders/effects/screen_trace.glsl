@@ -1,7 +1,7 @@
 // Marches a reflection ray over the screen, against the depth of the primary surfaces.
 #include "effects/screen_ray.glsl"
 #include "host/sky.glsl"
-#include "hit/constants.glsl"
+#include "bsdf/constants.glsl"
 #include "hit/geometry.glsl"
 #include "hit/images.glsl"
 #include "hit/samples.glsl"

@@ -1,6 +1,6 @@
 // Traces rays by ray queries, or by a ray tracing pipeline.
 #include "hit/alpha.glsl"
-#include "hit/constants.glsl"
+#include "bsdf/constants.glsl"
 #include "hit/geometry_index.glsl"
 #include "hit/payload.glsl"
 #include "hit/stage.glsl"

@@ -3,7 +3,7 @@
 #include "bsdf/features.glsl"
 #include "bsdf/fresnel.glsl"
 #include "hit/alpha.glsl"
-#include "hit/constants.glsl"
+#include "bsdf/constants.glsl"
 #include "light/passage.glsl"
 #include "host/geometry.glsl"
 #include "host/material.glsl"

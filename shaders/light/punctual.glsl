@@ -1,7 +1,6 @@
 // Punctual lights: KHR_lights_punctual.
 #include "interop/lights.h"
 #include "bsdf/constants.glsl"
-#include "hit/constants.glsl"
 #include "hit/geometry.glsl"
 
 struct LightSample {

@@ -3,7 +3,7 @@
 // 1995).
 #include "light/emitter.glsl"
 #include "effects/sky_shares.glsl"
-#include "hit/constants.glsl"
+#include "bsdf/constants.glsl"
 #include "hit/surface.glsl"
 #include "host/lights.glsl"
 #include "host/random.glsl"

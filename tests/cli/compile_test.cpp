@@ -97,6 +97,8 @@ TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
     EXPECT_EQ(warnings({"--texture-lod", "mip0", "--no-trust-textures"}),
               (Found{"--texture-lod mip0 changes nothing: there are no textures",
                      "--no-trust-textures changes nothing: there are no textures"}));
+    EXPECT_EQ(warnings({"--precision-error", "0.5"}),
+              Found{"--precision-error 0.5 changes nothing: only --precision auto reads it"});
     EXPECT_EQ(warnings({"--bounces", "4"}), Found());
     EXPECT_EQ(warnings({"--bounces", "4", "--effects", "shadow"}),
               Found{"--bounces 4 changes nothing: no effect sends rays whose hits are shaded"});

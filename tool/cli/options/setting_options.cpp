@@ -281,6 +281,10 @@ std::vector<Diagnostic> idleSettings(const compiler::Build& build) {
     if (!given.calibration.empty() && !build.settings.compile.strategyChoice) {
         warnings.push_back(idleWarning(where, "--calibration", "only --strategy auto reads it"));
     }
+    if (given.precisionError > 0.0 && !given.choosesPrecision) {
+        warnings.push_back(idleWarning(where, fmt::format("--precision-error {}", given.precisionError),
+                                       "only --precision auto reads it"));
+    }
     if (given.given.empty()) {
         return warnings;
     }
