@@ -5,9 +5,14 @@
 
 // Returns alpha. Compilers do not see that it is the same for all directions, so they compute what follows from it for
 // each of them. Otherwise they keep up to 20 coefficients of the fits below in registers from one light to the next.
-// The sign of a cosine above 0 changes nothing; that of another changes the last digit.
+// The sign of a cosine above 0 changes nothing; that of another changes the last digit. Proofs know intervals of floats
+// and not their bits, and their cosines are above 0.
 float forDirection(float alpha, float cosine) {
+#ifdef GLINT_PROVES
+    return alpha;
+#else
     return uintBitsToFloat(floatBitsToUint(alpha) | floatBitsToUint(cosine) >> 31);
+#endif
 }
 
 // The share that white microfacets lose by single scattering: ggxAlbedo().x.

@@ -22,7 +22,7 @@ compiler::ShaderSource sourceOf(const std::vector<Proof>& proofs) {
     std::string text(kText);
     const std::size_t firstLine = text.find("#line");
     text.insert(firstLine == std::string::npos ? 0 : firstLine,
-                fmt::format("#define GLINT_ENERGY_COMPENSATION 1\n"
+                fmt::format("#define GLINT_ENERGY_COMPENSATION 1\n#define GLINT_PROVES\n"
                             "#define PROOF(name) void prove##name(float i[{}], inout float o[{}])\n",
                             kMaxInputs, kMaxOutputs));
     compiler::ShaderSource source;
