@@ -73,25 +73,26 @@ GLINT_RELAXED vec3 specularAlbedo(Bsdf b, Features features, GLINT_RELAXED float
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b, features) * loss : single;
 }
 
-// What of the light that single scattering loses passes the dielectric's microfacets in the end: 1 -
-// multiScatterFresnel(), or all of it without compensation. It is that of the channel that reflects most, of which the
-// least passes.
-GLINT_RELAXED float passedAgain(Bsdf b) {
+// The share of the light that single scattering loses and that passes the dielectric's microfacets in the end: 1 -
+// multiScatterFresnel(), or all of it without compensation.
+GLINT_RELAXED vec3 passedAgain(Bsdf b) {
     if (GLINT_ENERGY_COMPENSATION == 0) {
-        return 1.0;
+        return vec3(1.0);
     }
-    GLINT_RELAXED float f0 = largest(b.f0);
-    GLINT_RELAXED float mean = f0 + (b.f90 - f0) * (1.0 / 21.0);
+    GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
+    GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
+    GLINT_RELAXED vec3 mean = meanFresnel(b.f0, b.f90);
     GLINT_RELAXED float meanLoss = b.meanLoss;
-    GLINT_RELAXED float rest = (1.0 - f0) * (20.0 / 21.0) + (1.0 - b.f90) * (1.0 / 21.0);
-    return rest * (1.0 + mean * (1.0 - meanLoss)) / (1.0 - mean * meanLoss);
+    GLINT_RELAXED vec3 rest = absorbed * (20.0 / 21.0) + absorbedAtGrazing * (1.0 / 21.0);
+    return rest * (vec3(1.0) + mean * (1.0 - meanLoss)) / (vec3(1.0) - mean * meanLoss);
 }
 
-// What the microfacets of the dielectric do not reflect, in the channel of which the least passes: 1 -
-// largest(specularAlbedo()) without metal. It is a sum of positive terms; the difference would lose its digits where
-// nearly all light is reflected.
-GLINT_RELAXED float specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
-    return (1.0 - largest(b.f0)) * (1.0 - loss - bias) + (1.0 - b.f90) * bias + passedAgain(b) * loss;
+// The share that the microfacets of the dielectric do not reflect: 1 - specularAlbedo() without metal. It is a sum of
+// positive terms; the difference would lose its digits where nearly all light is reflected.
+GLINT_RELAXED vec3 specularPassed(Bsdf b, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    GLINT_RELAXED vec3 absorbed = vec3(1.0) - b.f0;
+    GLINT_RELAXED vec3 absorbedAtGrazing = vec3(1.0 - b.f90);
+    return absorbed * (1.0 - loss - bias) + absorbedAtGrazing * bias + passedAgain(b) * loss;
 }
 
 // The part of specularPassed() that a white lobe lets through at the first bounce: the albedo of thinTransmission()
@@ -162,10 +163,10 @@ GLINT_RELAXED float diffuseShare(Bsdf b, Features features, vec3 l, GLINT_RELAXE
         return 1.0 - fresnel;
     }
     vec2 light = lobeAlbedo(b, features, l);
-    float in1 = specularPassed(b, b.viewLoss, b.viewBias);
-    float out1 = specularPassed(b, light.x, light.y);
+    float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));
+    float out1 = smallest(specularPassed(b, light.x, light.y));
     // If all light is reflected, both factors vanish together with the mean.
-    float mean = max(specularPassed(b, b.meanLoss, b.meanBias), 1e-6);
+    float mean = max(smallest(specularPassed(b, b.meanLoss, b.meanBias)), 1e-6);
     return max(in1, 0.0) * max(out1, 0.0) / mean;
 }
 
@@ -277,7 +278,7 @@ GLINT_RELAXED float passedShare(Bsdf b) {
     float rest = 1.0 - min(sqrt(dot(blocked, blocked)), 1.0);
     float mean = b.viewBias + b.viewLoss * rest * rest * rest * rest * rest;
     GLINT_RELAXED float reflected = mix(largest(b.f0), b.f90, mean);
-    return max(specularPassed(b, b.viewLoss, b.viewBias), 0.0) / max(1.0 - reflected, 1e-3);
+    return max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0) / max(1.0 - reflected, 1e-3);
 }
 
 // The density with which visible facets bend the view to l, for the index of one channel, times their transmittance.
@@ -316,7 +317,7 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
         if (scattersPassage(features)) {
             // Kulla and Conty's lobe of several bounces, on the far side.
             float lightLoss = lobeAlbedo(b, features, vec3(l.xy, -l.z)).x;
-            result += b.transmitted * (passedAgain(b) * -l.z *
+            result += b.transmitted * (smallest(passedAgain(b)) * -l.z *
                                        (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12)));
         }
     }

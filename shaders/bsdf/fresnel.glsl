@@ -6,6 +6,10 @@ GLINT_RELAXED float largest(GLINT_RELAXED vec3 v) {
     return max(v.x, max(v.y, v.z));
 }
 
+GLINT_RELAXED float smallest(GLINT_RELAXED vec3 v) {
+    return min(v.x, min(v.y, v.z));
+}
+
 // The luminance of linear Rec. 709.
 float luminance(vec3 color) {
     return dot(color, vec3(0.2126, 0.7152, 0.0722));

@@ -18,13 +18,13 @@ struct LobeChances {
 LobeChances lobeChances(Bsdf b, Features features) {
     vec3 single = singleScatterAlbedo(b, features, b.viewLoss, b.viewBias);
     vec3 all = specularAlbedo(b, features, b.viewLoss, b.viewBias);
-    float below = max(specularPassed(b, b.viewLoss, b.viewBias), 0.0);
+    float below = max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
     LobeChances chances;
     chances.microfacets = luminance(single);
     chances.diffuse = luminance(b.diffuse) * below + luminance(all - single);
     chances.passed = 0.0;
     if (hasLobe(features, GLINT_TRANSMISSION)) {
-        float later = scattersPassage(features) ? passedAgain(b) * b.viewLoss : 0.0;
+        float later = scattersPassage(features) ? smallest(passedAgain(b)) * b.viewLoss : 0.0;
         chances.microfacets += luminance(b.transmitted) * max(below - later, 0.0);
         chances.passed = luminance(b.transmitted) * later;
     }

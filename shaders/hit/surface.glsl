@@ -50,5 +50,5 @@ GLINT_RELAXED float baseShare(Surface surface, Features features) {
 
 // The share of a uniform sky's light that the microfacets let through to the diffuse lobes.
 GLINT_RELAXED float diffusePassed(Surface surface) {
-    return max(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias), 0.0);
+    return max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
 }

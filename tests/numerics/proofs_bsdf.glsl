@@ -299,7 +299,7 @@ PROOF(MultiScatterOf) {
 
 PROOF(PassedAgain) {
     Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), 0.0, i[2]);
-    o[0] = passedAgain(b);
+    o[0] = passedAgain(b).x;
     o[1] = o[0] + multiScatterOf(b.f0, b.f90, b.meanLoss).x;
 }
 
@@ -308,7 +308,7 @@ PROOF(SpecularShares) {
     Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), i[2], i[4]);
     float bias = i[3] * (1.0 - i[2]);
     o[0] = specularAlbedo(b, CLAIMED_FEATURES(0u), i[2], bias).x;
-    o[1] = specularPassed(b, i[2], bias);
+    o[1] = specularPassed(b, i[2], bias).x;
     o[2] = o[0] + o[1];
 }
 

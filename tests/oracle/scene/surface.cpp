@@ -69,7 +69,8 @@ struct LitSurface::Lobes : SurfaceLobes {
         return behind;
     }
     Vec3 ambient(const GradientSky& sky) const {
-        const double passed = std::max(glsl::specularPassed(bsdf, bsdf.viewLoss, bsdf.viewBias), 0.0);
+        const Vec3 passed3 = glsl::specularPassed(bsdf, bsdf.viewLoss, bsdf.viewBias);
+        const double passed = std::max(std::min({passed3.x, passed3.y, passed3.z}), 0.0);
         const Vec3 n = frame[2];
         Vec3 result = (bsdf.diffuse * passed * diffuseSky(sky, n) + reflection(sky, tracedShare(roughness))) *
                       occlusion;
