@@ -51,7 +51,7 @@ struct Settings {
     // The table of `gpu` decides about the member of `compile`, which has the usual value until then.
     bool choosesShadows = false;
     bool choosesPrecision = false;
-    double precisionError = 0.0;                  // relMSE that the choice of a precision may cost
+    double precisionError = 0.0;  // relMSE that the choice of a precision may cost
     // A package that is compiled for pictures has these strategies, too, so that a renderer of one of them
     // can switch to it.
     std::uint32_t furtherStrategies = 0;

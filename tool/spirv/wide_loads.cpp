@@ -321,7 +321,8 @@ private:
 
     Place placeOf(std::uint32_t address) const {
         const ParsedInstruction* const definition = definitions_[address];
-        if (definition == nullptr || !isAccessChain(definition->opcode) || !types_.isAddress(definition->type)) {
+        if (definition == nullptr || !isAccessChain(definition->opcode) ||
+            !types_.isAddress(definition->type)) {
             return {renamed(address), {}};
         }
         const std::span<const std::uint32_t> chain = module_.wordsOf(*definition);
@@ -523,7 +524,8 @@ private:
             std::ranges::find(hoisted, id) != hoisted.end()) {
             return true;
         }
-        if (moved_.contains(id) || (!isAccessChain(definition->opcode) && definition->opcode != spv::OpIAdd)) {
+        if (moved_.contains(id) ||
+            (!isAccessChain(definition->opcode) && definition->opcode != spv::OpIAdd)) {
             return false;
         }
         for (std::size_t at = definition->at + kPointerOperand; at < definition->at + definition->length;

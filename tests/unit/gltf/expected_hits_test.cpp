@@ -1,7 +1,6 @@
 // Tests areas in the world, and the hits that are expected from them.
-#include "gltf/planning_inputs.h"
-
 #include "gltf/import.h"
+#include "gltf/planning_inputs.h"
 
 #include <gtest/gtest.h>
 
