@@ -4,6 +4,7 @@
 #include "gltf/import.h"
 #include "image/compare.h"
 #include "image/image_file.h"
+#include "resolve/resolve.h"
 #include "settings/table.h"
 
 #include <glint/measure/render_settings.h>

@@ -6,6 +6,7 @@
 #include "render/pixel_test.h"
 #include "render/replacement.h"
 #include "renderer/renderer_state.h"
+#include "resolve/resolve.h"
 #include "support/shared_modules.h"
 #include "support/temporary_folder.h"
 

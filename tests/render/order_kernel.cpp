@@ -4,6 +4,7 @@
 #include "context/vulkan_error.h"
 #include "emit/compile_modules.h"
 #include "emit/modules.h"
+#include "emit/sources.h"
 #include "package/shader_modules.h"
 #include "renderer/tile_sort.h"
 #include "support/effect_bits.h"

@@ -2,6 +2,7 @@
 
 #include "render/pixel_test.h"
 #include "render/scene_builder.h"
+#include "resolve/resolve.h"
 #include "support/shared_modules.h"
 
 #include <glint/scene_view/package.h>

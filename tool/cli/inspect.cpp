@@ -8,6 +8,7 @@
 #include "emit/package/json.h"
 #include "inspect/package.h"
 #include "plan/plan.h"
+#include "resolve/resolve.h"
 #include "settings/values.h"
 
 #include <fmt/format.h>

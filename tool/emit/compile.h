@@ -1,21 +1,15 @@
-// Compiles scenes to a package: plan, GLSL, SPIR-V, tables. Only writePackage() writes files.
+// Compiles scenes to a package: plan, GLSL, SPIR-V, tables. It writes no files: see emit/package/write.h.
 #pragma once
 
-#include "base/files.h"
-#include "emit/glsl/unit.h"
+#include "emit/module_source.h"
+#include "emit/package/compiled_package.h"
 #include "gltf/scene.h"
-#include "resolve/resolve.h"
-#include "spirv/statistics.h"
+#include "resolve/build.h"
 
-#include <glint/package_modules.h>
 #include <glint/result.h>
 
-#include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace glint::compiler {
@@ -23,49 +17,7 @@ namespace glint::compiler {
 class ModuleCache;
 class WarmModules;
 
-// One SPIR-V module of the package. Modules with equal bytes share `file`.
-struct CompiledModule {
-    package::ModuleKey key;
-    std::string name;  // "uber.comp", "shade_2_BaseTex.comp"; the GLSL file has the same name
-    std::string file;  // name within the package: "uber.spv"
-    std::vector<std::uint32_t> spirv;
-    GlslUnit glsl;
-    SpirvStatistics statistics;
-    std::uint64_t hash = 0;
-    bool compiled = true;  // in this run; false if it was cached or has the text of another module
-    // How many of the parts that it was joined from in this run were compiled, and how many were cached.
-    // Parts of several modules count for the first of them.
-    int partsCompiled = 0;
-    int partsCached = 0;
-};
-
-struct PackageFile {
-    std::string name;  // relative, '/' between folders
-    base::Bytes bytes;
-};
-
-struct CompiledPackage {
-    Plan plan;
-    std::vector<CompiledModule> modules;  // in order of their keys
-    std::vector<PackageFile> files;       // everything that writePackage() writes, sorted by name
-    int uniqueSpirv = 0;
-    std::uint64_t spirvBytes = 0;  // sum over the distinct modules
-    // Wall clock: planning and making GLSL, making SPIR-V of it, and all else.
-    double planMs = 0.0;
-    double earlyMs = 0.0;  // that its early package took, between planning and making GLSL
-    double compileMs = 0.0;
-    double tablesMs = 0.0;
-};
-
-// A text to compile, of a module or a part of modules. Several modules of a package may have the same text.
-struct PlannedModule {
-    std::string file;                // without a suffix: nameOfModuleText()
-    std::string name;                // name of the first module that has the text, for people
-    std::string text;                // as made by makeModuleText()
-    std::vector<std::string> parts;  // files that have to be compiled before it
-};
-
-// What a package will consist of, known before anything is compiled.
+// The contents of a package before anything is compiled.
 struct PackagePlan {
     Plan plan;
     std::vector<PlannedModule> modules;
@@ -99,15 +51,5 @@ inline Result<CompiledPackage> compilePackage(const gltf::Scene& scene, const Co
                                               ModuleCache* cache = nullptr) {
     return compilePackage(std::span(&scene, 1), settings, cache);
 }
-
-// Returns the error that writePackage() would have, as far as it can be known before there is a package: the
-// folder holds something else, or takes no files. Leaves nothing behind.
-Status checkPackageFolder(const std::filesystem::path& folder);
-
-// Replaces the contents of `folder` by the package. Files that did not change keep their time stamps, and
-// files of the earlier package that are no longer part of it are removed. tables.bin is written last, so that
-// a reader never sees a mixture that passes its checks. A failure leaves the earlier package whole. It is an
-// error if the folder holds something other than a package.
-Status writePackage(const CompiledPackage& package, const std::filesystem::path& folder);
 
 }  // namespace glint::compiler

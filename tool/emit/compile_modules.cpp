@@ -1,9 +1,11 @@
 #include "emit/compile_modules.h"
 
 #include "base/parallel.h"
-#include "emit/context.h"
+#include "cache/module_cache.h"
+#include "emit/measured_module.h"
 #include "emit/module_files.h"
 #include "emit/module_text.h"
+#include "emit/warm_modules.h"
 
 #include <fmt/format.h>
 
@@ -313,37 +315,7 @@ std::vector<CompiledModule> makeModules(std::vector<ModuleSource>& sources, cons
     return modules;
 }
 
-Result<CachedModule> measured(Result<std::vector<std::uint32_t>> spirv) {
-    if (!spirv) {
-        return spirv.error();
-    }
-    const Result<SpirvStatistics> statistics = measureSpirv(*spirv);
-    return statistics ? Result<CachedModule>(CachedModule{std::move(*spirv), *statistics})
-                      : statistics.error();
-}
-
 }  // namespace
-
-Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
-                                     const std::optional<LinkNames>& link) {
-    return measured(link ? compilePart(source, *link, options) : compileShader(source, options));
-}
-
-Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
-                                  std::span<const CachedModule* const> parts, int jobs) {
-    std::vector<std::span<const std::uint32_t>> words;
-    for (const CachedModule* const part : parts) {
-        if (!isJoinable(part->spirv)) {
-            return measured(compileShader(source, options));
-        }
-        words.emplace_back(part->spirv);
-    }
-    return measured(joinParts(words, source.name, options, jobs));
-}
-
-std::string moduleCompiler() {
-    return fmt::format("glint {}; {}", toolVersion(), compilerIdentity());
-}
 
 Result<std::vector<CompiledModule>> compileModules(
     std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache, WarmModules* warm,

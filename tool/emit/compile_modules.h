@@ -1,32 +1,20 @@
 // Makes SPIR-V of the GLSL of shader modules, in parallel, or takes modules that were compiled before.
 #pragma once
 
-#include "cache/module_cache.h"
-#include "emit/compile.h"
-#include "emit/modules.h"
-#include "spirv/compiler.h"
+#include "emit/module_source.h"
+#include "emit/package/compiled_package.h"
 
+#include <glint/result.h>
+
+#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 namespace glint::compiler {
 
-// Compiles a shader, or the part that `link` says, and measures it. Has the errors of compileShader() and
-// compilePart().
-Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
-                                     const std::optional<LinkNames>& link = {});
-
-// Joins compiled parts, the one with the entry point first, on at most `jobs` threads. If a part can't be
-// joined, `source` is compiled as a whole.
-Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
-                                  std::span<const CachedModule* const> parts, int jobs = 1);
-
-// Returns a text that differs between compilers that may give different words for the same source.
-std::string moduleCompiler();
+class ModuleCache;
+class WarmModules;
 
 // Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
 // texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported

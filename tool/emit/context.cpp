@@ -1,5 +1,7 @@
 #include "emit/context.h"
 
+#include "settings/compile_settings.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,8 +1,11 @@
 // The values of a compilation that templates can use.
 #pragma once
 
-#include "emit/compile.h"
-#include "emit/sources.h"
+#include "emit/source_set.h"
+#include "gltf/scene_list.h"
+#include "plan/plan.h"
+
+#include <glint/result.h>
 
 #include <kainjow/mustache.hpp>
 

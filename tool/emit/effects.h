@@ -1,7 +1,7 @@
 // The GLSL that calls the effects of a package.
 #pragma once
 
-#include "emit/compile.h"
+#include "plan/plan.h"
 
 #include <kainjow/mustache.hpp>
 

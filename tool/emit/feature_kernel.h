@@ -1,8 +1,9 @@
 // The shader with which `glint check-materials` evaluates the lobes of materials one by one.
 #pragma once
 
-#include "emit/compile.h"
-#include "gltf/scene.h"
+#include "resolve/build.h"
+
+#include <glint/result.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,6 @@
 // The GLSL that writes the layers of a package.
 #pragma once
 
-#include "emit/compile.h"
 #include "plan/plan.h"
 
 #include <kainjow/mustache.hpp>

@@ -1,14 +1,17 @@
 // The library: shading as functions that other shaders include, without resources.
 #pragma once
 
-#include "emit/compile.h"
+#include "emit/package/compiled_package.h"
 #include "gltf/scene_list.h"
+#include "settings/compile_settings.h"
 
 #include <glint/result.h>
 
 #include <vector>
 
 namespace glint::compiler {
+
+class ModuleCache;
 
 // The folder of the library in a package.
 inline constexpr std::string_view kLibraryFolder = "library/";

@@ -236,6 +236,16 @@ Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& mod
     return okStatus();
 }
 
+materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model) {
+    materials::FeatureMask mask = 0;
+    for (const materials::FeatureCode& code : model.code) {
+        mask |= code.coordinates.empty() && code.opacity.empty()
+                    ? 0
+                    : model.features[static_cast<std::size_t>(code.feature)].mask();
+    }
+    return mask;
+}
+
 Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel& model,
                        materials::FeatureMask used, SourceSet& generated) {
     const std::vector<const materials::FeatureCode*> code = codeOf(model, used);

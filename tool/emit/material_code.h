@@ -1,14 +1,18 @@
 // The generated GLSL that calls the code of material features.
 #pragma once
 
-#include "emit/sources.h"
+#include "emit/source_set.h"
 #include "materials/material_model.h"
 
 #include <glint/result.h>
 
 #include <map>
+#include <string>
 
 namespace glint::compiler {
+
+// Returns the features with code that runs where alpha is tested.
+materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model);
 
 // Adds "generated/layers.glsl", "layers_sky.glsl", "layers_traced.glsl" and "material_stages.glsl" for the
 // features of `used` to `generated`. `sources` has the templates. Has the errors of renderTemplate().

@@ -1,8 +1,8 @@
 // Modules between their templates and their GLSL: flattening and pruning, on several threads.
 #pragma once
 
-#include "emit/modules.h"
-#include "emit/sources.h"
+#include "emit/module_source.h"
+#include "emit/source_set.h"
 #include "emit/warm_modules.h"
 
 #include <glint/result.h>

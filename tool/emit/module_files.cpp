@@ -2,7 +2,7 @@
 
 #include "base/files.h"
 #include "cache/packing.h"
-#include "emit/compile_modules.h"
+#include "emit/measured_module.h"
 #include "emit/module_text.h"
 #include "spirv/statistics.h"
 

@@ -3,8 +3,7 @@
 #pragma once
 
 #include "cache/module_cache.h"
-#include "emit/compile.h"
-#include "emit/modules.h"
+#include "emit/module_source.h"
 
 #include <glint/result.h>
 

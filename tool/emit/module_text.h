@@ -2,7 +2,7 @@
 // compiled anywhere.
 #pragma once
 
-#include "emit/modules.h"
+#include "emit/module_source.h"
 #include "spirv/compiler.h"
 
 #include <glint/result.h>

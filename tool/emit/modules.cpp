@@ -5,7 +5,7 @@
 #include "emit/material_code.h"
 #include "emit/module_drafts.h"
 #include "emit/switch_parts.h"
-#include "scene/deformed.h"
+#include "resolve/build.h"
 
 #include <fmt/format.h>
 
@@ -140,16 +140,6 @@ Result<std::string> makeText(std::string_view source, const std::string& defines
     return text;
 }
 
-std::vector<std::uint32_t> retiredIds(const Plan& plan) {
-    std::vector<std::uint32_t> ids;
-    for (const Case& shaderCase : plan.cases) {
-        if (shaderCase.isRetired()) {
-            ids.push_back(static_cast<std::uint32_t>(shaderCase.shaderId));
-        }
-    }
-    return ids;
-}
-
 // Returns the part of the lighting pass that evaluates materials. An edit of their GLSL changes it alone.
 Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sources,
                                                             const kainjow::mustache::data& context,
@@ -188,22 +178,6 @@ materials::FeatureMask emitterMask(const Plan& plan, const CompileSettings& sett
 }
 
 }  // namespace
-
-package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
-                              const CompileSettings& settings) {
-    return {settings.strategies,
-            settings.tracers,
-            settings.shadows,
-            plan.effects.effects,
-            settings.plan.keys.alpha != package::AlphaPolicy::Opaque,
-            static_cast<std::uint32_t>(plan.cases.size()),
-            retiredIds(plan),
-            std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
-            settings.passes,
-            settings.maxBounces,
-            settings.plan.fallback,
-            settings.shadowThrough != package::ShadowThrough::Alpha};
-}
 
 Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                     const CompileSettings& settings, materials::FeatureMask edited,

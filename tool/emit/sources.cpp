@@ -6,7 +6,7 @@
 #include "emit/layers.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
-#include "emit/modules.h"
+#include "resolve/build.h"
 #include "resolve/builtin.h"
 #include "resolve/host.h"
 #include "scene/deformed.h"
@@ -15,19 +15,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 namespace glint::compiler {
-
-materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model) {
-    materials::FeatureMask mask = 0;
-    for (const materials::FeatureCode& code : model.code) {
-        mask |= code.coordinates.empty() && code.opacity.empty()
-                    ? 0
-                    : model.features[static_cast<std::size_t>(code.feature)].mask();
-    }
-    return mask;
-}
 
 namespace {
 
@@ -172,23 +164,6 @@ std::optional<std::string_view> findEmbedded(std::string_view name) {
     }
     return std::nullopt;
 }
-
-}  // namespace
-
-void SourceSet::add(std::string name, std::string text) {
-    files_.insert_or_assign(std::move(name), std::move(text));
-}
-
-std::optional<std::string_view> SourceSet::find(std::string_view name) const {
-    const auto place = files_.find(name);
-    return place == files_.end() ? std::nullopt : std::optional<std::string_view>(place->second);
-}
-
-SourceLookup SourceSet::lookup() const {
-    return [this](std::string_view name) { return find(name); };
-}
-
-namespace {
 
 // Puts the files of the host's folder into `sources`. Messages about them name their paths. Has the errors of
 // hostFiles() and readFile().

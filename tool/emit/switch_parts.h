@@ -3,7 +3,10 @@
 
 #include "emit/material_code.h"
 #include "emit/module_drafts.h"
-#include "emit/modules.h"
+#include "emit/module_source.h"
+#include "gltf/scene_list.h"
+#include "plan/plan.h"
+#include "settings/compile_settings.h"
 
 #include <glint/result.h>
 

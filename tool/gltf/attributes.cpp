@@ -18,7 +18,6 @@ namespace glint::gltf {
 
 namespace {
 
-constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kExportMesh = "export the mesh again";
 
 struct Reader {
@@ -38,7 +37,7 @@ struct Reader {
 };
 
 std::string dracoPointer(const Reader& reader) {
-    return fmt::format("{}/extensions/{}", reader.primitive.pointer, kDraco);
+    return fmt::format("{}/extensions/{}", reader.primitive.pointer, kDracoExtension);
 }
 
 // tinygltf keeps 32 bits of an integer, which are all that an identifier has.
@@ -307,7 +306,7 @@ Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, P
     std::vector<std::string> unlikeCounts;
     Reader reader{source, primitive, unlikeCounts};
     std::optional<DracoMesh> draco;
-    if (const Value* const extension = extensionOf(source.file.extensions, kDraco)) {
+    if (const Value* const extension = extensionOf(source.file.extensions, kDracoExtension)) {
         GLINT_TRY(draco, DracoMesh::decode(source.document, *extension, dracoPointer(reader)));
         reader.draco = &*draco;
         reader.dracoIds = &objectMember(*extension, "attributes");

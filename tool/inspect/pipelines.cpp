@@ -5,6 +5,7 @@
 #include "emit/compile.h"
 #include "inspect/gpu_tables.h"
 #include "inspect/package.h"
+#include "resolve/resolve.h"
 
 #include <glint/package_modules.h>
 

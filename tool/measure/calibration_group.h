@@ -5,7 +5,7 @@
 #include "synthetic/cases_scene.h"
 
 #include <glint/context.h>
-#include <glint/measure/calibration.h>
+#include <glint/measure/calibration_report.h>
 #include <glint/measure/strategy_fit.h>
 #include <glint/package.h>
 #include <glint/renderer.h>

@@ -3,7 +3,7 @@
 
 #include "measure/calibration_group.h"
 
-#include <glint/measure/calibration.h>
+#include <glint/measure/calibration_report.h>
 
 #include <cstdint>
 #include <string>

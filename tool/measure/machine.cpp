@@ -1,12 +1,10 @@
-#include "emit/compile.h"
-#include "measure/report_json.h"
+#include "resolve/resolve.h"
 
 #include <glint/measure/machine.h>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <sys/utsname.h>
@@ -28,10 +26,6 @@ std::string processorName() {
     return {};
 }
 
-base::Json numberOrNull(double value) {
-    return std::isfinite(value) ? base::Json(value) : base::Json(nullptr);
-}
-
 }  // namespace
 
 BenchMachine machineOf(Context& context) {
@@ -51,20 +45,6 @@ BenchMachine machineOf(Context& context) {
 
 bool isOnCpu(const Context& context) {
     return context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
-}
-
-base::Json toJson(const BenchMachine& machine) {
-    return {{"device", machine.device},   {"driver", machine.driver}, {"deviceType", machine.deviceType},
-            {"tracers", machine.tracers}, {"cpu", machine.processor}, {"cores", machine.cores},
-            {"os", machine.system}};
-}
-
-base::Json toJson(const Interval& interval) {
-    return {{"median", numberOrNull(interval.median)},
-            {"low", numberOrNull(interval.low)},
-            {"high", numberOrNull(interval.high)},
-            {"q1", numberOrNull(interval.q1)},
-            {"q3", numberOrNull(interval.q3)}};
 }
 
 std::string utcNow() {

@@ -3,7 +3,7 @@
 
 #include "base/json.h"
 
-#include <glint/measure/calibration.h>
+#include <glint/measure/calibration_report.h>
 #include <glint/measure/report.h>
 
 namespace glint::measure {

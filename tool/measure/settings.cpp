@@ -57,7 +57,7 @@ std::string withoutEffects(const compiler::Descriptor& row, compiler::BenchFacts
     if (row.name == kMaxRoughness && facts.fullTransport) {
         facts.effects = facts.effectsOfAnyRoughness;
     }
-    return withoutEffect(row, facts);
+    return compiler::withoutEffect(row.name, facts);
 }
 
 bool ordersHits(std::string_view strategy) {
@@ -126,7 +126,7 @@ compiler::Configuration exactValues(const compiler::BenchFacts& facts) {
         }
     }
     // A higher limit of roughness would call for reflections, which are part of all transport alone.
-    if (!facts.fullTransport && !withoutEffect(*compiler::sweptSetting(kMaxRoughness), facts).empty()) {
+    if (!facts.fullTransport && !compiler::withoutEffect(kMaxRoughness, facts).empty()) {
         exact.erase(std::string(kMaxRoughness));
     }
     return exact;

@@ -66,4 +66,8 @@ struct Build {
     double milliseconds = 0.0;              // wall clock that deciding took
 };
 
+// Returns the facts of a package from which the list of its modules follows.
+package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
+                              const CompileSettings& settings);
+
 }  // namespace glint::compiler

@@ -7,6 +7,7 @@
 #include "resolve/light.h"
 #include "resolve/lock_file.h"
 #include "resolve/profile.h"
+#include "settings/configuration.h"
 #include "settings/table.h"
 #include "spirv/compiler.h"
 

@@ -1,3 +1,4 @@
+#include "resolve/resolve.h"
 #include "scene/deformed.h"
 
 #include <glint/embedded_file.h>

@@ -60,11 +60,11 @@ std::string neverIdle(const BenchFacts& /*facts*/, const Configuration& /*base*/
 std::string idleReflections(const BenchFacts& facts, const Configuration& /*base*/) {
     BenchFacts any = facts;
     any.effects = facts.effectsOfAnyRoughness;
-    return withoutEffect(*sweptSetting("max-roughness"), any);
+    return withoutEffect("max-roughness", any);
 }
 
 std::string idleMarch(const BenchFacts& facts, const Configuration& base) {
-    const std::string reason = withoutEffect(*sweptSetting("ssr"), facts);
+    const std::string reason = withoutEffect("ssr", facts);
     return reason.empty() && base.find("ssr")->second == "off" ? "--ssr is off" : reason;
 }
 

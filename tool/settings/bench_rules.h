@@ -2,7 +2,7 @@
 // of settings.
 #pragma once
 
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <string>
 #include <string_view>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "settings/layer_words.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/layers.h>
 

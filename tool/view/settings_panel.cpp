@@ -124,7 +124,7 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
     const std::string present = row.values.text(settings);
     const bool differs = present != row.values.text(kUsual);
     const std::string locked = lockedBy(row, settings);
-    const std::string idle = compiler::withoutEffect(row, facts);
+    const std::string idle = compiler::withoutEffect(row.name, facts);
     const std::vector<SettingWord> words = wordsOf(row);
     std::optional<std::string> next;
 

@@ -4,7 +4,7 @@
 
 #include <glint/context.h>
 #include <glint/package.h>
-#include <glint/renderer.h>
+#include <glint/gpu_scene.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <glint/context.h>
-#include <glint/renderer.h>
+#include <glint/image.h>
 #include <glint/result.h>
+
+#include <vulkan/vulkan_core.h>
 
 #include <cstdint>
 #include <memory>

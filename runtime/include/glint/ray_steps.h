@@ -3,7 +3,8 @@
 #pragma once
 
 #include <glint/engine_scene.h>
-#include <glint/renderer.h>
+#include <glint/pass_timing.h>
+#include <glint/renderer_options.h>
 
 #include <array>
 #include <cstdint>

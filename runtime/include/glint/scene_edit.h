@@ -2,7 +2,6 @@
 #pragma once
 
 #include <glint/package.h>
-#include <glint/renderer.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 

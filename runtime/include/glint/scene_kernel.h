@@ -2,7 +2,7 @@
 // that evaluate the shading code itself.
 #pragma once
 
-#include <glint/renderer.h>
+#include <glint/gpu_scene.h>
 #include <glint/result.h>
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 #include "motion/deformer.h"
 
 #include "context/layouts.h"
-#include "context/memory_report.h"
+#include "context/memory_items.h"
 #include "context/vulkan_error.h"
 #include "interop/deform.h"
 #include "package/shader_modules.h"

@@ -2,7 +2,7 @@
 #include "motion/scene_motion.h"
 
 #include "context/commands.h"
-#include "context/memory_report.h"
+#include "context/memory_items.h"
 #include "renderer/draw_batches.h"
 #include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"

@@ -10,7 +10,7 @@
 #include "scene/blas_build.h"
 #include "scene/geometry.h"
 
-#include <glint/renderer.h>
+#include <glint/gpu_scene.h>
 
 #include <memory>
 #include <span>

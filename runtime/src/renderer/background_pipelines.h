@@ -4,7 +4,7 @@
 #include "renderer/pipeline_jobs.h"
 #include "renderer/ray_passes.h"
 
-#include <glint/renderer.h>
+#include <glint/pipeline_progress.h>
 
 #include <condition_variable>
 #include <cstddef>

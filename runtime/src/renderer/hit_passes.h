@@ -5,6 +5,8 @@
 #include "renderer/pass_dependencies.h"
 #include "renderer/pass_state.h"
 
+#include <glint/renderer_options.h>
+
 #include <cstdint>
 #include <span>
 #include <string>

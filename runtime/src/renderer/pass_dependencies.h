@@ -2,7 +2,6 @@
 #pragma once
 
 #include "context/commands.h"
-#include "renderer/pipelines.h"
 
 namespace glint {
 
@@ -54,13 +53,6 @@ struct PassDependencies {
     MemoryDependency passToClear;     // before lists are filled anew
     MemoryDependency passesToCopy;    // a fill wrote the counters that no pass changed
 };
-
-// Returns the stages of the passes that are not raster passes.
-inline VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {
-    const bool rayPipeline = choice.tracer == package::kTracerRayPipeline;
-    return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
-           (rayPipeline ? VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR : VK_PIPELINE_STAGE_2_NONE);
-}
 
 inline constexpr MemoryDependency kCopyToHost{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                               VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};

@@ -5,7 +5,7 @@
 #include "frame/frame_resources.h"
 #include "renderer/pipelines.h"
 
-#include <glint/renderer.h>
+#include <glint/pass_timing.h>
 
 #include <cstdint>
 #include <string>

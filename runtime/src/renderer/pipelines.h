@@ -35,6 +35,13 @@ struct PipelineChoice {
     bool halfPicture = false;  // as FrameSize::halfPicture
 };
 
+// Returns the stages of the passes that are not raster passes.
+inline VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {
+    const bool rayPipeline = choice.tracer == package::kTracerRayPipeline;
+    return VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+           (rayPipeline ? VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR : VK_PIPELINE_STAGE_2_NONE);
+}
+
 // The time at which a pipeline is made, in this order.
 enum class PipelineTurn : std::uint8_t {
     First,  // frames can't begin without it

@@ -5,7 +5,7 @@
 #include "renderer/pipelines.h"
 
 #include <glint/package.h>
-#include <glint/renderer.h>
+#include <glint/renderer_options.h>
 
 namespace glint {
 

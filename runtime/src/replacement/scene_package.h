@@ -6,7 +6,7 @@
 #include "scene/scene_materials.h"
 
 #include <glint/package.h>
-#include <glint/renderer.h>
+#include <glint/gpu_scene.h>
 
 #include <array>
 #include <cstdint>

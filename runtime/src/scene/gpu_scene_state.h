@@ -15,7 +15,7 @@
 #include "scene/scene_upload.h"
 #include "scene/traversal_order.h"
 
-#include <glint/renderer.h>
+#include <glint/gpu_scene.h>
 #include <glint/scene_edit.h>
 #include <glint/texture_stream.h>
 

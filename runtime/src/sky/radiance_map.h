@@ -1,7 +1,7 @@
 // Equirectangular maps of radiance on the host: directions, solid angles, sizes.
 #pragma once
 
-#include <glint/renderer.h>
+#include <glint/image.h>
 #include <glint/result.h>
 
 #include <array>

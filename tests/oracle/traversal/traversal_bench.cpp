@@ -7,6 +7,7 @@
 #include "gltf/import.h"
 #include "oracle/traversal/orders.h"
 #include "oracle/traversal/trace_kernel.h"
+#include "resolve/resolve.h"
 #include "scene/traversal_order.h"
 #include "support/halved_tree.h"
 #include "support/quantile.h"

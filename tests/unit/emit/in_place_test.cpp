@@ -1,5 +1,5 @@
 // Tests writing into the working folder, hostile manifests, and several writers at once.
-#include "emit/compile.h"
+#include "emit/package/write.h"
 #include "emit/package/manifest.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"

@@ -1,4 +1,4 @@
-#include "emit/compile.h"
+#include "emit/package/write.h"
 #include "emit/package/manifest.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"

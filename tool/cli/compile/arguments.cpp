@@ -6,6 +6,7 @@
 #include "cli/options/settings_option.h"
 #include "emit/compile.h"
 #include "emit/package/embed_source.h"
+#include "emit/package/write.h"
 #include "materials/packs.h"
 #include "resolve/host.h"
 

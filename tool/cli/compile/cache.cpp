@@ -3,6 +3,7 @@
 #include "cache/packing.h"
 #include "cache/program.h"
 #include "emit/compile_modules.h"
+#include "emit/measured_module.h"
 
 #include <fmt/format.h>
 

@@ -3,6 +3,7 @@
 #include "base/files.h"
 #include "cli/compile/held_signals.h"
 #include "emit/package/embed_source.h"
+#include "emit/package/write.h"
 
 #include <utility>
 #include <vector>

@@ -7,6 +7,7 @@
 #include "cli/options/diagnostics_options.h"
 #include "cli/options/options.h"
 #include "cli/options/settings_option.h"
+#include "emit/package/write.h"
 
 #include <glint/package_watch.h>
 

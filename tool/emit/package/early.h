@@ -2,13 +2,16 @@
 // draft (docs/live.md). It takes a small part of the time of the whole package.
 #pragma once
 
-#include "emit/compile.h"
-#include "emit/sources.h"
+#include "emit/package/compiled_package.h"
+#include "emit/source_set.h"
 #include "gltf/scene_list.h"
+#include "settings/compile_settings.h"
 
 #include <optional>
 
 namespace glint::compiler {
+
+class WarmModules;
 
 // Returns the features that an early package can show the edit from `before` to `after` of: those of packs
 // with GLSL that differs, at stages that a draft has (coordinates, surface, emission). Returns 0 if other

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/files.h"
-#include "emit/compile.h"
+#include "emit/package/compiled_package.h"
 #include "gltf/scene_list.h"
 
 #include <filesystem>

@@ -3,6 +3,7 @@
 #include "emit/context.h"
 #include "emit/material_layout.h"
 #include "emit/package/interop_layouts.h"
+#include "emit/sources.h"
 
 #include <fmt/format.h>
 

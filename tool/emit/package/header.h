@@ -1,9 +1,11 @@
 // glint_tables.h: shader IDs, features and layouts for C++.
 #pragma once
 
-#include "emit/compile.h"
-#include "emit/sources.h"
+#include "emit/source_set.h"
 #include "gltf/scene_list.h"
+#include "plan/plan.h"
+
+#include <glint/result.h>
 
 #include <string>
 

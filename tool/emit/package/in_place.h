@@ -2,7 +2,9 @@
 // parent can't be written.
 #pragma once
 
-#include "emit/compile.h"
+#include "emit/package/compiled_package.h"
+
+#include <glint/result.h>
 
 #include <filesystem>
 #include <span>

@@ -2,9 +2,9 @@
 
 #include "base/json.h"
 #include "emit/context.h"
-#include "emit/modules.h"
 #include "emit/package/json.h"
 #include "resolve/host.h"
+#include "resolve/resolve.h"
 #include "settings/table.h"
 
 #include <fmt/format.h>

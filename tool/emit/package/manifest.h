@@ -1,8 +1,9 @@
 // manifest.json describes the contents of a package for people and scripts (docs/package.md).
 #pragma once
 
-#include "emit/compile.h"
+#include "emit/package/compiled_package.h"
 #include "gltf/scene_list.h"
+#include "settings/compile_settings.h"
 
 #include <set>
 #include <string>

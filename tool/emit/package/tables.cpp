@@ -1,5 +1,6 @@
 #include "emit/package/tables.h"
 
+#include "emit/material_code.h"
 #include "emit/sources.h"
 #include "scene/deformed.h"
 

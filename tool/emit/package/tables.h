@@ -1,9 +1,10 @@
 // tables.bin: the binary side of a package (runtime/include/glint/package_format.h).
 #pragma once
 
-#include "emit/compile.h"
 #include "emit/material_layout.h"
+#include "emit/package/compiled_package.h"
 #include "gltf/scene_list.h"
+#include "settings/compile_settings.h"
 
 #include <cstdint>
 #include <span>

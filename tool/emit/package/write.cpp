@@ -1,5 +1,6 @@
+#include "emit/package/write.h"
+
 #include "base/files.h"
-#include "emit/compile.h"
 #include "emit/package/in_place.h"
 #include "emit/package/manifest.h"
 #include "emit/package/swap.h"

@@ -192,11 +192,10 @@ private:
         for (std::size_t i = 0; i < meshes.size(); ++i) {
             const Json& primitives = arrayMember(meshes[i], "primitives");
             for (std::size_t k = 0; k < primitives.size(); ++k) {
-                constexpr const char* kDraco = "KHR_draco_mesh_compression";
                 const Json* const position = find(primitives[k]["attributes"], "POSITION");
-                if (findExtension(primitives[k], kDraco) != nullptr && position != nullptr &&
+                if (findExtension(primitives[k], kDracoExtension) != nullptr && position != nullptr &&
                     find(accessors[position->get<std::size_t>()], "bufferView") == nullptr) {
-                    demand(kDraco, fmt::format("/meshes/{}/primitives/{}", i, k));
+                    demand(kDracoExtension, fmt::format("/meshes/{}/primitives/{}", i, k));
                 }
             }
         }

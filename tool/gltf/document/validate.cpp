@@ -69,9 +69,9 @@ constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materi
                                      index("material", "/materials", true)};
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
 constexpr double kMaxAttributeId = 4294967295.0;
-constexpr std::array kDraco{index("bufferView", "/bufferViews", true),
+constexpr std::array kDracoMembers{index("bufferView", "/bufferViews", true),
                             integers("attributes", 0.0, kMaxAttributeId, true)};
-constexpr std::array kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDraco),
+constexpr std::array kPrimitiveExtensions{object(kDracoExtension, kDracoMembers),
                                           object("KHR_materials_variants", kVariantMappings)};
 // The rules of the attributes come before these, because packs add to them.
 constexpr std::array kPrimitive{index("indices", "/accessors"), index("material", "/materials"),

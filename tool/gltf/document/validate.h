@@ -13,6 +13,7 @@
 
 namespace glint::gltf {
 
+inline constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 // The names of these extensions of buffer views and buffers, and of textures. The first that is given counts.
 inline constexpr const char* kMeshoptExtensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 inline constexpr const char* kImageExtensions[] = {"EXT_texture_webp", "KHR_texture_basisu",

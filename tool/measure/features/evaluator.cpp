@@ -1,5 +1,9 @@
 #include "measure/features/evaluator.h"
 
+#include "emit/compile.h"
+#include "emit/feature_kernel.h"
+#include "resolve/resolve.h"
+
 #include <glint/scene_view/package.h>
 
 #include <algorithm>

@@ -10,6 +10,8 @@
 
 namespace glint {
 
+// Adds an item, or adds its bytes to the item of the same name and use.
+void addTo(std::vector<MemoryItem>& items, MemoryItem item);
 // Adds a buffer or image to the items, or to the item of the same name. A resource without a handle adds
 // nothing.
 void addTo(std::vector<MemoryItem>& items, std::string name, const Buffer& buffer);

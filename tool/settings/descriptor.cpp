@@ -1,5 +1,6 @@
+#include "settings/descriptor.h"
+
 #include "base/suggest.h"
-#include "settings/table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -34,10 +35,10 @@ std::vector<std::string> optionWords(const Descriptor& row, const std::string& v
     return {value == "on" ? "--" + name : value == "off" ? "--no-" + name : "--" + name + "=" + value};
 }
 
-std::string withoutEffect(const Descriptor& row, const BenchFacts& facts) {
+std::string withoutEffect(std::string_view setting, const BenchFacts& facts) {
     std::string reason;
     for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
-        if (std::ranges::find(effect.settings, row.name) == effect.settings.end()) {
+        if (std::ranges::find(effect.settings, setting) == effect.settings.end()) {
             continue;
         }
         if (facts.effects.contains(effect.name)) {
@@ -52,7 +53,7 @@ std::string idleReason(const Descriptor& row, const BenchFacts& facts, const Con
     if (row.idle != nullptr) {
         return row.idle(facts, base);
     }
-    std::string reason = withoutEffect(row, facts);
+    std::string reason = withoutEffect(row.name, facts);
     return reason.empty() && row.bench.against != nullptr ? row.bench.against("", facts, base) : reason;
 }
 

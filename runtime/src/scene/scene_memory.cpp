@@ -1,92 +1,10 @@
-#include "context/memory_report.h"
-
+#include "context/memory_items.h"
 #include "edit/editor_state.h"
-#include "frame/motion_history.h"
 #include "motion/deformer.h"
 #include "motion/scene_motion.h"
-#include "renderer/renderer_state.h"
 #include "scene/gpu_scene_state.h"
 
-#include <algorithm>
-#include <iterator>
-#include <string_view>
-#include <utility>
-
 namespace glint {
-namespace {
-
-void add(std::vector<MemoryItem>& items, MemoryItem item) {
-    const auto known = std::ranges::find_if(items, [&](const MemoryItem& other) {
-        return other.name == item.name && other.use == item.use && other.isImage == item.isImage;
-    });
-    if (known == items.end()) {
-        items.push_back(std::move(item));
-        return;
-    }
-    known->count += item.count;
-    known->bytes += item.bytes;
-}
-
-// Names of the images by binding.
-constexpr std::string_view kImageNames[] = {"surface", "radiance", "accumulated", "residual", "position"};
-static_assert(std::size(kImageNames) == gpu::kFrameImageCount);
-
-}  // namespace
-
-void addTo(std::vector<MemoryItem>& items, std::string name, const Buffer& buffer) {
-    if (buffer.handle.get() != VK_NULL_HANDLE) {
-        add(items, {std::move(name), buffer.use, false, 1, buffer.bytes});
-    }
-}
-
-void addTo(std::vector<MemoryItem>& items, std::string name, const DeviceImage& image) {
-    if (image.handle.get() != VK_NULL_HANDLE) {
-        add(items, {std::move(name), MemoryUse::Device, true, 1, image.bytes});
-    }
-}
-
-std::vector<MemoryItem> Renderer::memory() const {
-    std::vector<MemoryItem> items;
-    const FrameResources& frame = state_->frame;
-    for (std::size_t binding = 0; binding < frame.images.size(); ++binding) {
-        addTo(items, std::string(kImageNames[binding]), frame.images[binding]);
-    }
-    for (std::size_t i = 0; i < frame.layers.size(); ++i) {
-        addTo(items, "layer " + state_->size.layers[i].name, frame.layers[i]);
-    }
-    // Memory that buffers share with the depth image counts as the buffers' memory.
-    VkDeviceSize shared = 0;
-    for (const auto& [name, buffer] : frame.buffers()) {
-        const bool shares =
-            buffer->handle.get() != VK_NULL_HANDLE && buffer->memory.memory == frame.depth.memory.memory;
-        shared += shares ? buffer->bytes : 0;
-    }
-    if (frame.depth.handle.get() != VK_NULL_HANDLE) {
-        add(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
-    }
-    for (const auto& [name, buffer] : frame.buffers()) {
-        addTo(items, name, *buffer);
-    }
-    if (state_->history != nullptr) {
-        state_->history->addMemory(items);
-    }
-    for (const Buffer& table : state_->pipelines.tables) {
-        addTo(items, "shader binding tables", table);
-    }
-    return items;
-}
-
-Renderer::Footprint Renderer::footprint() const {
-    Footprint footprint;
-    footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());
-    for (const MemoryItem& item : memory()) {
-        (item.isImage ? footprint.images : footprint.buffers) += item.count;
-        footprint.bytes += item.bytes;
-    }
-    footprint.allocatedBytes = (state_->history != nullptr ? state_->history->allocatedBytes() : 0) +
-                               glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
-    return footprint;
-}
 
 namespace {
 
@@ -117,8 +35,8 @@ void addEditor(std::vector<MemoryItem>& items, const SceneEditor::State& editor)
         addTo(items, "edits on their way", staging);
     }
     if (editor.retired.count() > 0) {
-        add(items,
-            {"retired by edits", MemoryUse::Device, false, editor.retired.count(), editor.retired.bytes()});
+        addTo(items,
+              {"retired by edits", MemoryUse::Device, false, editor.retired.count(), editor.retired.bytes()});
     }
 }
 
@@ -136,7 +54,7 @@ std::vector<MemoryItem> GpuScene::memory() const {
         addTo(items, "textures", texture);
     }
     if (state_->stream != nullptr) {
-        add(items, {"levels on their way", MemoryUse::Upload, false, 1, state_->stream->retiredBytes()});
+        addTo(items, {"levels on their way", MemoryUse::Upload, false, 1, state_->stream->retiredBytes()});
     }
     for (const AccelerationStructure& blas : state_->blases) {
         addTo(items, "bottom levels", blas.buffer);

@@ -1,0 +1,51 @@
+// A package in memory: its modules, and the files that are written.
+#pragma once
+
+#include "base/files.h"
+#include "emit/glsl/unit.h"
+#include "plan/plan.h"
+#include "spirv/statistics.h"
+
+#include <glint/package_modules.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glint::compiler {
+
+// One SPIR-V module of the package. Modules with equal bytes share `file`.
+struct CompiledModule {
+    package::ModuleKey key;
+    std::string name;  // "uber.comp", "shade_2_BaseTex.comp"; the GLSL file has the same name
+    std::string file;  // name within the package: "uber.spv"
+    std::vector<std::uint32_t> spirv;
+    GlslUnit glsl;
+    SpirvStatistics statistics;
+    std::uint64_t hash = 0;
+    bool compiled = true;  // in this run; false if it was cached or has the text of another module
+    // How many of the parts that it was joined from in this run were compiled, and how many were cached.
+    // Parts of several modules count for the first of them.
+    int partsCompiled = 0;
+    int partsCached = 0;
+};
+
+struct PackageFile {
+    std::string name;  // relative, '/' between folders
+    base::Bytes bytes;
+};
+
+struct CompiledPackage {
+    Plan plan;
+    std::vector<CompiledModule> modules;  // in order of their keys
+    std::vector<PackageFile> files;       // everything that writePackage() writes, sorted by name
+    int uniqueSpirv = 0;
+    std::uint64_t spirvBytes = 0;  // sum over the distinct modules
+    // Wall clock: planning and making GLSL, making SPIR-V of it, and all else.
+    double planMs = 0.0;
+    double earlyMs = 0.0;  // that its early package took, between planning and making GLSL
+    double compileMs = 0.0;
+    double tablesMs = 0.0;
+};
+
+}  // namespace glint::compiler
