@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Counts the 32-bit words that a SPIR-V module keeps: at its peak, and while rays are traced.
+"""Counts the 32-bit words that a SPIR-V module keeps, at its peak and while rays are traced, and its loads from memory.
 
     scripts/live_words.py [--values] PACKAGE/*.spv
 
 A value is live between its definition and its last use, in the order of the module. Drivers order instructions anew, but
 their registers follow these numbers: RADV's and ANV's are 0.8 to 0.95 times the peak. Addresses into the frame's
 constants count two words each, although they are the same for all threads. `--values` lists what is live at both
-places. It needs spirv-dis of SPIRV-Tools.
+places. Loads are those through addresses of buffers, as the module has them; those of one word are counted apart,
+because Adreno's driver reads each by itself. It needs spirv-dis of SPIRV-Tools.
 """
 import argparse
 import collections
@@ -25,6 +26,7 @@ class Module:
     def __init__(self, path):
         text = subprocess.run(["spirv-dis", "--raw-id", "--no-color", path], capture_output=True, text=True, check=True)
         self.sizes, self.constants, self.types = {}, {}, {}
+        self.addresses = set()  # types of pointers to the memory of buffers
         self.blocks = {}  # label: instructions
         block = None
         for line in map(str.strip, text.stdout.splitlines()):
@@ -58,6 +60,8 @@ class Module:
             self.sizes[result] = self.sizes.get(operands[0], 0) * int(words[1])  # truth values take none
         elif opcode == "OpTypePointer":
             self.sizes[result] = 2 if words[0] == "PhysicalStorageBuffer" else 0
+            if words[0] == "PhysicalStorageBuffer":
+                self.addresses.add(result)
         elif opcode == "OpTypeForwardPointer":
             self.sizes[operands[0]] = 2
         elif opcode == "OpTypeArray":
@@ -69,6 +73,15 @@ class Module:
 
     def words(self, values):
         return round(sum(self.sizes.get(self.types[value], 0) for value in values))
+
+    def loads(self):
+        """The words of each load from the memory of buffers."""
+        return [
+            self.words([instruction.result])
+            for instructions in self.blocks.values()
+            for instruction in instructions
+            if instruction.opcode == "OpLoad" and self.types.get(instruction.operands[0]) in self.addresses
+        ]
 
     def uses(self, instruction):
         """What an instruction reads where it stands; a phi reads at the end of the blocks before it."""
@@ -120,7 +133,11 @@ def main():
         peak = max(points, key=lambda point: module.words(point[1]))
         traces = [point for point in points if point[0].opcode == "OpRayQueryProceedKHR"]
         over = ", ".join(str(module.words(live)) for _, live in traces) or "-"
-        print(f"{path.name}: {module.words(peak[1])} at the peak, {over} while rays are traced")
+        loads = module.loads()
+        print(
+            f"{path.name}: {module.words(peak[1])} at the peak, {over} while rays are traced; "
+            f"{sum(words <= 1 for words in loads)} of {len(loads)} loads have one word"
+        )
         if arguments.values:
             texts = {it.result: it.text for block in module.blocks.values() for it in block}
             for instruction, live in [peak, *traces]:

@@ -1,6 +1,7 @@
 // The alpha of a candidate, for ray traversal over masked geometry.
 #include "generated/mask_stages.glsl"
 #include "hit/blend.glsl"
+#include "hit/counts_light.glsl"
 
 #if GLINT_BLENDED
 
@@ -14,7 +15,7 @@ uint rayKey(vec3 origin, vec3 direction) {
 
 void countAlphaTest() {
 #ifdef GLINT_FRAME
-    if (GLINT_FRAME.countsLight != 0u) {
+    if (kCountsLight) {
         atomicAdd(GLINT_FRAME.counters.data[kCounterAlphaTests], 1u);
     }
 #endif

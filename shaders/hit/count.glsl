@@ -4,6 +4,7 @@
 // Compute shaders use one atomic for each subgroup, and all of its threads must call. Ray generation shaders, which may
 // lack subgroup operations, add one by one.
 #include "hit/bindings.glsl"
+#include "hit/counts_light.glsl"
 #include "hit/stage.glsl"
 
 #if !GLINT_RAY_GENERATION
@@ -67,7 +68,7 @@ void countKinds(uint effect, bool counted, uint kind) {
 // Counts the rays of an effect that are traced at once, and those of them that hit nothing. All active threads of a
 // subgroup must call.
 void countRays(uint effect, uint rays, uint misses) {
-    if (GLINT_FRAME.countsLight != 0u) {
+    if (kCountsLight) {
         addToCounter(counterOf(effect, kRaySent), rays);
         addToCounter(counterOf(effect, kCountMisses), misses);
         addToCounter(counterOf(effect, kCountHits), rays - misses);

@@ -246,7 +246,7 @@ GLINT_CONSTANT(kCounterUnknownShader, 2u);  // hits whose shader ID no case has
 GLINT_CONSTANT(kCounterOrderErrors, 3u);    // lost, doubled or misplaced hits, found by the check of the order
 GLINT_CONSTANT(kCounterNonFinite, 4u);      // pixels whose sample was not a number and was taken as black
 GLINT_CONSTANT(kCounterDeepest, 5u);        // the deepest bounce that many rays reach, in packages with paths
-GLINT_CONSTANT(kCounterAlphaTests, 6u);     // candidates whose alpha was tested, if countsLight
+GLINT_CONSTANT(kCounterAlphaTests, 6u);     // candidates whose alpha was tested, if kCountsLight
 // The counters from here on exist kCounterCopies times and are to be added up: kCountsOfEffect for each effect, in the
 // order of their bits up to the package's last one.
 GLINT_CONSTANT(kCounterEffects, 7u);
@@ -302,7 +302,6 @@ struct FrameConstants {
     uint averaged;  // samples in the mean that this one joins; 0: the picture starts with it
     float time;  // seconds: what materials of packs may follow
     uint effects;  // bits of the package's effects that are on
-    uint countsLight;  // 1 if rays of lights and of occlusion are counted
     uint lightCount;
     uint shadowSamples;     // rays for each light and sample on primary surfaces, for lights that have a size
     uint occlusionSamples;  // rays for each sample

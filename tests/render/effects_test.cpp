@@ -30,7 +30,7 @@ compiler::CompileSettings allEffects() {
 RenderSetup smallSetup(const gltf::Scene& scene) {
     RenderSetup setup = defaultSetup(scene, 48, 32);
     setup.frame.maxReflectionRoughness = 1.0F;
-    setup.frame.countsLight = true;
+    setup.countsLight = true;
     setup.samples = 2;
     return setup;
 }
@@ -396,7 +396,7 @@ TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
     scene.lights.push_back(light);
     addDirectionalLight(scene, {0, 0, 1}, 1.0F);  // from behind
     RenderSetup setup = squareSetup(scene);
-    setup.frame.countsLight = true;
+    setup.countsLight = true;
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.effects.named = package::kEffectShadow;

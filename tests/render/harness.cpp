@@ -89,6 +89,7 @@ LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setu
                                 FrameCounters* counters) const {
     options.width = setup.width;
     options.height = setup.height;
+    options.countsLight = options.countsLight || setup.countsLight;
     Result<std::unique_ptr<Renderer>> renderer =
         Renderer::create(sharedContext(), *package_, *gpuScene_, options);
     if (!renderer) {

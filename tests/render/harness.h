@@ -27,6 +27,7 @@ struct RenderSetup {
     std::uint32_t width = 64;
     std::uint32_t height = 36;
     std::uint32_t samples = 1;
+    bool countsLight = false;  // as RendererOptions::countsLight
     FrameOptions frame;
 };
 

@@ -124,7 +124,7 @@ TEST(Opacity, PicturesDoNotShowWhatWasDecided) {
     EXPECT_EQ(statistics.triangles, tested.gpuScene().statistics().triangles) << "all are drawn";
 
     RenderSetup setup = defaultSetup(scene, 64, 36);
-    setup.frame.countsLight = true;
+    setup.countsLight = true;
     std::vector<RendererOptions> choices;
     for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility,
                                              package::kStrategySortedUber, package::kStrategyHitShaders}) {
@@ -240,7 +240,6 @@ TEST(Opacity, PicturesOfDeformedMeshesDoNotShowWhatWasDecided) {
         choices.push_back({.strategy = package::kStrategyHitShaders, .tracer = package::kTracerRayPipeline});
     }
     RenderSetup setup = defaultSetup(still, 64, 36);
-    setup.frame.countsLight = true;
     Swaying proved(compiled.package(), OpacityUse::Proved);
     Swaying tested(compiled.package(), OpacityUse::Tested);
     ASSERT_TRUE(proved.gpuScene != nullptr && tested.gpuScene != nullptr);
@@ -249,6 +248,7 @@ TEST(Opacity, PicturesOfDeformedMeshesDoNotShowWhatWasDecided) {
     EXPECT_GT(proved.gpuScene->statistics().provedTransparent, 80U);
     EXPECT_EQ(tested.gpuScene->statistics().provedOpaque, 0U);
     for (RendererOptions& options : choices) {
+        options.countsLight = true;
         options.width = setup.width;
         options.height = setup.height;
         const auto make = [&](Swaying& swaying) {
@@ -287,7 +287,7 @@ TEST(Opacity, TestsOfRaysThroughGlassAreCounted) {
     pane["transmissionFactor"] = 1.0F;
     addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-4, 3, 0}, {8, 0, 0}, {0, 0, -8})));
     RenderSetup setup = defaultSetup(scene, 64, 36);
-    setup.frame.countsLight = true;
+    setup.countsLight = true;
     const auto testsWith = [&](package::ShadowThrough through) {
         compiler::CompileSettings settings = settingsOf(package::kStrategyUber);
         settings.tracers = package::kTracerRayQuery;

@@ -118,7 +118,7 @@ Status OrderKernel::createPipelines() {
     }
     for (const compiler::CompiledModule& module : *modules) {
         PipelineCreation creation;
-        creation.threads = chosenThreads(context_.limits, module.key, caseCount_ + 1);
+        creation.constants.threads = chosenThreads(context_.limits, module.key, caseCount_ + 1);
         Result<UniquePipeline> pipeline =
             createComputePipeline(context_, module.spirv, layout_.get(), creation);
         if (!pipeline) {

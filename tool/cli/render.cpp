@@ -131,6 +131,8 @@ Result<compiler::Build> resolve(const Console& console, const RenderArguments& a
                                 const gltf::Scene& scene, const Package* package, RenderReport& report) {
     compiler::Settings asked = settingsOf(arguments);
     asked.renderer.pipelineStatistics = arguments.pipelineStatistics && context.handles().pipelineStatistics;
+    // Counting takes time that would be added to that of the passes.
+    asked.renderer.countsLight = !arguments.stats.empty();
     asked.compile.progress = console.countTo("compiling");
     GLINT_TRY(const auto target, measure::targetOf(asked, context, package, scene));
     GLINT_TRY(auto build, compiler::resolve(std::span(&scene, 1), asked, target));

@@ -74,7 +74,7 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
 
 // The bytes that a pass reads and writes for one unit.
 struct TrafficRow {
-    std::string_view pass;  // as in docs/architecture.md
+    std::string_view pass;  // as in docs/design.md
     TrafficUnit unit = TrafficUnit::Pixel;
     std::uint32_t read = 0;
     std::uint32_t written = 0;

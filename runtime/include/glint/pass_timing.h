@@ -6,7 +6,7 @@
 
 namespace glint {
 
-// The part of a frame that a time belongs to. docs/architecture.md explains it in "Passes of a frame".
+// The part of a frame that a time belongs to. docs/design.md explains it in "Passes of a frame".
 enum class Pass : std::uint32_t {
     Frame,  // the whole frame, with Timing::Frame
     Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame

@@ -63,7 +63,7 @@ struct FrameCounters {
     std::uint32_t shadowRays = 0;     // deferred shadow rays of hits
     std::uint32_t orderErrors = 0;    // with RendererOptions::checkOrder
     std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
-    std::uint32_t alphaTests = 0;     // candidates whose alpha was tested, with FrameOptions::countsLight
+    std::uint32_t alphaTests = 0;     // candidates whose alpha was tested, with RendererOptions::countsLight
     std::uint32_t nonFinite = 0;      // samples since sample 0 that were not finite; they count as black
     // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
     std::vector<std::uint32_t> raysOfBounces;

@@ -36,6 +36,9 @@ struct RendererOptions {
     // Makes the device check that each hit is in its bucket exactly once, and count the errors in
     // FrameCounters::orderErrors. This is slow.
     bool checkOrder = false;
+    // Also counts rays to lights and rays of ambient occlusion. This costs time, most with ray tracing
+    // pipelines; without it, pipelines have no code for it.
+    bool countsLight = false;
     // Puts the rays of all effects into one list, so that their hits are ordered and shaded together. This
     // makes fewer, larger dispatches and takes more memory.
     bool batchEffects = false;
@@ -138,9 +141,6 @@ struct FrameOptions {
     bool occlusionFalloff = false;
     // The largest number of surfaces that a refracted ray meets: 1 to 64.
     std::uint32_t maxInterfaces = 8;
-    // Also counts rays to lights and rays of ambient occlusion. This costs time, most with ray tracing
-    // pipelines.
-    bool countsLight = false;
     // The largest luminance that a ray of an effect adds in one sample. Infinity means no limit, which is
     // exact.
     float maxSampleRadiance = std::numeric_limits<float>::infinity();

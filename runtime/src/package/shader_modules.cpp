@@ -2,6 +2,9 @@
 
 #include "context/vulkan_error.h"
 
+#include <cstddef>
+#include <iterator>
+
 namespace glint {
 
 Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words) {
@@ -48,6 +51,14 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
     return info;
 }
 
+VkSpecializationInfo specializationOf(const ShaderConstants& constants) {
+    static constexpr VkSpecializationMapEntry kEntries[] = {
+        {0, offsetof(ShaderConstants, threads), sizeof(constants.threads)},
+        {1, offsetof(ShaderConstants, countsLight), sizeof(constants.countsLight)},
+    };
+    return {static_cast<std::uint32_t>(std::size(kEntries)), kEntries, sizeof(constants), &constants};
+}
+
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout, PipelineCreation& creation) {
     GLINT_TRY(auto module, creation.halfPicture ? createShaderModule(context, withHalfImages(words))
@@ -58,11 +69,8 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
     info.pNext = &feedback;
     info.flags = creation.flags;
     info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
-    const VkSpecializationMapEntry entry{0, 0, sizeof(creation.threads)};
-    const VkSpecializationInfo specialization{1, &entry, sizeof(creation.threads), &creation.threads};
-    if (creation.threads > 0) {
-        info.stage.pSpecializationInfo = &specialization;
-    }
+    const VkSpecializationInfo specialization = specializationOf(creation.constants);
+    info.stage.pSpecializationInfo = &specialization;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,

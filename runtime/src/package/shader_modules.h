@@ -19,12 +19,18 @@ std::vector<std::uint32_t> withHalfImages(std::span<const std::uint32_t> words);
 // Describes a stage whose entry point is "main".
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module);
 
+// The specialisation constants of Glint's shaders, by their IDs. A shader without one of them ignores it.
+struct ShaderConstants {
+    std::uint32_t threads = 0;          // 0: the number of threads in a compute shader's workgroup
+    VkBool32 countsLight = VK_FALSE;    // 1: kCountsLight of hit/counts_light.glsl
+};
+// Returns the description of `constants`, which must outlive it.
+VkSpecializationInfo specializationOf(const ShaderConstants& constants);
+
 // Settings for making a pipeline, and the driver's feedback about it.
 struct PipelineCreation {
     VkPipelineCreateFlags flags = 0;
-    // The number of threads in a compute shader's workgroup, if that is its constant 0. 0 means that the
-    // shader has no such constant.
-    std::uint32_t threads = 0;
+    ShaderConstants constants{};
     bool halfPicture = false;  // the shader's images of light have 16-bit floats: withHalfImages()
     VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
     std::vector<VkPipelineCreationFeedback> stageFeedbacks{};

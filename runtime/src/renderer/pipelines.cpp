@@ -142,12 +142,14 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
         const std::uint32_t threads = chosenThreads(context.limits, key, package.bucketCount());
+        const VkBool32 countsLight = choice.countsLight ? VK_TRUE : VK_FALSE;
         const auto [known, fresh] = byWords.emplace(words.data(), plan.size());
         if (fresh) {
             plan.push_back(
                 {{pipelineName(package, key), words.size(),
-                  [&context, words, layout, threads, half = choice.halfPicture](PipelineCreation& creation) {
-                      creation.threads = threads;
+                  [&context, words, layout, constants = ShaderConstants{threads, countsLight},
+                   half = choice.halfPicture](PipelineCreation& creation) {
+                      creation.constants = constants;
                       creation.halfPicture = half;
                       return createComputePipeline(context, words, layout, creation);
                   },
@@ -204,7 +206,9 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
     for (RayPass& planned : planRayPasses(package, choice, shaderIds)) {
         const auto pass = std::make_shared<const RayPass>(std::move(planned));
         plan.push_back({{pass->name, wordCount(pass->source),
-                         [&context, pass, layout, half = choice.halfPicture](PipelineCreation& creation) {
+                         [&context, pass, layout, countsLight = choice.countsLight,
+                          half = choice.halfPicture](PipelineCreation& creation) {
+                             creation.constants.countsLight = countsLight ? VK_TRUE : VK_FALSE;
                              creation.halfPicture = half;
                              return createRayPipeline(context, layout, pass->source, creation);
                          },

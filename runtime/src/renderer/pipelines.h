@@ -33,6 +33,7 @@ struct PipelineChoice {
     // The edit of an early package is shown.
     bool showsEdit = false;
     bool halfPicture = false;  // as FrameSize::halfPicture
+    bool countsLight = false;  // as RendererOptions::countsLight
 };
 
 // Returns the stages of the passes that are not raster passes.

@@ -139,6 +139,10 @@ Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeli
 Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
                                          const RayPipelineSource& source, PipelineCreation& creation) {
     GLINT_TRY(auto parts, makeParts(context, source, creation.halfPicture));
+    const VkSpecializationInfo specialization = specializationOf(creation.constants);
+    for (VkPipelineShaderStageCreateInfo& stage : parts.stages) {
+        stage.pSpecializationInfo = &specialization;
+    }
     const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts.stages.size());
     VkRayTracingPipelineCreateInfoKHR info{};
     info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;

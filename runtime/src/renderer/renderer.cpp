@@ -100,7 +100,6 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.maxReflectionRoughness = options.maxReflectionRoughness;
     constants.faintWeight = options.faintWeight;
     constants.effects = options.effects & state.size.effects.all;
-    constants.countsLight = options.countsLight ? 1 : 0;
     constants.shadowSamples = options.shadowSamples;
     constants.occlusionSamples = options.occlusionSamples;
     constants.occlusionRadius = std::min(options.occlusionRadius, kFarDistance);

@@ -148,6 +148,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.checksOrder = options.checkOrder;
     choice.batchEffects = options.batchEffects;
     choice.halfPicture = hasHalfPicture(package, options);
+    choice.countsLight = options.countsLight;
     // Bands cost a GPU with memory of its own a fifth of its time and more (docs/memory.md).
     const bool isDiscrete = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
     choice.bands = options.bands == 0 && isDiscrete ? 1 : options.bands;

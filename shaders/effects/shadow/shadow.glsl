@@ -27,7 +27,7 @@ bool passesGate(LightSample centre, inout ShadowCounts counts) {
 
 void reportShadows(ShadowCounts counts) {
     countRays(kEffectShadow, counts.rays, counts.misses);
-    if (GLINT_FRAME.countsLight != 0u) {
+    if (kCountsLight) {
         addToCounter(counterOf(kEffectShadow, kRayFacing), counts.facing);
         addToCounter(counterOf(kEffectShadow, kRayRange), counts.range);
         addToCounter(counterOf(kEffectShadow, kRayCone), counts.cone);

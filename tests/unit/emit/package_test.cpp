@@ -6,11 +6,14 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <spirv-tools/optimizer.hpp>
 
 #include <algorithm>
 #include <map>
 #include <regex>
 #include <set>
+#include <span>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -215,6 +218,36 @@ TEST(CompilePackage, EachRayQueryHasItsOwnLoadOfAPlainStructure) {
         queries += loads.size();
     }
     EXPECT_GT(queries, 10U);
+}
+
+std::size_t countAtomicAdds(std::span<const std::uint32_t> spirv) {
+    constexpr std::uint32_t kOpAtomicIAdd = 234;
+    std::size_t count = 0;
+    EXPECT_TRUE(compiler::visitSpirv(spirv, [&](const compiler::SpirvInstruction& it) {
+        count += it.opcode == kOpAtomicIAdd ? 1 : 0;
+    }));
+    return count;
+}
+
+// A driver knows specialisation constants, and drops branches that they rule out, as these passes do.
+TEST(CompilePackage, CountersThatAreOffLeaveNoCode) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.effects = {false, compiler::builtinEffects({"shadow", "ambient-occlusion"})};
+    const compiler::CompiledPackage package = compileSample(settings);
+    const auto lighting = std::ranges::find_if(package.modules, [](const compiler::CompiledModule& module) {
+        return module.key.role == ModuleRole::Lighting;
+    });
+    ASSERT_NE(lighting, package.modules.end());
+    EXPECT_GT(countAtomicAdds(lighting->spirv), 2U);
+    spvtools::Optimizer driver(SPV_ENV_VULKAN_1_2);
+    driver.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
+        .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
+        .RegisterPass(spvtools::CreateCCPPass())
+        .RegisterPass(spvtools::CreateDeadBranchElimPass());
+    std::vector<std::uint32_t> left;
+    ASSERT_TRUE(driver.Run(lighting->spirv.data(), lighting->spirv.size(), &left));
+    EXPECT_EQ(countAtomicAdds(left), 0U);
 }
 
 // These are all that a module of Glint's own may ask of a device.

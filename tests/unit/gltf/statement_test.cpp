@@ -83,7 +83,7 @@ std::string idOf(const Ordered& row) {
 // ---- Files ----
 
 // A triangle with all attributes but colours, a material, a texture and a camera. It breaks no rule.
-GltfBuilder triangle() {
+GltfBuilder triangleBase() {
     GltfBuilder builder;
     Json& primitive = builder.addTriangle();
     primitive["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
@@ -105,8 +105,8 @@ GltfBuilder triangle() {
 }
 
 // An animation that moves the triangle's node from 0 to (2, 0, 0) between 1 s and 2 s.
-GltfBuilder moving() {
-    GltfBuilder builder = triangle();
+GltfBuilder movingBase() {
+    GltfBuilder builder = triangleBase();
     const int times = builder.addAccessor<float>({1, 2}, 1);
     const int places = builder.addAccessor<float>({0, 0, 0, 2, 0, 0}, 3);
     builder.append("animations",
@@ -116,8 +116,8 @@ GltfBuilder moving() {
 }
 
 // Two joints, nodes 2 and 3, which the triangle follows.
-GltfBuilder skinned() {
-    GltfBuilder builder = triangle();
+GltfBuilder skinnedBase() {
+    GltfBuilder builder = triangleBase();
     Json& attributes = builder.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_0"] = builder.addAccessor<std::uint8_t>({0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
     attributes["WEIGHTS_0"] =
@@ -134,8 +134,8 @@ GltfBuilder skinned() {
 }
 
 // Two targets that move the positions by (1, 0, 0) and (0, 1, 0).
-GltfBuilder morphed() {
-    GltfBuilder builder = triangle();
+GltfBuilder morphedBase() {
+    GltfBuilder builder = triangleBase();
     Json& primitive = builder.root["meshes"][0]["primitives"][0];
     primitive["targets"].push_back(
         {{"POSITION", builder.addAccessor<float>({1, 0, 0, 1, 0, 0, 1, 0, 0}, 3)}});
@@ -146,10 +146,10 @@ GltfBuilder morphed() {
 
 GltfBuilder baseNamed(const std::string& name) {
     static const std::map<std::string, std::function<GltfBuilder()>> kBases{
-        {"triangle", triangle},
-        {"moving", moving},
-        {"skinned", skinned},
-        {"morphed", morphed},
+        {"triangle", triangleBase},
+        {"moving", movingBase},
+        {"skinned", skinnedBase},
+        {"morphed", morphedBase},
         {"draco", [] { return dracoScene(DracoMethod::Sequential); }},
         {"meshopt", meshoptScene},
         {"webp", webpScene}};

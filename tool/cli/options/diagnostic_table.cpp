@@ -221,8 +221,6 @@ constexpr DiagnosticInfo kTable[] = {
      "meshopt data is of a mode or layout that glTF does not have; a warning where a buffer view has both "
      "extensions."},
     {"meshopt-size", kError, "meshopt data claims more bytes than it can hold."},
-    {"micromap", kError,
-     "Opacity micromaps of a file (`EXT_mesh_opacity_micromap`) are not as the draft demands."},
     {"module-features", kError, "A module of the package needs a feature that the device lacks."},
     {"module-format", kError,
      "A module that is compiled by itself is damaged, or of another version of Glint."},

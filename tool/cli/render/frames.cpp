@@ -63,7 +63,7 @@ public:
         report_.memory = {renderer_->memory(), gpuScene_->memory(), report_.footprint.allocatedBytes,
                           gpuScene_->allocatedBytes()};
         report_.hasDetails = !setup_.arguments.stats.empty();
-        report_.countsLight = !setup_.arguments.stats.empty();
+        report_.countsLight = setup_.renderer.countsLight;
         report_.traffic.shape = trafficShape(package, setup_.renderer);
         report_.traffic.shape.binsRays = setup_.settings.frame.binning != Binning::None;
         return okStatus();
@@ -92,9 +92,6 @@ public:
         FrameOptions options = measure::frameOptions(setup_.settings, camera_.view, sky_, setup_.environment);
         options.timing = Timing::Passes;
         options.time = static_cast<float>(frame.seconds);
-        // Counting takes time that would be added to that of the passes, so it is on only if the counts are
-        // asked for.
-        options.countsLight = !setup_.arguments.stats.empty();
         options.seed = report_.seed;
         const base::Clock::time_point begin = base::Clock::now();
         const bool countsHits = !setup_.arguments.profileOutput.empty();
