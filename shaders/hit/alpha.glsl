@@ -1,7 +1,6 @@
 // The alpha of a candidate, for ray traversal over masked geometry.
 #include "generated/mask_stages.glsl"
 #include "hit/blend.glsl"
-#include "hit/counts_light.glsl"
 
 #if GLINT_BLENDED
 

@@ -12,5 +12,9 @@ layout(push_constant, scalar) uniform PushBlock {
 
 #define GLINT_FRAME pushed.frame.data
 
+// Whether rays of lights and of occlusion are counted (RendererOptions::countsLight). It is a specialisation constant, so
+// that drivers leave no code of counters in pipelines that do not count.
+layout(constant_id = 1) const bool kCountsLight = false;
+
 layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TEXTURES) uniform texture2D sceneTextures[];
 layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_SAMPLERS) uniform sampler sceneSamplers[];

@@ -4,7 +4,6 @@
 // Compute shaders use one atomic for each subgroup, and all of its threads must call. Ray generation shaders, which may
 // lack subgroup operations, add one by one.
 #include "hit/bindings.glsl"
-#include "hit/counts_light.glsl"
 #include "hit/stage.glsl"
 
 #if !GLINT_RAY_GENERATION

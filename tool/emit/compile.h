@@ -1,10 +1,9 @@
 // Compiles scenes to a package: plan, GLSL, SPIR-V, tables. It writes no files: see emit/package/write.h.
 #pragma once
 
-#include "emit/module_source.h"
 #include "emit/package/compiled_package.h"
 #include "gltf/scene.h"
-#include "resolve/build.h"
+#include "settings/compile_settings.h"
 
 #include <glint/result.h>
 
@@ -14,14 +13,10 @@
 
 namespace glint::compiler {
 
+struct Build;
 class ModuleCache;
 class WarmModules;
 
-// The contents of a package before anything is compiled.
-struct PackagePlan {
-    Plan plan;
-    std::vector<PlannedModule> modules;
-};
 // Plans a package. Has the errors of compilePackage(), except those of compiling.
 Result<PackagePlan> planPackage(const Build& build);
 Result<PackagePlan> planPackage(std::span<const gltf::Scene> scenes, const CompileSettings& settings);

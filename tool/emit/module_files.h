@@ -4,6 +4,7 @@
 
 #include "cache/module_cache.h"
 #include "emit/module_source.h"
+#include "emit/package/compiled_package.h"
 
 #include <glint/result.h>
 

@@ -29,12 +29,4 @@ struct ModuleSource {
     std::optional<LinkNames> link{};  // of a part
 };
 
-// A text to compile, of a module or a part of modules. Several modules of a package may have the same text.
-struct PlannedModule {
-    std::string file;                // without a suffix: nameOfModuleText()
-    std::string name;                // name of the first module that has the text, for people
-    std::string text;                // as made by makeModuleText()
-    std::vector<std::string> parts;  // files that have to be compiled before it
-};
-
 }  // namespace glint::compiler

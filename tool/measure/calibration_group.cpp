@@ -1,5 +1,8 @@
 #include "measure/calibration_group.h"
 
+#include "emit/compile.h"
+#include "resolve/resolve.h"
+
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>

@@ -1,3 +1,5 @@
+#include "settings/configuration.h"
+
 #include <glint/measure/settings.h>
 
 #include <fmt/format.h>

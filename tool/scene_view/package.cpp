@@ -1,3 +1,4 @@
+#include "emit/compile.h"
 #include "resolve/resolve.h"
 #include "scene/deformed.h"
 

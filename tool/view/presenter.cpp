@@ -123,6 +123,47 @@ void Presenter::destroySwapchain() {
     images_.clear();
 }
 
+Status Presenter::addImages() {
+    VkDevice device = context_.handles().device;
+    std::uint32_t count = 0;
+    vkGetSwapchainImagesKHR(device, swapchain_, &count, nullptr);
+    std::vector<VkImage> images(count);
+    vkGetSwapchainImagesKHR(device, swapchain_, &count, images.data());
+    for (VkImage handle : images) {
+        Image& image = images_.emplace_back();
+        image.handle = handle;
+        VkImageViewCreateInfo view{};
+        view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+        view.image = handle;
+        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.format = format_.format;
+        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        VkResult result = vkCreateImageView(device, &view, nullptr, &image.view);
+        if (result != VK_SUCCESS) {
+            return callError("vkCreateImageView", result);
+        }
+        VkFramebufferCreateInfo target{};
+        target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+        target.renderPass = renderPass_;
+        target.attachmentCount = 1;
+        target.pAttachments = &image.view;
+        target.width = extent_.width;
+        target.height = extent_.height;
+        target.layers = 1;
+        result = vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer);
+        if (result != VK_SUCCESS) {
+            return callError("vkCreateFramebuffer", result);
+        }
+        VkSemaphoreCreateInfo semaphore{};
+        semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+        result = vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn);
+        if (result != VK_SUCCESS) {
+            return callError("vkCreateSemaphore", result);
+        }
+    }
+    return okStatus();
+}
+
 Status Presenter::createSwapchain() {
     VkDevice device = context_.handles().device;
     VkSurfaceCapabilitiesKHR can{};
@@ -172,42 +213,7 @@ Status Presenter::createSwapchain() {
     if (result != VK_SUCCESS) {
         return callError("vkCreateSwapchainKHR", result);
     }
-    std::uint32_t count = 0;
-    vkGetSwapchainImagesKHR(device, swapchain_, &count, nullptr);
-    std::vector<VkImage> images(count);
-    vkGetSwapchainImagesKHR(device, swapchain_, &count, images.data());
-    for (VkImage handle : images) {
-        Image& image = images_.emplace_back();
-        image.handle = handle;
-        VkImageViewCreateInfo view{};
-        view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-        view.image = handle;
-        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view.format = format_.format;
-        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        result = vkCreateImageView(device, &view, nullptr, &image.view);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateImageView", result);
-        }
-        VkFramebufferCreateInfo target{};
-        target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
-        target.renderPass = renderPass_;
-        target.attachmentCount = 1;
-        target.pAttachments = &image.view;
-        target.width = extent_.width;
-        target.height = extent_.height;
-        target.layers = 1;
-        result = vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateFramebuffer", result);
-        }
-        VkSemaphoreCreateInfo semaphore{};
-        semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        result = vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateSemaphore", result);
-        }
-    }
+    GLINT_TRY_DO(addImages());
     stale_ = false;
     return okStatus();
 }

@@ -70,6 +70,8 @@ private:
     Status createRenderPass();
     Status createFrames();
     Status createSwapchain();
+    // Adds what is drawn to for each image of the swapchain.
+    Status addImages();
     void destroySwapchain();
 
     struct InFlight {

@@ -173,8 +173,7 @@ void Script::clickControl(const std::string& control, bool withControlKey) {
     if (withControlKey) {
         key("Control_L", true);
     }
-    button(1, true);
-    button(1, false);
+    click();
     if (withControlKey) {
         key("Control_L", false);
     }
@@ -182,212 +181,244 @@ void Script::clickControl(const std::string& control, bool withControlKey) {
 
 Status Script::parse(const std::string& text) {
     std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
+    for (std::string written; std::getline(lines, written);) {
         ++line_;
-        lines_.push_back(line);
-        std::istringstream stream(line);
-        std::vector<std::string> words;
+        lines_.push_back(written);
+        std::istringstream stream(written);
+        Line line;
         for (std::string word; stream >> word && word.front() != '#';) {
-            words.push_back(word);
+            if (const std::optional<double> number = numberIn(word); number && !line.words.empty()) {
+                line.numbers.push_back(*number);
+            }
+            line.words.push_back(word);
         }
-        if (words.empty()) {
+        if (line.words.empty()) {
             continue;
         }
-        // The text after the second word, with its blanks.
-        std::string rest;
-        if (words.size() > 2) {
-            const std::size_t second = line.find(words[1], line.find(words[0]) + words[0].size());
-            rest = line.substr(line.find_first_not_of(' ', second + words[1].size()));
+        if (line.words.size() > 2) {
+            const std::size_t second =
+                written.find(line.words[1], written.find(line.words[0]) + line.words[0].size());
+            line.rest = written.substr(written.find_first_not_of(' ', second + line.words[1].size()));
         }
-        GLINT_TRY_DO(parseLine(words, rest));
+        if (!addInput(line) && !addOther(line)) {
+            return scriptError(file_, line_, "is no step of a script: " + line.words[0]);
+        }
     }
     return okStatus();
 }
 
-Status Script::parseLine(const std::vector<std::string>& words, const std::string& rest) {
-    const std::string& what = words[0];
-    const std::size_t count = words.size() - 1;
-    std::vector<double> numbers;
-    for (std::size_t i = 1; i < words.size(); ++i) {
-        if (const std::optional<double> number = numberIn(words[i])) {
-            numbers.push_back(*number);
-        }
+void Script::waitUntil(const std::function<bool()>& test) {
+    act([test]() -> Result<bool> { return test(); });
+}
+
+void Script::pause(double seconds) {
+    act([until = std::optional<base::Clock::time_point>(), ms = 1000.0 * seconds]() mutable -> Result<bool> {
+        until = until.value_or(base::Clock::now());
+        return base::millisecondsSince(*until) >= ms;
+    });
+}
+
+void Script::click() {
+    button(1, true);
+    button(1, false);
+}
+
+bool Script::addWait(const Line& line) {
+    const std::string& what = line.words[1];
+    if (what == "complete" || what == "failed") {
+        frames(kSettle);
+        waitUntil(what == "failed" ? host_.hasFailed : host_.isComplete);
+    } else if (what == "frames" && line.numbers.size() == 1) {
+        frames(static_cast<std::uint64_t>(line.numbers[0]));
+    } else if (what == "control" && line.words.size() > 2) {
+        waitUntil([this, name = line.rest] { return host_.controls->find(name).has_value(); });
+    } else {
+        return false;
     }
-    const auto withArguments = [&](std::size_t wanted) { return count == wanted; };
-    if (what == "wait" && count >= 1) {
-        if (words[1] == "complete" || words[1] == "failed") {
-            frames(kSettle);
-            const std::function<bool()> test = words[1] == "failed" ? host_.hasFailed : host_.isComplete;
-            act([test]() -> Result<bool> { return test(); });
-            return okStatus();
+    return true;
+}
+
+void Script::addKeys(const Line& line) {
+    for (std::size_t i = 1; i < line.words.size(); ++i) {
+        std::vector<std::string> together;
+        std::istringstream names(line.words[i]);
+        for (std::string name; std::getline(names, name, '+');) {
+            together.push_back(name == "ctrl" ? "Control_L" : name == "shift" ? "Shift_L" : name);
         }
-        if (words[1] == "frames" && numbers.size() == 1) {
-            frames(static_cast<std::uint64_t>(numbers[0]));
-            return okStatus();
+        keys(together);
+    }
+}
+
+void Script::addDrag(const std::vector<double>& numbers) {
+    const auto number = static_cast<unsigned>(numbers.size() == 5 ? numbers[4] : 1.0);
+    moveTo(numbers[0], numbers[1]);
+    button(number, true);
+    constexpr int kParts = 4;
+    for (int part = 1; part <= kParts; ++part) {
+        const double share = static_cast<double>(part) / kParts;
+        moveTo(std::lerp(numbers[0], numbers[2], share), std::lerp(numbers[1], numbers[3], share));
+    }
+    button(number, false);
+}
+
+void Script::addWheel(double turns) {
+    const unsigned wheel = turns > 0 ? 4 : 5;
+    for (int i = 0; i < std::abs(static_cast<int>(turns)); ++i) {
+        button(wheel, true);
+        button(wheel, false);
+    }
+}
+
+void Script::addChoice(const std::vector<std::string>& words) {
+    clickControl(words[1]);
+    for (std::size_t i = 2; i < words.size(); ++i) {
+        clickControl(words[1] + "=" + words[i]);
+    }
+    act([this, first = words[1] + "=" + words[2]]() -> Result<bool> {
+        if (host_.controls->find(first)) {
+            // A list of several words stays open.
+            input_.key("Escape", true);
         }
-        if (words[1] == "control" && count >= 2) {
-            act([this, name = rest]() -> Result<bool> { return host_.controls->find(name).has_value(); });
-            return okStatus();
+        return true;
+    });
+    frames(kSettle);
+    key("Escape", false);
+}
+
+void Script::addText(const std::string& control, const std::string& text, bool isNumber) {
+    clickControl(control, isNumber);
+    keys({"Control_L", "a"});
+    typeText(text);
+    keys({"Return"});
+}
+
+void Script::addSize(int width, int height) {
+    act([this, width, height]() -> Result<bool> {
+        glfwSetWindowSize(host_.window, width, height);
+        return true;
+    });
+    // Clicks before the window has its size would hit something else.
+    waitUntil([this, width, height] {
+        int nowWide = 0;
+        int nowHigh = 0;
+        glfwGetWindowSize(host_.window, &nowWide, &nowHigh);
+        return nowWide == width && nowHigh == height;
+    });
+    frames(kSettle);
+}
+
+void Script::addMinimising(bool minimises) {
+    if (minimises) {
+        frames(kSettle);
+    }
+    act([this, minimises]() -> Result<bool> {
+        if (!input_.setMinimised(minimises)) {
+            (minimises ? glfwIconifyWindow : glfwRestoreWindow)(host_.window);
         }
-    } else if (what == "pause" && numbers.size() == 1) {
-        act([until = std::optional<base::Clock::time_point>(),
-             ms = 1000.0 * numbers[0]]() mutable -> Result<bool> {
-            until = until.value_or(base::Clock::now());
-            return base::millisecondsSince(*until) >= ms;
-        });
-        return okStatus();
-    } else if (what == "key" && count >= 1) {
-        for (std::size_t i = 1; i < words.size(); ++i) {
-            std::vector<std::string> together;
-            std::istringstream names(words[i]);
-            for (std::string name; std::getline(names, name, '+');) {
-                together.push_back(name == "ctrl" ? "Control_L" : name == "shift" ? "Shift_L" : name);
-            }
-            keys(together);
+        if (!minimises) {
+            glfwFocusWindow(host_.window);
         }
-        return okStatus();
+        return true;
+    });
+    if (!minimises) {
+        frames(kSettle);
+    }
+}
+
+void Script::addCopy(const std::string& from, const std::string& to) {
+    act([from, to]() -> Result<bool> {
+        std::error_code error;
+        std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+        return error ? Result<bool>(makeError("window-script", to, error.message())) : true;
+    });
+}
+
+void Script::addPicture(const std::string& file) {
+    frames(kSettle);
+    act([this, file]() -> Result<bool> {
+        std::optional<X11Input::Pixels> picture = input_.picture();
+        if (!picture) {
+            return makeError("window-script", "", "the X server gives no picture of the window");
+        }
+        GLINT_TRY_DO(image::writeImage(
+            file, image::DisplayImage{picture->width, picture->height, std::move(picture->pixels)}));
+        return true;
+    });
+}
+
+bool Script::addInput(const Line& line) {
+    const std::string& what = line.words[0];
+    const std::vector<double>& numbers = line.numbers;
+    const std::size_t count = line.words.size() - 1;
+    if (what == "key" && count >= 1) {
+        addKeys(line);
     } else if (what == "hold" && count == 2 && numbers.size() == 1) {
-        key(words[1], true);
-        act([until = std::optional<base::Clock::time_point>(),
-             ms = 1000.0 * numbers[0]]() mutable -> Result<bool> {
-            until = until.value_or(base::Clock::now());
-            return base::millisecondsSince(*until) >= ms;
-        });
-        key(words[1], false);
-        return okStatus();
+        key(line.words[1], true);
+        pause(numbers[0]);
+        key(line.words[1], false);
     } else if (what == "type" && count >= 1) {
-        typeText(words[1] + (rest.empty() ? "" : " " + rest));
-        return okStatus();
+        typeText(line.text());
     } else if (what == "move" && numbers.size() == 2) {
         moveTo(numbers[0], numbers[1]);
-        return okStatus();
     } else if (what == "click" && numbers.size() == 2) {
         moveTo(numbers[0], numbers[1]);
-        button(1, true);
-        button(1, false);
-        return okStatus();
+        click();
     } else if (what == "click" && count >= 1) {
-        clickControl(words[1] + (rest.empty() ? "" : " " + rest));
-        return okStatus();
+        clickControl(line.text());
     } else if (what == "drag" && (numbers.size() == 4 || numbers.size() == 5)) {
-        const auto number = static_cast<unsigned>(numbers.size() == 5 ? numbers[4] : 1.0);
-        moveTo(numbers[0], numbers[1]);
-        button(number, true);
-        constexpr int kParts = 4;
-        for (int part = 1; part <= kParts; ++part) {
-            const double share = static_cast<double>(part) / kParts;
-            moveTo(std::lerp(numbers[0], numbers[2], share), std::lerp(numbers[1], numbers[3], share));
-        }
-        button(number, false);
-        return okStatus();
+        addDrag(numbers);
     } else if (what == "wheel" && numbers.size() == 1) {
-        for (int i = 0; i < std::abs(static_cast<int>(numbers[0])); ++i) {
-            button(numbers[0] > 0 ? 4 : 5, true);
-            button(numbers[0] > 0 ? 4 : 5, false);
-        }
-        return okStatus();
+        addWheel(numbers[0]);
     } else if (what == "choose" && count >= 2) {
-        clickControl(words[1]);
-        for (std::size_t i = 2; i < words.size(); ++i) {
-            clickControl(words[1] + "=" + words[i]);
-        }
-        act([this, first = words[1] + "=" + words[2]]() -> Result<bool> {
-            if (host_.controls->find(first)) {
-                // A list of several words stays open.
-                input_.key("Escape", true);
-            }
-            return true;
-        });
-        frames(kSettle);
-        key("Escape", false);
-        return okStatus();
-    } else if (what == "number" && withArguments(2)) {
-        clickControl(words[1], true);
-        keys({"Control_L", "a"});
-        typeText(words[2]);
-        keys({"Return"});
-        return okStatus();
+        addChoice(line.words);
+    } else if (what == "number" && count == 2) {
+        addText(line.words[1], line.words[2], true);
     } else if (what == "enter" && count >= 2) {
-        clickControl(words[1]);
-        keys({"Control_L", "a"});
-        typeText(rest);
-        keys({"Return"});
-        return okStatus();
-    } else if (what == "size" && numbers.size() == 2) {
-        act([this, numbers]() -> Result<bool> {
-            glfwSetWindowSize(host_.window, static_cast<int>(numbers[0]), static_cast<int>(numbers[1]));
-            return true;
-        });
-        // Clicks before the window has its size would hit something else.
-        act([this, numbers]() -> Result<bool> {
-            int width = 0;
-            int height = 0;
-            glfwGetWindowSize(host_.window, &width, &height);
-            return width == static_cast<int>(numbers[0]) && height == static_cast<int>(numbers[1]);
-        });
-        frames(kSettle);
-        return okStatus();
-    } else if (what == "minimise" && withArguments(0)) {
-        frames(kSettle);
-        act([this]() -> Result<bool> {
-            if (!input_.setMinimised(true)) {
-                glfwIconifyWindow(host_.window);
-            }
-            return true;
-        });
-        return okStatus();
-    } else if (what == "restore" && withArguments(0)) {
-        act([this]() -> Result<bool> {
-            if (!input_.setMinimised(false)) {
-                glfwRestoreWindow(host_.window);
-            }
-            glfwFocusWindow(host_.window);
+        addText(line.words[1], line.rest, false);
+    } else {
+        return false;
+    }
+    return true;
+}
+
+bool Script::addOther(const Line& line) {
+    const std::string& what = line.words[0];
+    const std::vector<std::string>& words = line.words;
+    const std::size_t count = words.size() - 1;
+    if (what == "wait" && count >= 1) {
+        return addWait(line);
+    }
+    if (what == "pause" && line.numbers.size() == 1) {
+        pause(line.numbers[0]);
+    } else if (what == "size" && line.numbers.size() == 2) {
+        addSize(static_cast<int>(line.numbers[0]), static_cast<int>(line.numbers[1]));
+    } else if ((what == "minimise" || what == "restore") && count == 0) {
+        addMinimising(what == "minimise");
+    } else if (what == "copy" && count == 2) {
+        addCopy(words[1], words[2]);
+    } else if (what == "drop" && count == 1) {
+        act([this, file = words[1]]() -> Result<bool> {
+            host_.drop(file);
             return true;
         });
         frames(kSettle);
-        return okStatus();
-    } else if (what == "copy" && withArguments(2)) {
-        act([words]() -> Result<bool> {
-            std::error_code error;
-            std::filesystem::copy_file(words[1], words[2], std::filesystem::copy_options::overwrite_existing,
-                                       error);
-            return error ? Result<bool>(makeError("window-script", words[2], error.message())) : true;
-        });
-        return okStatus();
-    } else if (what == "drop" && withArguments(1)) {
-        act([this, words]() -> Result<bool> {
-            host_.drop(words[1]);
+    } else if (what == "picture" && count == 1) {
+        addPicture(words[1]);
+    } else if (what == "report" && count == 1) {
+        frames(kSettle);
+        act([this, file = words[1]]() -> Result<bool> {
+            GLINT_TRY_DO(host_.report(file));
             return true;
         });
-        frames(kSettle);
-        return okStatus();
-    } else if (what == "picture" && withArguments(1)) {
-        frames(kSettle);
-        act([this, words]() -> Result<bool> {
-            std::optional<X11Input::Pixels> picture = input_.picture();
-            if (!picture) {
-                return makeError("window-script", "", "the X server gives no picture of the window");
-            }
-            const Status written = image::writeImage(
-                words[1], image::DisplayImage{picture->width, picture->height, std::move(picture->pixels)});
-            return written ? Result<bool>(true) : written.error();
-        });
-        return okStatus();
-    } else if (what == "report" && withArguments(1)) {
-        frames(kSettle);
-        act([this, words]() -> Result<bool> {
-            const Status written = host_.report(words[1]);
-            return written ? Result<bool>(true) : written.error();
-        });
-        return okStatus();
-    } else if (what == "quit" && withArguments(0)) {
+    } else if (what == "quit" && count == 0) {
         act([this]() -> Result<bool> {
             glfwSetWindowShouldClose(host_.window, GLFW_TRUE);
             return true;
         });
-        return okStatus();
+    } else {
+        return false;
     }
-    return scriptError(file_, line_, "is no step of a script: " + what);
+    return true;
 }
 
 bool Script::isDone() const {

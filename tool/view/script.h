@@ -70,8 +70,35 @@ public:
 private:
     Script(std::string file, const ScriptHost& host);
     Status parse(const std::string& text);
-    Status parseLine(const std::vector<std::string>& words, const std::string& rest);
+    // A line of the file.
+    struct Line {
+        std::vector<std::string> words;
+        std::vector<double> numbers;  // among the words behind the first
+        std::string rest;             // the text behind the second word, with its blanks
+
+        // The text behind the first word.
+        std::string text() const {
+            return words[1] + (rest.empty() ? "" : " " + rest);
+        }
+    };
+    // These add the parts of a step. They return false for lines that are none.
+    bool addInput(const Line& line);
+    bool addOther(const Line& line);
+    bool addWait(const Line& line);
+    void addKeys(const Line& line);
+    void addDrag(const std::vector<double>& numbers);
+    void addWheel(double turns);
+    void addChoice(const std::vector<std::string>& words);
+    void addText(const std::string& control, const std::string& text, bool isNumber);
+    void addSize(int width, int height);
+    void addMinimising(bool minimises);
+    void addCopy(const std::string& from, const std::string& to);
+    void addPicture(const std::string& file);
+    // These add single parts.
     void act(Act act);
+    void waitUntil(const std::function<bool()>& test);
+    void pause(double seconds);
+    void click();
     void frames(std::uint64_t count);
     void moveTo(double x, double y);
     void button(unsigned number, bool down);

@@ -116,17 +116,100 @@ bool isWordOf(const std::vector<SettingWord>& words, const std::string& text) {
 
 }  // namespace
 
+std::optional<std::string> SettingsPanel::drawList(Controls& controls, const Shown& shown) {
+    const std::string& name = shown.name;
+    const bool isList = shown.row.values.form == ValueForm::List;
+    std::optional<std::string> next;
+    if (!ImGui::BeginCombo(shown.label.c_str(), shown.present.c_str(), ImGuiComboFlags_HeightLarge)) {
+        controls.mark(name);
+        return next;
+    }
+    const std::vector<std::string> chosen = splitList(shown.present);
+    for (const SettingWord& word : shown.words) {
+        const bool isChosen = std::ranges::find(chosen, word.name) != chosen.end();
+        const ImGuiSelectableFlags flags =
+            isList ? ImGuiSelectableFlags_DontClosePopups : ImGuiSelectableFlags_None;
+        if (ImGui::Selectable(word.name.c_str(), isChosen, flags)) {
+            next = isList ? toggled(shown.present, word.name, shown.words) : word.name;
+        }
+        controls.mark(name + "=" + word.name);
+        tip(word.what.empty() ? word.name : word.what);
+    }
+    if (shown.isNumber) {
+        std::string typed = isWordOf(shown.words, shown.typed) ? "" : shown.typed;
+        ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6.0F);
+        if (ImGui::InputText("number", &typed, ImGuiInputTextFlags_EnterReturnsTrue)) {
+            next = typed;
+            ImGui::CloseCurrentPopup();
+        }
+        controls.mark(name + "=");
+    }
+    closeByEscape();
+    ImGui::EndCombo();
+    return next;
+}
+
+std::optional<std::string> SettingsPanel::drawValue(Controls& controls, const Shown& shown) {
+    const Descriptor& row = shown.row;
+    std::optional<std::string> next;
+    if (row.values.form == ValueForm::Switch) {
+        bool on = shown.present == "on";
+        if (ImGui::Checkbox(shown.label.c_str(), &on)) {
+            next = on ? "on" : "off";
+        }
+        controls.mark(shown.name);
+        return next;
+    }
+    if (row.values.form != ValueForm::Text && !(shown.isNumber && shown.words.empty())) {
+        return drawList(controls, shown);
+    }
+    // Sliders and texts count when they are let go.
+    if (shown.isNumber) {
+        if (const std::optional<std::string> moved =
+                drawNumber(shown.label.c_str(), row, shown.present, shown.typed)) {
+            drafts_[shown.name] = *moved;
+            next = isLive(row) ? moved : next;
+        }
+    } else if (std::string typed = shown.typed; ImGui::InputText(shown.label.c_str(), &typed)) {
+        drafts_[shown.name] = typed;
+    }
+    controls.mark(shown.name);
+    const auto edited = drafts_.find(shown.name);
+    if (edited != drafts_.end() && !ImGui::IsItemActive()) {
+        next = edited->second;
+        drafts_.erase(edited);
+    }
+    return next;
+}
+
+bool SettingsPanel::take(const Descriptor& row, const std::string& next, compiler::Settings& settings) {
+    complaint_.clear();
+    const bool isSwitch = row.values.form == ValueForm::Switch;
+    const bool isList = row.values.form == ValueForm::List;
+    for (const std::string& word : isList ? splitList(next) : std::vector<std::string>{next}) {
+        complaint_ = isSwitch ? "" : complaintAbout(row, word);
+        if (!complaint_.empty()) {
+            complaint_ = fmt::format("{}: {}", row.name, complaint_);
+            return false;
+        }
+    }
+    row.values.set(settings, next);
+    return true;
+}
+
 bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler::Settings& settings,
                             const compiler::BenchFacts& facts) {
     static const compiler::Settings kUsual;
     const std::string name(row.name);
-    const std::string label = "##" + name;
     const std::string present = row.values.text(settings);
+    const auto draft = drafts_.find(name);
+    const bool isNumber = row.values.form == ValueForm::Whole || row.values.form == ValueForm::Real;
+    const Shown shown{
+        row,          name,    "##" + name, present, draft == drafts_.end() ? present : draft->second,
+        wordsOf(row), isNumber};
     const bool differs = present != row.values.text(kUsual);
     const std::string locked = lockedBy(row, settings);
     const std::string idle = compiler::withoutEffect(row.name, facts);
-    const std::vector<SettingWord> words = wordsOf(row);
-    std::optional<std::string> next;
 
     ImGui::AlignTextToFramePadding();
     const ImVec4 color = differs                          ? ImVec4(0.55F, 0.80F, 1.0F, 1.0F)
@@ -139,118 +222,17 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
     ImGui::BeginDisabled(!locked.empty());
     const float resetWidth = ImGui::GetFrameHeight();
     ImGui::SetNextItemWidth(-resetWidth - ImGui::GetStyle().ItemSpacing.x);
-    const auto draft = drafts_.find(name);
-    const std::string shown = draft == drafts_.end() ? present : draft->second;
-    const bool isNumber = row.values.form == ValueForm::Whole || row.values.form == ValueForm::Real;
-    switch (row.values.form) {
-        case ValueForm::Switch: {
-            bool on = present == "on";
-            if (ImGui::Checkbox(label.c_str(), &on)) {
-                next = on ? "on" : "off";
-            }
-            controls.mark(name);
-            break;
-        }
-        case ValueForm::Word:
-        case ValueForm::List:
-            if (ImGui::BeginCombo(label.c_str(), present.c_str(), ImGuiComboFlags_HeightLarge)) {
-                const std::vector<std::string> chosen = splitList(present);
-                for (const SettingWord& word : words) {
-                    const bool isChosen = std::ranges::find(chosen, word.name) != chosen.end();
-                    const ImGuiSelectableFlags flags = row.values.form == ValueForm::List
-                                                           ? ImGuiSelectableFlags_DontClosePopups
-                                                           : ImGuiSelectableFlags_None;
-                    if (ImGui::Selectable(word.name.c_str(), isChosen, flags)) {
-                        next = row.values.form == ValueForm::List ? toggled(present, word.name, words)
-                                                                  : word.name;
-                    }
-                    controls.mark(name + "=" + word.name);
-                    tip(word.what.empty() ? word.name : word.what);
-                }
-                closeByEscape();
-                ImGui::EndCombo();
-            } else {
-                controls.mark(name);
-            }
-            break;
-        case ValueForm::Whole:
-        case ValueForm::Real:
-            if (!words.empty()) {
-                // Words and numbers: the words, and below them a field for numbers.
-                if (ImGui::BeginCombo(label.c_str(), present.c_str())) {
-                    for (const SettingWord& word : words) {
-                        if (ImGui::Selectable(word.name.c_str(), present == word.name)) {
-                            next = word.name;
-                        }
-                        controls.mark(name + "=" + word.name);
-                        tip(word.what.empty() ? word.name : word.what);
-                    }
-                    std::string typed = isWordOf(words, shown) ? "" : shown;
-                    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6.0F);
-                    if (ImGui::InputText("number", &typed, ImGuiInputTextFlags_EnterReturnsTrue)) {
-                        next = typed;
-                        ImGui::CloseCurrentPopup();
-                    }
-                    controls.mark(name + "=");
-                    closeByEscape();
-                    ImGui::EndCombo();
-                } else {
-                    controls.mark(name);
-                }
-                break;
-            }
-            if (const std::optional<std::string> moved = drawNumber(label.c_str(), row, present, shown)) {
-                drafts_[name] = *moved;
-                if (isLive(row)) {
-                    next = *moved;
-                }
-            }
-            controls.mark(name);
-            break;
-        case ValueForm::Text: {
-            std::string typed = shown;
-            if (ImGui::InputText(label.c_str(), &typed)) {
-                drafts_[name] = typed;
-            }
-            controls.mark(name);
-            break;
-        }
-    }
-    // Sliders and texts count when they are let go.
-    if ((isNumber && words.empty()) || row.values.form == ValueForm::Text) {
-        const auto edited = drafts_.find(name);
-        if (edited != drafts_.end() && !ImGui::IsItemActive()) {
-            next = edited->second;
-            drafts_.erase(edited);
-        }
-    }
+    std::optional<std::string> next = drawValue(controls, shown);
     ImGui::EndDisabled();
     if (differs && locked.empty()) {
         ImGui::SameLine(0.0F, ImGui::GetStyle().ItemSpacing.x);
-        if (ImGui::Button(("x" + label).c_str(), {resetWidth, 0.0F})) {
+        if (ImGui::Button(("x" + shown.label).c_str(), {resetWidth, 0.0F})) {
             next = row.values.text(kUsual);
         }
         controls.mark("reset:" + name);
         tip("back to " + row.values.text(kUsual));
     }
-    if (!next || *next == present) {
-        return false;
-    }
-    complaint_.clear();
-    if (row.values.form == ValueForm::Switch) {
-        row.values.set(settings, *next);
-        return true;
-    }
-    for (const std::string& word :
-         row.values.form == ValueForm::List ? splitList(*next) : std::vector<std::string>{*next}) {
-        complaint_ = complaintAbout(row, word);
-        if (!complaint_.empty()) {
-            complaint_ = fmt::format("{}: {}", row.name, complaint_);
-            return false;
-        }
-    }
-    row.values.set(settings, *next);
-    return true;
+    return next && *next != present && take(row, *next, settings);
 }
 
 bool SettingsPanel::draw(Controls& controls, compiler::Settings& settings,

@@ -1,4 +1,6 @@
 // A program that evaluates measurements of its own, and asks which settings are worth measuring.
+#include "settings/configuration.h"
+
 #include <glint/measure/settings.h>
 #include <glint/measure/statistics.h>
 #include <glint/measure/sweep.h>

@@ -45,25 +45,7 @@ measure::Candidate parseCandidate(const std::string& text) {
     return {text.substr(0, sign), text.substr(sign + 1)};
 }
 
-}  // namespace
-
-void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
-    // settleBench() replaces 0 by a value that depends on --quick.
-    arguments.rounds = 0;
-    arguments.referenceError = 0.0;
-    arguments.referenceSamples = 0;
-    arguments.render.renderer.width = 480;
-    arguments.render.renderer.height = 270;
-    arguments.render.samples = 4;
-    addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the results; index.html, bench.json,\n"
-            "settings.json and images/, with --calibrate\n"
-            "calibration.json; those of an earlier run are replaced, and\n"
-            "any other content refused; required but for --device-report");
-    addSceneOptions(command, arguments.render);
-    // Without --calibrate, checkCalibrateOptions() requires it.
-    command.get_option("SCENE")->required(false)->description(
-        "the scene, .gltf or .glb; none with --calibrate, optional\nwith --device-report");
+void addSweepOptions(CLI::App& command, BenchArguments& arguments) {
     const std::string sweep = "Sweep";
     addFlag(command, "--quick", arguments.quick,
             fmt::format("fewer values, pairs and rounds; a less certain reference,\n"
@@ -96,6 +78,9 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
              "measure this package of the scene, too; may be repeated")
         .allow_extra_args(false)
         ->group(sweep);
+}
+
+void addErrorOptions(CLI::App& command, BenchArguments& arguments) {
     const std::string errors = "Errors";
     addChoice(command, "--metric", arguments.metric, {"relMse", "trimmed", "rmse", "flip"},
               "the error by which configurations are ordered; trimmed:\n"
@@ -127,6 +112,29 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     addReal(command, "--max-error", arguments.maxError, 0.0, 1e9,
             "write the fastest settings with at most this error; in the\nmetric (0 to 1e9)")
         .group(advice);
+}
+
+}  // namespace
+
+void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
+    // settleBench() replaces 0 by a value that depends on --quick.
+    arguments.rounds = 0;
+    arguments.referenceError = 0.0;
+    arguments.referenceSamples = 0;
+    arguments.render.renderer.width = 480;
+    arguments.render.renderer.height = 270;
+    arguments.render.samples = 4;
+    addText(command, "-o,--output", arguments.output, "DIR",
+            "folder of the results; index.html, bench.json,\n"
+            "settings.json and images/, with --calibrate\n"
+            "calibration.json; those of an earlier run are replaced, and\n"
+            "any other content refused; required but for --device-report");
+    addSceneOptions(command, arguments.render);
+    // Without --calibrate, checkCalibrateOptions() requires it.
+    command.get_option("SCENE")->required(false)->description(
+        "the scene, .gltf or .glb; none with --calibrate, optional\nwith --device-report");
+    addSweepOptions(command, arguments);
+    addErrorOptions(command, arguments);
     addCalibrateOptions(command, arguments.calibrate);
 }
 

@@ -4,6 +4,7 @@
 
 #include "cli/compile/depfile.h"
 #include "emit/compile.h"
+#include "resolve/build.h"
 
 #include <glint/result.h>
 

@@ -48,4 +48,18 @@ struct CompiledPackage {
     double tablesMs = 0.0;
 };
 
+// A text to compile, of a module or a part of modules. Several modules of a package may have the same text.
+struct PlannedModule {
+    std::string file;                // without a suffix: nameOfModuleText()
+    std::string name;                // name of the first module that has the text, for people
+    std::string text;                // as made by makeModuleText()
+    std::vector<std::string> parts;  // files that have to be compiled before it
+};
+
+// The contents of a package before anything is compiled.
+struct PackagePlan {
+    Plan plan;
+    std::vector<PlannedModule> modules;
+};
+
 }  // namespace glint::compiler

@@ -276,6 +276,47 @@ Status checkScene(const gltf::Scene& scene) {
     return okStatus();
 }
 
+namespace {
+
+PackageHeader makeTablesHeader(const gltf::SceneList& scenes, const Plan& plan,
+                               std::span<const CompiledModule> modules, const CompileSettings& settings,
+                               const MaterialLayout& layout) {
+    PackageHeader header{};
+    std::memcpy(header.magic, kMagic, sizeof header.magic);
+    header.version = kVersion;
+    header.strategies = settings.strategies;
+    header.tracers = settings.tracers;
+    header.shadows = settings.shadows;
+    header.hitRecord = settings.hitRecord;
+    const bool hasSamples = settings.passes == package::Passes::Frame;
+    header.sampleRecord = hasSamples ? settings.sampleRecord : package::SampleRecordFormat::Full;
+    header.environmentMap = settings.environmentMap ? 1 : 0;
+    header.positionFetch = settings.positionFetch ? 1 : 0;
+    header.lightSamples = settings.lightSamples.value_or(0);
+    header.skyLight = settings.skyLight == SkyLight::On ? 1 : 0;
+    header.sizedLights = settings.sizedLights == SizedLights::On ? 1 : 0;
+    header.precision = settings.precision;
+    header.passes = settings.passes;
+    header.answer = settings.answer;
+    header.bindings = settings.bindings;
+    header.maxBounces = settings.maxBounces;
+    header.fallback = settings.plan.fallback ? 1 : 0;
+    header.textureLevels = settings.textureLevels ? 1 : 0;
+    header.trustTextures = std::ranges::any_of(scenes.scenes(), &gltf::Scene::trustsTextures) ? 1 : 0;
+    header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
+    header.alpha = settings.plan.keys.alpha;
+    header.shadowThrough = settings.shadowThrough;
+    header.early = std::ranges::any_of(
+        modules, [](const CompiledModule& module) { return module.key.role == ModuleRole::LightingEdit; });
+    header.materialTextureOffset = layout.textureOffset;
+    header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
+    header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
+    header.interopHash = static_cast<std::uint32_t>(interopSourceHash());
+    return header;
+}
+
+}  // namespace
+
 base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
                        std::span<const CompiledModule> modules, const CompileSettings& settings) {
     StringTable strings;
@@ -333,38 +374,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
         writer.add(SectionKind::Opacity, std::vector{*opacity});
     }
 
-    PackageHeader header{};
-    std::memcpy(header.magic, kMagic, sizeof header.magic);
-    header.version = kVersion;
-    header.strategies = settings.strategies;
-    header.tracers = settings.tracers;
-    header.shadows = settings.shadows;
-    header.hitRecord = settings.hitRecord;
-    const bool hasSamples = settings.passes == package::Passes::Frame;
-    header.sampleRecord = hasSamples ? settings.sampleRecord : package::SampleRecordFormat::Full;
-    header.environmentMap = settings.environmentMap ? 1 : 0;
-    header.positionFetch = settings.positionFetch ? 1 : 0;
-    header.lightSamples = settings.lightSamples.value_or(0);
-    header.skyLight = settings.skyLight == SkyLight::On ? 1 : 0;
-    header.sizedLights = settings.sizedLights == SizedLights::On ? 1 : 0;
-    header.precision = settings.precision;
-    header.passes = settings.passes;
-    header.answer = settings.answer;
-    header.bindings = settings.bindings;
-    header.maxBounces = settings.maxBounces;
-    header.fallback = settings.plan.fallback ? 1 : 0;
-    header.textureLevels = settings.textureLevels ? 1 : 0;
-    header.trustTextures = std::ranges::any_of(scenes.scenes(), &gltf::Scene::trustsTextures) ? 1 : 0;
-    header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
-    header.alpha = settings.plan.keys.alpha;
-    header.shadowThrough = settings.shadowThrough;
-    header.early = std::ranges::any_of(
-        modules, [](const CompiledModule& module) { return module.key.role == ModuleRole::LightingEdit; });
-    header.materialTextureOffset = layout.textureOffset;
-    header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
-    header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
-    header.interopHash = static_cast<std::uint32_t>(interopSourceHash());
-    return writer.finish(header);
+    return writer.finish(makeTablesHeader(scenes, plan, modules, settings, layout));
 }
 
 }  // namespace glint::compiler

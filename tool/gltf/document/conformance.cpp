@@ -20,14 +20,6 @@ namespace glint::gltf {
 
 namespace {
 
-// Extensions of materials are declared (shaders/materials). KHR_texture_basisu is listed even if this build
-// does not decode it. textures.cpp decides about each texture.
-constexpr auto kSupported = std::to_array<std::string_view>(
-    {"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "EXT_texture_webp", "KHR_animation_pointer",
-     "KHR_draco_mesh_compression", "KHR_lights_punctual", "KHR_materials_variants", "KHR_mesh_quantization",
-     "KHR_meshopt_compression", "KHR_node_visibility", "KHR_texture_basisu", "KHR_texture_transform",
-     "MSFT_texture_dds"});
-
 // Ratified or registered extensions whose data a renderer may ignore even if a file requires them.
 constexpr auto kNoPicture = std::to_array<std::string_view>(
     {"AGI_stk_metadata", "EXT_instance_features", "EXT_mesh_features", "EXT_mesh_manifold",
@@ -465,7 +457,7 @@ void checkPrimitives(Report& report, const Json& root) {
 bool isSupportedExtension(const materials::MaterialModel& model, std::string_view name) {
     const int object = model.findObject(name);
     return (object >= 0 && model.objects[static_cast<std::size_t>(object)].isExtension) ||
-           std::find(kSupported.begin(), kSupported.end(), name) != kSupported.end();
+           std::ranges::find(kKnownExtensions, name, &KnownExtension::name) != std::end(kKnownExtensions);
 }
 
 bool changesNoPicture(std::string_view name) {

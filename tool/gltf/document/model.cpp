@@ -20,6 +20,7 @@ using tinygltf::JsonParse;
 
 #undef tinygltf
 #include "gltf/document/model.h"
+#include "gltf/document/validate.h"
 
 #include <algorithm>
 #include <array>
@@ -53,25 +54,19 @@ Json& memberOf(Json& object, const char* name) {
     return member == object.end() ? none : *member;
 }
 
-// Extensions that the importer reads from the model. tinygltf takes ten times the memory of JSON for an
-// extension's values, so the content of others is left out, and extras, which are an application's own.
-constexpr std::array kRead{"EXT_mesh_gpu_instancing",
-                           "EXT_meshopt_compression",
-                           "EXT_texture_webp",
-                           "KHR_animation_pointer",
-                           "KHR_draco_mesh_compression",
-                           "KHR_lights_punctual",
-                           "KHR_materials_variants",
-                           "KHR_meshopt_compression",
-                           "KHR_node_visibility",
-                           "KHR_texture_basisu",
-                           "MSFT_texture_dds"};
+// tinygltf takes ten times the memory of JSON for an extension's values, so it gets only those that the
+// importer reads from its model.
+bool isInModel(std::string_view extension) {
+    const auto* const known = std::ranges::find(kKnownExtensions, extension, &KnownExtension::name);
+    return known != std::end(kKnownExtensions) && known->isInModel;
+}
 
+// Leaves out other extensions, and extras, which are an application's own.
 void leaveOutUnread(Json& object) {
     object.erase("extras");
     Json& extensions = memberOf(object, "extensions");
     for (auto extension = extensions.begin(); extension != extensions.end(); ++extension) {
-        if (!extensions.is_object() || std::ranges::find(kRead, extension.key()) == kRead.end()) {
+        if (!extensions.is_object() || !isInModel(extension.key())) {
             *extension = Json::object();
         }
     }

@@ -70,7 +70,7 @@ constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materi
 constexpr std::array kVariantMappings{objects("mappings", kVariantMapping, true)};
 constexpr double kMaxAttributeId = 4294967295.0;
 constexpr std::array kDracoMembers{index("bufferView", "/bufferViews", true),
-                            integers("attributes", 0.0, kMaxAttributeId, true)};
+                                   integers("attributes", 0.0, kMaxAttributeId, true)};
 constexpr std::array kPrimitiveExtensions{object(kDracoExtension, kDracoMembers),
                                           object("KHR_materials_variants", kVariantMappings)};
 // The rules of the attributes come before these, because packs add to them.

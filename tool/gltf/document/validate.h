@@ -13,6 +13,19 @@
 
 namespace glint::gltf {
 
+// An extension that the importer knows by itself; those of materials are declared (shaders/materials).
+struct KnownExtension {
+    std::string_view name;
+    bool isInModel = true;  // tinygltf reads its objects; else Glint reads them from the JSON
+};
+// KHR_texture_basisu is among them even if this build does not decode it; textures.cpp decides about each
+// texture.
+inline constexpr KnownExtension kKnownExtensions[] = {
+    {"EXT_mesh_gpu_instancing"}, {"EXT_meshopt_compression"},      {"EXT_texture_webp"},
+    {"KHR_animation_pointer"},   {"KHR_draco_mesh_compression"},   {"KHR_lights_punctual"},
+    {"KHR_materials_variants"},  {"KHR_mesh_quantization", false}, {"KHR_meshopt_compression"},
+    {"KHR_node_visibility"},     {"KHR_texture_basisu"},           {"KHR_texture_transform", false},
+    {"MSFT_texture_dds"}};
 inline constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 // The names of these extensions of buffer views and buffers, and of textures. The first that is given counts.
 inline constexpr const char* kMeshoptExtensions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};

@@ -1,8 +1,9 @@
 // Brings a scene and a compiled package together: checks whether they match, and loads a fresh package.
 #pragma once
 
-#include "emit/compile.h"
+#include "emit/package/compiled_package.h"
 #include "gltf/scene.h"
+#include "resolve/resolve.h"
 
 #include <glint/package.h>
 #include <glint/result.h>
@@ -10,6 +11,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+
+namespace glint::compiler {
+class ModuleCache;
+}  // namespace glint::compiler
 
 namespace glint::scene_view {
 
