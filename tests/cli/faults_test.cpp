@@ -286,7 +286,7 @@ TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
         const int calls = countCalls(command(), kind, "cache");
         ASSERT_GE(calls, 7);
         int noted = 0;
-        for (int at = 1; at <= calls; ++at) {
+        for (const int at : struckCalls(calls)) {
             forget();
             const Outcome outcome = runWithFault(command(), kind, at, "cache");
             ASSERT_EQ(outcome.exit, 0) << kind << at << outcome.err;
@@ -300,7 +300,7 @@ TEST_F(CompileFaults, CacheThatCannotBeWrittenFailsNothing) {
             ASSERT_EQ(run(command()).exit, 0) << kind << at;
             ASSERT_TRUE(isNew()) << kind << at;
         }
-        EXPECT_GE(noted, 6) << kind;
+        EXPECT_GE(noted, test::nightly() ? 6 : 1) << kind;
     }
 }
 

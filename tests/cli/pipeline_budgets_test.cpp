@@ -2,6 +2,7 @@
 // for it.
 #include "cli/command.h"
 #include "support/models.h"
+#include "support/nightly.h"
 
 #include <filesystem>
 #include <string>
@@ -67,8 +68,9 @@ TEST_F(PackageBudgets, OfSheenChairHold) {
 
 TEST_F(PackageBudgets, OfManyCasesHold) {
     const std::string script = std::string(GLINT_SOURCE_DIR) + "/benchmarks/make_synthetic_scene.py";
+    const std::string cases = test::nightly() ? "64" : "16";
     if (radvManifest().empty() ||
-        runProgram({"/usr/bin/python3", "-B", script, "scene", "--materials", "64", "--keys", "64"}).exit !=
+        runProgram({"/usr/bin/python3", "-B", script, "scene", "--materials", cases, "--keys", cases}).exit !=
             0) {
         GTEST_SKIP() << "needs RADV and Python";
     }

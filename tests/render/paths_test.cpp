@@ -6,6 +6,7 @@
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/nightly.h"
 
 #include <gtest/gtest.h>
 
@@ -118,6 +119,9 @@ TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
     const gltf::Scene scene = roomOfMaterials();
     RenderSetup setup = pathSetup(scene, 24, 16, 2);
     for (const bool lights : {false, true}) {
+        if (!lights && !test::nightly()) {
+            continue;
+        }
         compiler::CompileSettings settings = pathSettings(3);
         if (lights) {
             settings.strategies |= package::kStrategySortedUber;

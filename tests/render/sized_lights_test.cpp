@@ -274,14 +274,14 @@ MeanEstimate estimate(const LoadedScene& loaded, const gltf::Scene& scene, std::
 }
 
 // No light counts twice, and none is lost: on primary surfaces, at hits of one bounce and of paths, where
-// shadow rays pass glass, and with a hierarchy. By day each number of lights is looked at once or twice.
+// shadow rays pass glass, and with a hierarchy. By day two of them are looked at.
 TEST(FoundLights, TheMeanIsThatOfLightSamples) {
     struct Case {
         std::uint32_t bounces;
         package::ShadowThrough through;
         std::vector<std::uint32_t> lights;
     };
-    std::vector<Case> cases{{1, package::ShadowThrough::Alpha, {0, 1}},
+    std::vector<Case> cases{{1, package::ShadowThrough::Alpha, {1}},
                             {3, package::ShadowThrough::Glass, {2}}};
     if (test::nightly()) {
         cases.push_back({3, package::ShadowThrough::Alpha, {}});
@@ -351,6 +351,9 @@ TEST(FoundLights, StrategiesAgree) {
     gltf::Scene scene = room(true);
     addShiningQuad(scene);
     for (const bool others : {false, true}) {
+        if (!others && !test::nightly()) {
+            continue;
+        }
         compiler::CompileSettings settings =
             settingsOf({SizedLights::On, 3,
                         others ? package::ShadowThrough::Glass : package::ShadowThrough::Alpha, true});

@@ -196,6 +196,9 @@ TEST(SkyLight, TheMeanIsThatOfChance) {
     ASSERT_NE(map, nullptr);
     expectSameMean(estimate(scene, map.get(), {SkyLight::On, kManyBounces, true}, 96),
                    estimate(scene, map.get(), {SkyLight::Off, kManyBounces, true}, 384), "map with a sun");
+    if (!test::nightly()) {
+        return;
+    }
     // With emissive triangles and a hierarchy of them.
     SkyWays sampled{SkyLight::On, kManyBounces};
     sampled.lights = 1;
