@@ -160,11 +160,11 @@ namespace glint::compiler::fitted {{
 inline constexpr double kUnlitInstructions = {values['kUnlitInstructions']:.1f};
 inline constexpr double kLitInstructions = {values['kLitInstructions']:.1f};
 
-// What a shader has beyond its features' own code for each feature that it branches on.
+// Instructions beyond the features' own code, for each feature that a shader branches on.
 inline constexpr double kInputBranch = {values['kInputBranch']:.1f};
 inline constexpr double kLobeBranch = {values['kLobeBranch']:.1f};
 
-// What a shader has more for a feature is in the feature's declaration ("cost").
+// The code of a feature itself is in its declaration ("cost").
 
 }}  // namespace glint::compiler::fitted
 """

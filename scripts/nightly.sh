@@ -22,6 +22,8 @@ Sets up, builds, and runs all parts, or those that are named:
              strategy; twice to three times as many materials in test_furnace and test_sampling; a
              fault at every call that writes; the runtime as a subdirectory of another project, built
              and run. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
+  timing    the tests that follow files, clocks and a window: ten times by themselves, and ten times
+            beside programs that take every core
   sanitize  scripts/sanitize.sh --all
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
@@ -39,11 +41,11 @@ TEXT
 
 parts=("$@")
 if [[ ${#parts[@]} -eq 0 ]]; then
-    parts=(sweep sanitize spec proofs viewer lint debian fuzz)
+    parts=(sweep timing sanitize spec proofs viewer lint debian fuzz)
 fi
 for part in "${parts[@]}"; do
     case $part in
-        sweep | sanitize | spec | proofs | viewer | lint | debian | fuzz) ;;
+        sweep | timing | sanitize | spec | proofs | viewer | lint | debian | fuzz) ;;
         -h | --help)
             usage
             exit 0
@@ -61,6 +63,13 @@ build() {
     cmake --build --preset release --target "$@"
 }
 
+# Repeats the tests whose faults would depend on how fast the machine is.
+repeat_timed() {
+    local suites='Watching|InputWatching|Incremental|Lock|LockRender|Store|PipelineCacheFolder|BackgroundPipelines'
+    suites+='|Background|WindowTest|Install\.RebuildsWhatChanged\..*'
+    ctest --preset release -R "^($suites)\$" --repeat until-fail:10 --output-on-failure --no-tests=error
+}
+
 scripts/setup.sh --sanitize
 for part in "${parts[@]}"; do
     case $part in
@@ -76,6 +85,20 @@ for part in "${parts[@]}"; do
             for bits in 128 512; do
                 LP_NATIVE_VECTOR_WIDTH=$bits GLINT_NIGHTLY=1 build/release/tests/test_ordering --gtest_filter='Buckets/*'
             done
+            ;;
+        timing)
+            cmake --preset release >/dev/null
+            cmake --build --preset release
+            repeat_timed
+            load=()
+            for ((core = 0; core < $(nproc); ++core)); do
+                (while :; do :; done) &
+                load+=("$!")
+            done
+            trap 'kill "${load[@]}"' EXIT
+            repeat_timed
+            kill "${load[@]}"
+            trap - EXIT
             ;;
         sanitize) scripts/sanitize.sh --all ;;
         spec)

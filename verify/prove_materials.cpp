@@ -52,9 +52,9 @@ constexpr std::uint32_t kTimeInput = 192;
 constexpr std::uint32_t kAlphaInput = 193;
 constexpr std::uint32_t kProofInputs = 194;
 constexpr std::uint32_t kProofOutputs = 35;
-// What stands for a range without an end.
+// The bound of a range without an end.
 constexpr double kFarValue = 1000.0;
-// What the ranges of shares and lengths allow, as for the check "range" on the device.
+// The ranges that shares and lengths may have, as for the check "range" on the device.
 constexpr double kShareSlack = 1e-3;
 
 std::string macroOf(const std::string& name) {

@@ -131,7 +131,7 @@ double quantile(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-// What happened until every pipeline was in use. Milliseconds of wall clock.
+// The events until every pipeline was in use. Milliseconds of wall clock.
 struct Course {
     double createMs = 0.0;
     double firstFrameMs = 0.0;  // from the start of the renderer's creation to the end of the first frame

@@ -72,7 +72,7 @@ struct Program {
     std::uint32_t sampled = 0;
 };
 
-// What is read of the light of one source.
+// The images of the light of one source that are read.
 struct Signal {
     VkImageView light = VK_NULL_HANDLE;
     VkImageView variance = VK_NULL_HANDLE;
@@ -254,7 +254,7 @@ struct Denoiser::State {
         return glint::okStatus();
     }
 
-    // What filter() needs: commands, a buffer that the host reads, and two times.
+    // The resources of filter(): commands, a buffer that the host reads, and two times.
     glint::Status makeReading() {
         State& state = *this;
         VkCommandPoolCreateInfo info{};
@@ -355,7 +355,7 @@ struct Denoiser::State {
         return set;
     }
 
-    // What came before is visible to what follows.
+    // Earlier writes are visible to later commands.
     void barrier(VkCommandBuffer into) const {
         VkMemoryBarrier2 memory{};
         memory.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;

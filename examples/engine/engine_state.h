@@ -1,5 +1,5 @@
-// What the engine keeps between frames, and what it tells its shaders. gpu_resources.cpp makes it,
-// glint_side.cpp makes what Glint needs, frame.cpp draws.
+// The state that the engine keeps between frames, and the constants of its shaders. gpu_resources.cpp makes
+// it, glint_side.cpp makes what Glint needs, frame.cpp draws.
 #pragma once
 
 #include "frame.h"

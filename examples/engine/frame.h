@@ -21,7 +21,7 @@ struct FrameSettings {
     std::uint32_t width = 640;
     std::uint32_t height = 360;
     glint::package::Strategy strategy = glint::package::kStrategyVisibility;
-    // Of Glint's steps and of the engine's own shadow rays.
+    // Times of Glint's steps and of the engine's own shadow rays.
     glint::package::Tracer tracer = glint::package::kTracerRayQuery;
 };
 

@@ -119,7 +119,7 @@ void Gpu::createDevice(std::uint32_t wanted) {
     while (family < count && (families[family].queueFlags & kNeeded) != kNeeded) {
         ++family;
     }
-    // What Glint needs is what the engine needs, but for the filter of its textures.
+    // Glint needs the same features as the engine, but for the filter of its textures.
     glint::DeviceRequirements requirements(tracers);
     VkPhysicalDeviceFeatures features{};
     vkGetPhysicalDeviceFeatures(physical, &features);

@@ -37,7 +37,7 @@ struct Geometry {
 
 struct Mesh {
     std::vector<Geometry> geometries;
-    // What brings stored positions into the mesh's space: a scale, then an offset.
+    // The map of stored positions into the mesh's space: a scale, then an offset.
     float scale = 1.0F;
     std::array<float, 3> offset{};
 };

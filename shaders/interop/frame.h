@@ -277,7 +277,7 @@ GLINT_CONSTANT(kMostHalf, 65504u);
 // The constants of one frame of one sample.
 struct FrameConstants {
     vec4 worldToClip[4];  // rows; Vulkan clip space, y down, reversed depth (1 near, 0 far), jittered
-    // What finds the place of a sample stands together, so that one load reads it.
+    // The members that lead to the place of a sample stand together, so that one load reads them.
     uint width;  // pixels
     uint height;
     // The band of rows that the passes over pixels are at:

@@ -209,7 +209,7 @@ void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* cons
     addDeviceChoice(command, arguments->options.device, arguments->options.validate);
     addJobs(command, arguments->options.jobs);
     command.callback([arguments, line, companion, &command, &chosen] {
-        // What the proofs do not read, and what they alone read.
+        // Options that the proofs do not read, and those that they alone read.
         const std::vector<const char*> ofDevice{"--pictures", "--samples", "--combinations", "--device",
                                                 "--validate"};
         const std::vector<const char*> ofProof{"--boxes"};

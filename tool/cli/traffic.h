@@ -10,7 +10,7 @@
 
 namespace glint::cli {
 
-// What a frame moved. The rows are those of its shape.
+// The bytes that a frame moved. The rows are those of its shape.
 struct TrafficReport {
     TrafficShape shape;
     TrafficCounts counts;
@@ -20,7 +20,7 @@ std::string toText(const TrafficReport& report);
 // "X bytes a pixel moved".
 std::string summaryOf(const TrafficReport& report);
 
-// What frames of a package move for each pixel, ray and hit, by strategy.
+// The bytes that frames of a package move for each pixel, ray and hit, by strategy.
 base::Json trafficToJson(const Package& package);
 std::string trafficTable(const Package& package);
 

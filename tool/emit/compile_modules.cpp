@@ -202,8 +202,8 @@ private:
         }
     }
 
-    // What is joined comes last, so that its parts were started before it. Parts of what is there already are
-    // not needed.
+    // Joined texts come last, so that their parts were started before them. Parts of a text that is there
+    // already are not needed.
     std::vector<std::size_t> orderOfWork() {
         std::vector<bool> needed(texts_.size(), true);
         for (std::size_t i = 0; i < texts_.size(); ++i) {

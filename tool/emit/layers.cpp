@@ -169,7 +169,7 @@ std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) 
     if (findEntry(plan, "texture-level", 0) != nullptr) {
         text += slotsRead(plan);
     }
-    // What no layer counts leaves no code.
+    // Tallies that no layer shows leave no code.
     for (const LayerInfo& info : package::layerTable()) {
         if (!info.tally.empty() && !tallies.contains(info.tally)) {
             text += fmt::format("#define {}({})\n", info.tally,

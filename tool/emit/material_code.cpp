@@ -28,7 +28,7 @@ std::string typeName(std::string name) {
     return name;
 }
 
-// Which keys the code runs for: those of the module's cases, or any.
+// The keys that the code runs for: those of the module's cases, or any.
 enum class Asked : std::uint8_t { OfModule, OfAnyKey };
 
 std::string hasFeature(const materials::Feature& feature, Asked asked) {

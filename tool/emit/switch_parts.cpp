@@ -29,7 +29,7 @@ Status SwitchParts::makeSwitches() {
             SourceSet& to = (apart ? head_ : whole_)[fallbackAlone ? 1 : 0];
             to.add(std::string(kSwitchFile), std::move(text));
             if (apart && settings_.emissiveLights != EmissiveLights::On) {
-                // What emissive lights emit is the only code of materials that the switch would have, and an
+                // The emission of lights is the only code of materials that the switch would have, and an
                 // edit of that code would change the switch.
                 to.add(std::string(kEmitterFile), "");
             }

@@ -1,4 +1,4 @@
-// What one compilation leaves in memory for the next one of the same process.
+// Results that one compilation leaves in memory for the next one of the same process.
 #pragma once
 
 #include "cache/module_cache.h"

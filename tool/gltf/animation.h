@@ -69,7 +69,7 @@ struct MorphTarget {
         colors;  // only until the scene is read: Primitive::colors has them then
 };
 
-// Which joints of a skin each vertex follows, and with which weight.
+// The joints of a skin that each vertex follows, and their weights.
 struct SkinInfluences {
     std::size_t count = 0;              // for each vertex; 0: the primitive follows no skin
     std::vector<std::uint16_t> joints;  // `count` for each vertex: indices into Skin::joints

@@ -39,7 +39,7 @@ struct ImportOptions {
     // The name of the variant (KHR_materials_variants) whose materials are used. An empty name selects the
     // default materials.
     std::string variant{};
-    // What materials are made of: loadMaterialModel() adds features of a user's own. It must outlive the
+    // The features of materials: loadMaterialModel() adds features of a user's own. It must outlive the
     // scene.
     const materials::MaterialModel* materialModel = &materials::builtinMaterialModel();
 };

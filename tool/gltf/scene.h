@@ -44,7 +44,7 @@ struct Primitive {
     std::vector<VertexValues>
         attributes;  // those of MaterialModel::attributes that the file gives, each name once
     std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
-    // What the triangles can see of the material's textures, with ImportOptions::trustTextures.
+    // The parts of the material's textures that the triangles can see, with ImportOptions::trustTextures.
     std::vector<materials::SeenTexture> seen;
     bool derivesTangents = false;      // derivesTangents(), with ImportOptions::trustTextures
     std::vector<MorphTarget> targets;  // normals and tangents only if the primitive has them
@@ -158,7 +158,7 @@ constexpr std::size_t bytesPerPixel(PixelFormat format) {
 // How an image file declares its colours to be stored.
 enum class Transfer : std::uint8_t { Unknown, Linear, Srgb };
 
-// What an image file holds.
+// The contents of an image file.
 enum class Storage : std::uint8_t {
     Texels,
     Blocks,      // in a block format, which devices that have it read as it is

@@ -98,7 +98,7 @@ void warnOfDeviations(Document& document, ByteView bytes, const Codec& codec, co
     }
 }
 
-// What went wrong with an image, and what to do.
+// The fault of an image, and its remedy.
 struct Failure {
     std::string message;
     const char* hint = kStore;

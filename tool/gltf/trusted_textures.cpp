@@ -14,7 +14,7 @@ namespace glint::gltf {
 
 namespace {
 
-// What single precision rounds in a unit vector.
+// The error of rounding a unit vector to single precision.
 constexpr double kDerivedError = 2.5e-7;
 
 using Vector = std::array<double, 3>;

@@ -17,10 +17,10 @@ namespace glint::compiler::fitted {
 inline constexpr double kUnlitInstructions = 98.0;
 inline constexpr double kLitInstructions = 817.0;
 
-// What a shader has beyond its features' own code for each feature that it branches on.
+// Instructions beyond the features' own code, for each feature that a shader branches on.
 inline constexpr double kInputBranch = 26.0;
 inline constexpr double kLobeBranch = 252.0;
 
-// What a shader has more for a feature is in the feature's declaration ("cost").
+// The code of a feature itself is in its declaration ("cost").
 
 }  // namespace glint::compiler::fitted

@@ -86,7 +86,7 @@ DeviceCosts withGpu(DeviceCosts measured, const GpuCosts& gpu);
 // if the table has neither.
 std::optional<double> branchFactor(const GpuCosts& gpu);
 
-// What `auto` stands for in a setting.
+// The value of a setting that is `auto`.
 struct GpuChoice {
     std::string setting;  // "shadows" or "precision"
     std::string value;

@@ -18,7 +18,7 @@
 
 namespace glint::view {
 
-// Which moment of an animation a picture shows.
+// The moment of an animation that a picture shows.
 struct Moment {
     std::vector<std::size_t> animations;  // indices into Scene::animations
     double seconds = 0.0;

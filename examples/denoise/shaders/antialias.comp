@@ -10,7 +10,7 @@ layout(binding = 2) uniform texture2D motion;
 layout(binding = 3) uniform texture2D guides;
 layout(binding = 4, rgba32f) uniform writeonly image2D result; // light, frames
 
-// What was seen before may be this many deviations from what is around a pixel now.
+// The history may be this many deviations from the neighbourhood of a pixel.
 const float kReach = 1.25;
 // Least weight of a new frame where things move by a pixel or more.
 const float kMovingShare = 0.15;

@@ -9,7 +9,7 @@ layout(binding = 2) uniform texture2D roughness;
 layout(binding = 3, rgba32f) uniform writeonly image2D guides;   // mean normal, shorter at borders; depth
 layout(binding = 4, rgba32f) uniform writeonly image2D surfaces; // slopes of the depth, metres a pixel; roughness
 
-// What the normal of a pixel at a border is shortened to: see edgeDistance().
+// The length to which the normal of a pixel at a border is shortened: see edgeDistance().
 const float kBorderLength = 0.5;
 
 // The change to the nearer neighbour on an axis.

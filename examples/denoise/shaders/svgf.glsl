@@ -1,4 +1,4 @@
-// What the passes of the filter share: Schied et al., "Spatiotemporal Variance-Guided Filtering: Real-Time
+// Shared by the passes of the filter: Schied et al., "Spatiotemporal Variance-Guided Filtering: Real-Time
 // Reconstruction for Path-Traced Global Illumination" (HPG 2017). Numbers of equations are those of the paper.
 #extension GL_EXT_samplerless_texture_functions : require
 

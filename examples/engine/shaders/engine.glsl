@@ -1,4 +1,4 @@
-// What the engine's shaders share: its scene by address, in its own formats. world.h and frame.cpp have the same.
+// Shared by the engine's shaders: its scene by address, in its own formats. world.h and frame.cpp have the same.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require

@@ -15,7 +15,7 @@
 
 namespace glint::cli {
 
-// What one run of the compiler gets from the watch, and tells it.
+// The data that the watch and one run of the compiler exchange.
 struct WatchedRun {
     explicit WatchedRun(compiler::WarmModules& memory) : warm(memory) {}
 

@@ -74,7 +74,7 @@ base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key,
     return list;
 }
 
-// What animations change of the material: planning drops no feature for a value that passes.
+// The values of the material that animations change: planning drops no feature for a value that passes.
 std::vector<std::string> changesOf(const gltf::SceneList& scenes, int material) {
     const gltf::SceneList::Place place = scenes.place(material);
     const std::vector<gltf::AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;

@@ -1,4 +1,4 @@
-// What glint explain says of a material: its keys and cases, and why.
+// The text of glint explain about a material: its keys and cases, and why.
 #pragma once
 
 #include "cli/explain/plan_text.h"

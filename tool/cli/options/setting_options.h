@@ -39,7 +39,7 @@ Diagnostic idleWarning(const std::string& where, const std::string& words, const
 // Returns a warning for each setting that was given and changes nothing in a build's pictures or package.
 std::vector<Diagnostic> idleSettings(const compiler::Build& build);
 
-// What a command needs of images.
+// The parts of images that a command needs.
 enum class ImageReading : std::uint8_t {
     None,
     Files,  // for scene_view::loadTextures()

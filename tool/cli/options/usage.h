@@ -28,7 +28,7 @@ std::string explain(const CLI::ParseError& error, const CLI::App& command);
 inline constexpr std::size_t kHelpColumns = 58;
 inline constexpr const char* kEmpty = "is empty; give a value";
 
-// What the help of a command says besides its options.
+// The text of a command's help besides its options.
 struct CommandText {
     std::string name;
     std::string what{};                   // one sentence without a full stop

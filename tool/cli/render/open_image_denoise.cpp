@@ -99,7 +99,7 @@ Result<LinearImage> denoised(const LinearImage& picture, Renderer& renderer) {
     SharedImage facing(device, picture.width, picture.height);
     SharedImage output(device, picture.width, picture.height);
     bool isDone = color.fill([&](std::size_t i, std::size_t c) { return picture.pixels[i][c]; });
-    // What shines counts as white, so that its edges stay sharp.
+    // Light sources count as white, so that its edges stay sharp.
     isDone = isDone && surface.fill([&](std::size_t i, std::size_t c) {
         return std::min(layerAt(albedo, i, c) + layerAt(emission, i, c), 1.0F);
     });

@@ -49,7 +49,7 @@ std::string GlslUnit::withPlaces() const {
     std::string placed;
     placed.reserve(text_.size() + text_.size() / 8);
     bool sawVersion = false;
-    // What a compiler takes for the place of the next line.
+    // The place that a compiler assumes for the next line.
     std::uint32_t nextFile = 0;
     int nextNumber = 0;
     for (std::size_t i = 0; i < lines_.size(); ++i) {

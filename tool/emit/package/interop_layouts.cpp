@@ -84,7 +84,7 @@ Result<std::vector<StructLayout>> interopLayouts(std::string_view declarations) 
                 return makeError("internal", "shaders/interop", layout.name + " has no end",
                                  "end it with };");
             }
-            // What GLSL has only in some packages is always there in C++.
+            // Members that GLSL has only in some packages are always there in C++.
             if (line.empty() || line.starts_with('#')) {
                 continue;
             }

@@ -1,4 +1,4 @@
-// What Basis Universal does: transcodes KTX2 images (KHR_texture_basisu), and encodes and decodes blocks. Not
+// Basis Universal: transcodes KTX2 images (KHR_texture_basisu), and encodes and decodes blocks. Not
 // every build has the sources that this needs; every function then fails.
 #pragma once
 

@@ -40,7 +40,7 @@ private:
     ByteView bytes_;
 };
 
-// What the header of a file says, checked: every level lies in the file and is as long as its blocks are.
+// The checked header of a file: every level lies in the file and is as long as its blocks are.
 struct BlockFile {
     int width = 0;  // all sizes are in pixels
     int height = 0;

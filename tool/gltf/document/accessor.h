@@ -21,7 +21,7 @@ struct FloatElements {
 // How integers become floats if the accessor does not mark them as normalised.
 enum class Integers : std::uint8_t { AsValues, Normalized };
 
-// What the elements of an accessor look like.
+// The form of an accessor's elements.
 struct ElementFormat {
     int componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
     std::size_t components = 0;

@@ -23,8 +23,8 @@ public:
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const ImportOptions& options);
 
-    // What the file says, as tinygltf reads it, in which all types, ranges and references that the importer
-    // reads have been checked.
+    // The document as tinygltf reads it. All types, ranges and references that the importer reads have been
+    // checked.
     const tinygltf::Model& model() const {
         return model_;
     }

@@ -39,7 +39,7 @@ std::string percentDecode(std::string_view text);
 // the text.
 std::optional<std::string> whyUnsafe(std::string_view uri, std::string_view decoded);
 
-// What to do with symbolic links that lead out of the scene's folder.
+// The treatment of symbolic links that lead out of the scene's folder.
 enum class OuterLinks : std::uint8_t { Follow, Refuse };
 
 class FileSource {

@@ -19,7 +19,7 @@ struct FitOptions {
     bool decodeEmission = false;  // FittedImage::decoded for images that materials emit
 };
 
-// What ImageView takes.
+// Pixels in a form that ImageView takes.
 struct FittedImage {
     int width = 0;
     int height = 0;

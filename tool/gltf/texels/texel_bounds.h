@@ -62,7 +62,7 @@ using TexelPlace = materials::TexelPlace;
 // is that of LevelRules.
 std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelFormat format, int tolerance);
 
-// What a lookup does besides where it looks.
+// The filter of a lookup.
 struct LookupKind {
     Sampler sampler{};
     bool finestLevel = false;  // reads level 0 alone, as alpha tests of rays do, without anisotropy

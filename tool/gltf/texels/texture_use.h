@@ -1,4 +1,4 @@
-// What the materials of a scene read of its images, and what shading makes of the numbers that an image
+// The channels that the materials of a scene read of its images, and the meaning of the numbers that an image
 // stores.
 #pragma once
 
