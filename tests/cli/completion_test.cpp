@@ -84,9 +84,9 @@ TEST_F(Completion, BashOffersEveryOptionOfEveryCommand) {
 }
 
 TEST_F(Completion, BashOffersValues) {
-    EXPECT_EQ(bash({"compile", "--shadows", ""}), "inline deferred");
+    EXPECT_EQ(bash({"compile", "--shadows", ""}), "auto inline deferred");
     EXPECT_EQ(bash({"compile", "--shadows", "=", "d"}), "deferred");
-    EXPECT_EQ(bash({"compile", "--shadows", "="}), "inline deferred");
+    EXPECT_EQ(bash({"compile", "--shadows", "="}), "auto inline deferred");
     EXPECT_EQ(bash({"compile", "--strategy", "uber,vis"}), "uber,visibility");
     EXPECT_EQ(bash({"compile", "--merge", "pro"}), "profile");
     EXPECT_EQ(bash({"compile", "--jobs", ""}), "");

@@ -40,7 +40,7 @@ std::string withoutComments(const std::string& source) {
 const std::vector<std::string>& sources() {
     static const std::vector<std::string> kSources = [] {
         std::vector<std::string> texts;
-        for (const char* folder : {"tool", "runtime"}) {
+        for (const char* folder : {"tool", "runtime", "verify"}) {
             for (const auto& entry : fs::recursive_directory_iterator(fs::path(GLINT_SOURCE_DIR) / folder)) {
                 const std::string extension = entry.path().extension().string();
                 const bool isTable = entry.path().stem() == "diagnostic_table";

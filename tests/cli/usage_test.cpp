@@ -110,7 +110,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--merge", "all"}, "--package"},
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--hit-lobes", "base"}, "--package"},
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--texture-lod", "mip0"}, "--package"},
-        {{"compile", "a.gltf", "-o", "x", "--precision", "8"}, "none of 32, 16"},
+        {{"compile", "a.gltf", "-o", "x", "--precision", "8"}, "none of auto, 32, 16"},
         {{"render", "a.gltf", "-o", "a.png", "--package", "p", "--no-energy-compensation"}, "--package"},
         {{"render", "a.gltf", "-o", "a.png", "--view", "ray"}, "did you mean rays?"},
         {{"render", "a.gltf", "-o", "a.png", "--view", "reflection.rays"}, "use rays"},

@@ -8,17 +8,20 @@
 #include "cli/compile/arguments.h"
 #include "cli/compile/cache.h"
 #include "cli/compile/depfile.h"
+#include "cli/compile/held_signals.h"
 #include "cli/compile/ninja_plan.h"
-#include "cli/compile/outputs.h"
 #include "cli/compile/summary.h"
 #include "cli/compile/watch.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/package/embed_source.h"
 #include "emit/package/json.h"
+#include "emit/package/write.h"
 #include "gltf/import.h"
+#include "resolve/build.h"
 
 #include <glint/measure/target.h>
+#include <glint/result.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,10 +33,76 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace glint::cli {
 
 namespace {
+
+// --- All results in one step: all files are complete on disk before any of them is moved into place ---
+
+// Members that are empty are not written. The build says whether the lock file is.
+struct CompileOutputs {
+    std::filesystem::path folder;  // of the package
+    std::filesystem::path embed;   // a C++ source
+    const DepfileArguments& depfile;
+    std::span<const std::string> dependencies;
+};
+
+// The files outside the package's folder, in the order in which they are moved into place.
+class Staging {
+public:
+    Status addEmbedded(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
+                       const std::filesystem::path& source) {
+        GLINT_TRY(auto staged, stageEmbeddedSource(scenes, package, source));
+        for (base::StagedFile& file : staged) {
+            files_.push_back(std::move(file));
+        }
+        return okStatus();
+    }
+
+    Status add(const std::filesystem::path& path, std::string_view text) {
+        base::removeAbandoned(path);
+        GLINT_TRY(auto staged, base::StagedFile::create(path, base::asBytes(text)));
+        files_.push_back(std::move(staged));
+        return okStatus();
+    }
+
+    Status commit() {
+        for (base::StagedFile& file : files_) {
+            GLINT_TRY_DO(file.commit());
+        }
+        return okStatus();
+    }
+
+private:
+    std::vector<base::StagedFile> files_;
+};
+
+// A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
+// writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
+Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackage& package,
+                    const CompileOutputs& outputs) {
+    const HeldSignals held;
+    Staging staging;
+    if (build.lockText) {
+        GLINT_TRY_DO(staging.add(build.settings.lock.file, *build.lockText));
+    }
+    if (!outputs.embed.empty()) {
+        GLINT_TRY_DO(staging.addEmbedded(*build.scenes, package, outputs.embed));
+    }
+    // The dependency file comes last, because it tells Make and Ninja that the others exist.
+    if (!outputs.depfile.file.empty()) {
+        GLINT_TRY(const auto text, makeDepfile(outputs.depfile.targets, outputs.dependencies));
+        GLINT_TRY_DO(staging.add(outputs.depfile.file, text));
+    }
+    if (!outputs.folder.empty()) {
+        GLINT_TRY_DO(writePackage(package, outputs.folder));
+    }
+    return staging.commit();
+}
 
 // The facts to report at the end. The package is absent after a dry run, and after planning.
 struct Outcome {

@@ -437,6 +437,7 @@ constexpr DiagnosticInfo kTable[] = {
     {"validation-layer", kError, "The validation layers are not installed."},
     {"variant-repeated", kWarning, "A primitive has several materials for one variant."},
     {"variant-unknown", kError, "The scene has no such variant."},
+    {"verify-missing", kError, "`glint check-materials --prove`: the program glint-verify was not built."},
     {"vertex-limit", kError, "The scene has more vertices than Glint reads."},
     {"view-layer", kError, "A view reads a layer that the package lacks."},
     {"view-reference", kError, "`--view difference` has no picture to compare with, or one of another size."},
