@@ -186,7 +186,8 @@ Facets drawFacets(Dice& dice) {
     const double z = dice.between(0.3, 1.0);
     switch (dice.below(3)) {
         case 0:
-            add({-x, -y, 0}, {2 * x, 0, 0}, {0, 2 * y, 0});
+            // Boards of one mesh must not lie in one plane, where rounding would decide which one is seen.
+            add({-x, -y, z - 0.65}, {2 * x, 0, 0}, {0, 2 * y, 0});
             break;
         case 1:
             for (const double side : {-1.0, 1.0}) {
