@@ -281,8 +281,7 @@ TEST(FoundLights, TheMeanIsThatOfLightSamples) {
         package::ShadowThrough through;
         std::vector<std::uint32_t> lights;
     };
-    std::vector<Case> cases{{1, package::ShadowThrough::Alpha, {1}},
-                            {3, package::ShadowThrough::Glass, {2}}};
+    std::vector<Case> cases{{1, package::ShadowThrough::Alpha, {1}}, {3, package::ShadowThrough::Glass, {2}}};
     if (test::nightly()) {
         cases.push_back({3, package::ShadowThrough::Alpha, {}});
     }

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glint/context.h>
-#include <glint/package.h>
 #include <glint/gpu_scene.h>
+#include <glint/package.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 

@@ -145,18 +145,17 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
         const VkBool32 countsLight = choice.countsLight ? VK_TRUE : VK_FALSE;
         const auto [known, fresh] = byWords.emplace(words.data(), plan.size());
         if (fresh) {
-            plan.push_back(
-                {{pipelineName(package, key), words.size(),
-                  [&context, words, layout, constants = ShaderConstants{threads, countsLight},
-                   half = choice.halfPicture](PipelineCreation& creation) {
-                      creation.constants = constants;
-                      creation.halfPicture = half;
-                      return createComputePipeline(context, words, layout, creation);
-                  },
-                  identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
-                 {},
-                 {},
-                 PipelineTurn::Spare});
+            plan.push_back({{pipelineName(package, key), words.size(),
+                             [&context, words, layout, constants = ShaderConstants{threads, countsLight},
+                              half = choice.halfPicture](PipelineCreation& creation) {
+                                 creation.constants = constants;
+                                 creation.halfPicture = half;
+                                 return createComputePipeline(context, words, layout, creation);
+                             },
+                             identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
+                            {},
+                            {},
+                            PipelineTurn::Spare});
         }
         PlannedPipeline& planned = plan[known->second];
         planned.keys.push_back(key);

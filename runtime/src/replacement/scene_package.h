@@ -5,8 +5,8 @@
 #include "scene/geometry.h"
 #include "scene/scene_materials.h"
 
-#include <glint/package.h>
 #include <glint/gpu_scene.h>
+#include <glint/package.h>
 
 #include <array>
 #include <cstdint>

@@ -223,9 +223,8 @@ TEST(CompilePackage, EachRayQueryHasItsOwnLoadOfAPlainStructure) {
 std::size_t countAtomicAdds(std::span<const std::uint32_t> spirv) {
     constexpr std::uint32_t kOpAtomicIAdd = 234;
     std::size_t count = 0;
-    EXPECT_TRUE(compiler::visitSpirv(spirv, [&](const compiler::SpirvInstruction& it) {
-        count += it.opcode == kOpAtomicIAdd ? 1 : 0;
-    }));
+    EXPECT_TRUE(compiler::visitSpirv(
+        spirv, [&](const compiler::SpirvInstruction& it) { count += it.opcode == kOpAtomicIAdd ? 1 : 0; }));
     return count;
 }
 

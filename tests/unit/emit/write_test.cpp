@@ -1,4 +1,5 @@
 #include "emit/package/write.h"
+
 #include "emit/package/manifest.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"

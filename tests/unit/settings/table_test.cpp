@@ -1,6 +1,7 @@
 // The table of settings agrees with itself: each value that it names is one, and is kept.
-#include "settings/configuration.h"
 #include "settings/table.h"
+
+#include "settings/configuration.h"
 
 #include <gtest/gtest.h>
 
