@@ -1,4 +1,5 @@
 #include <glint/measure/calibration_report.h>
+#include <glint/measure/statistics.h>
 
 #include <algorithm>
 #include <numeric>
