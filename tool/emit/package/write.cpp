@@ -337,7 +337,7 @@ Status checkPackageFolder(const fs::path& folder) {
 
 Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     GLINT_TRY(const auto resolved, resolveOutput(folder));
-    GLINT_TRY_DO(OutputLock::acquire(resolved));
+    GLINT_TRY(const auto lock, OutputLock::acquire(resolved));
     recoverInterrupted(resolved);
     GLINT_TRY(const auto earlier, inspectFolder(resolved));
     if (isCurrent(package, earlier, resolved)) {
