@@ -56,7 +56,10 @@ VkSpecializationInfo specializationOf(const ShaderConstants& constants) {
         {0, offsetof(ShaderConstants, threads), sizeof(constants.threads)},
         {1, offsetof(ShaderConstants, countsLight), sizeof(constants.countsLight)},
     };
-    return {static_cast<std::uint32_t>(std::size(kEntries)), kEntries, sizeof(constants), &constants};
+    // Without a number of threads, a shader of somebody else's keeps its own constant 0.
+    const std::uint32_t first = constants.threads == 0 ? 1 : 0;
+    return {static_cast<std::uint32_t>(std::size(kEntries)) - first, kEntries + first, sizeof(constants),
+            &constants};
 }
 
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,

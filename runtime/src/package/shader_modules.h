@@ -21,7 +21,7 @@ VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderMod
 
 // The specialisation constants of Glint's shaders, by their IDs. A shader without one of them ignores it.
 struct ShaderConstants {
-    std::uint32_t threads = 0;        // 0: the number of threads in a compute shader's workgroup
+    std::uint32_t threads = 0;        // 0: of a compute shader's workgroup; no threads: as the shader says
     VkBool32 countsLight = VK_FALSE;  // 1: kCountsLight of hit/bindings.glsl
 };
 // Returns the description of `constants`, which must outlive it.

@@ -142,20 +142,20 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
         const std::uint32_t threads = chosenThreads(context.limits, key, package.bucketCount());
-        const VkBool32 countsLight = choice.countsLight ? VK_TRUE : VK_FALSE;
         const auto [known, fresh] = byWords.emplace(words.data(), plan.size());
         if (fresh) {
-            plan.push_back({{pipelineName(package, key), words.size(),
-                             [&context, words, layout, constants = ShaderConstants{threads, countsLight},
-                              half = choice.halfPicture](PipelineCreation& creation) {
-                                 creation.constants = constants;
-                                 creation.halfPicture = half;
-                                 return createComputePipeline(context, words, layout, creation);
-                             },
-                             identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
-                            {},
-                            {},
-                            PipelineTurn::Spare});
+            plan.push_back(
+                {{pipelineName(package, key), words.size(),
+                  [&context, words, layout, constants = ShaderConstants{threads, choice.countsLight},
+                   half = choice.halfPicture](PipelineCreation& creation) {
+                      creation.constants = constants;
+                      creation.halfPicture = half;
+                      return createComputePipeline(context, words, layout, creation);
+                  },
+                  identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
+                 {},
+                 {},
+                 PipelineTurn::Spare});
         }
         PlannedPipeline& planned = plan[known->second];
         planned.keys.push_back(key);
@@ -205,9 +205,9 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
     for (RayPass& planned : planRayPasses(package, choice, shaderIds)) {
         const auto pass = std::make_shared<const RayPass>(std::move(planned));
         plan.push_back({{pass->name, wordCount(pass->source),
-                         [&context, pass, layout, countsLight = choice.countsLight,
+                         [&context, pass, layout, constants = ShaderConstants{0, choice.countsLight},
                           half = choice.halfPicture](PipelineCreation& creation) {
-                             creation.constants.countsLight = countsLight ? VK_TRUE : VK_FALSE;
+                             creation.constants = constants;
                              creation.halfPicture = half;
                              return createRayPipeline(context, layout, pass->source, creation);
                          },
