@@ -366,9 +366,8 @@ void settleColors(Document& document, Scene& scene) {
     }
 }
 
-Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene) {
+Status importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene) {
     const int defaultMaterial = static_cast<int>(scene.materials.size());
-    bool usesDefault = false;
     for (std::size_t i = 0; i < document.model().meshes.size(); ++i) {
         Result<Mesh> mesh = readMesh(document, i, defaultMaterial);
         if (!mesh && placed[i]) {
@@ -382,12 +381,9 @@ Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, S
             scene.meshes.emplace_back().name = document.model().meshes[i].name;
             continue;
         }
-        for (const Primitive& primitive : mesh->primitives) {
-            usesDefault = usesDefault || primitive.material == defaultMaterial;
-        }
         scene.meshes.push_back(std::move(*mesh));
     }
-    return usesDefault;
+    return okStatus();
 }
 
 }  // namespace glint::gltf

@@ -12,8 +12,8 @@ namespace glint::gltf {
 
 // Fills scene.meshes with one entry for each mesh of the file. `placed` says for each mesh whether a node
 // draws it. A mesh that no node draws and that can't be read causes a warning and stays empty. Primitives
-// without a material get material `scene.materials.size()`; the function returns whether there are any.
-Result<bool> importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene);
+// without a material get material `scene.materials.size()`.
+Status importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene);
 
 // Adds the differences of morph targets to the colours of vertices, by the weights at rest, and clamps the
 // colours (glTF 2.0, sections 3.7.2.1 and 3.7.2.2). Call it after importing weights and animations. The

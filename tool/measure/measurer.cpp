@@ -73,7 +73,7 @@ Result<Measurer::Entry> Measurer::mount(BenchPoint& point) const {
                               ? bed_.mountFiltered(*options_.filter, point.filteredFrames)
                               : bed_.mount(point.configuration, point.package));
     // Drivers may compile a pipeline when it first runs.
-    GLINT_TRY_DO(mount.exposeSamples(0, 1));
+    GLINT_TRY([[maybe_unused]] const auto first, mount.exposeSamples(0, 1));
     point.footprint = mount.renderer().footprint();
     point.cases = mount.cases();
     point.tracer = std::string(package::nameOf(mount.renderer().tracer()));
@@ -135,7 +135,7 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
 Status Measurer::warmUp(const Entry& entry, std::chrono::milliseconds time) const {
     const base::Clock::time_point start = base::Clock::now();
     while (!bed_.onCpu() && base::Clock::now() - start < time) {
-        GLINT_TRY_DO(entry.mount.exposeSamples(0, 16));
+        GLINT_TRY([[maybe_unused]] const auto image, entry.mount.exposeSamples(0, 16));
     }
     return okStatus();
 }

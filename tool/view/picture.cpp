@@ -179,7 +179,7 @@ Status Picture::takeBackEarly() {
     if (!beforeEarly_) {
         return okStatus();
     }
-    GLINT_TRY_DO(device_.renderer->replacePackage(beforeEarly_));
+    GLINT_TRY([[maybe_unused]] const auto replaced, device_.renderer->replacePackage(beforeEarly_));
     build_.package = std::exchange(beforeEarly_, nullptr);
     restart();
     return okStatus();
@@ -225,7 +225,7 @@ Status Picture::pose(const std::optional<Moment>& moment, std::uint64_t frame) {
 
 Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timing timing,
                        std::uint64_t number) {
-    GLINT_TRY_DO(gpuScene().recordCompaction(commands, number));
+    GLINT_TRY([[maybe_unused]] const auto compacted, gpuScene().recordCompaction(commands, number));
     // The upload has the memory of poses until the device is done with it.
     if (poseIsNew_ && gpuScene().isUploaded()) {
         GLINT_TRY_DO(gpuScene().update(commands, data().motion()));

@@ -110,11 +110,11 @@ inline Diagnostic makeWarning(std::string id, std::string where, std::string mes
     }                                           \
     declaration = *std::move(result)
 
-#define GLINT_TRY_DO_AS_(result, ...)             \
-    do {                                          \
-        if (auto result = __VA_ARGS__; !result) { \
-            return result.error();                \
-        }                                         \
+#define GLINT_TRY_DO_AS_(result, ...)                              \
+    do {                                                           \
+        if (const ::glint::Status result = __VA_ARGS__; !result) { \
+            return result.error();                                 \
+        }                                                          \
     } while (false)
 
 // Declares or assigns a variable with the value of a `Result`, or returns the error from the function:
@@ -122,6 +122,7 @@ inline Diagnostic makeWarning(std::string id, std::string where, std::string mes
 #define GLINT_TRY(variable, ...) \
     GLINT_TRY_AS_(GLINT_JOIN_NAMES(resultOfLine, __LINE__), variable, __VA_ARGS__)
 
-// Does work that gives a `Status`, or a `Result` whose value nobody needs, and returns its error from the
-// function: `GLINT_TRY_DO(base::writeFile(path, bytes));`.
+// Does work that gives a `Status`, and returns its error from the function:
+// `GLINT_TRY_DO(base::writeFile(path, bytes));`. It takes no `Result` with a value, because that would end at
+// once, and some values, such as locks, must live on.
 #define GLINT_TRY_DO(...) GLINT_TRY_DO_AS_(GLINT_JOIN_NAMES(resultOfLine, __LINE__), __VA_ARGS__)

@@ -73,7 +73,8 @@ std::vector<TextureUse> usesOf(const SceneEditor::State& state, const PackageSce
 
 Status addMaterials(SceneEditor::State& state, const PackageScene& known, const SceneView& view) {
     std::vector<std::uint8_t> records = materialsWithSizes(state.scene.context, known, view.images);
-    GLINT_TRY_DO(replaceMaterials(view.materials, known.materials, records));
+    GLINT_TRY([[maybe_unused]] const auto changing,
+              replaceMaterials(view.materials, known.materials, records));
     const std::size_t bytes = state.layout.recordBytes;
     for (std::size_t i = 0; i < known.materials.size(); ++i) {
         EditedMaterial material;

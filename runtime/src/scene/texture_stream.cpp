@@ -217,7 +217,8 @@ Result<DeviceImage> uploadStreamed(TextureStream::State& stream, Uploader& uploa
     }
     for (std::uint32_t level = streamed.level; level < info.mips; ++level) {
         const std::span<const std::uint8_t> texels = texelsOfLevel(stored, level);
-        GLINT_TRY_DO(uploader.copyMipRows({&*made, level, 0, texels, blockOf(stored.format)}, texels.size()));
+        GLINT_TRY([[maybe_unused]] const auto rows,
+                  uploader.copyMipRows({&*made, level, 0, texels, blockOf(stored.format)}, texels.size()));
     }
     GLINT_TRY(made->view, createImageView(scene.context, made->handle.get(), info, streamed.level));
     stream.textures.insert_or_assign(texture, std::move(streamed));

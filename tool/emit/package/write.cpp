@@ -328,7 +328,7 @@ Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs:
 }  // namespace
 
 Status checkPackageFolder(const fs::path& folder) {
-    GLINT_TRY_DO(inspectFolder(folder));
+    GLINT_TRY([[maybe_unused]] const auto names, inspectFolder(folder));
     const Status possible = base::checkOutputFolder(folder);
     return possible ? possible
                     : Status(makeError("output-write", folder.string(), possible.error().message,

@@ -60,7 +60,7 @@ Status Window::fitSize() {
         return okStatus();
     }
     GLINT_TRY_DO(presenter_->waitForFrames());
-    GLINT_TRY_DO(display_->resize(width, height));
+    GLINT_TRY([[maybe_unused]] const auto resized, display_->resize(width, height));
     pick_.reset();
     for (std::size_t i = 0; i < kPictures; ++i) {
         if (sides_[i]) {
