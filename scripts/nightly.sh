@@ -75,8 +75,8 @@ for part in "${parts[@]}"; do
     case $part in
         sweep)
             whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
-                test_opacity test_ordering test_furnace test_sampling test_cli_robustness test_cli_build test_paths test_convergence
-                test_effects test_shadow_through test_packs test_sky_light test_sized_lights test_random_scenes)
+                test_opacity test_ordering test_furnace test_sampling test_cli_robustness test_cli_build test_paths
+                test_convergence test_effects test_shadow_through test_packs test_sky_light test_sized_lights test_random_scenes)
             build "${whole[@]}" glint
             for program in "${whole[@]}"; do
                 GLINT_NIGHTLY=1 GLINT_RANDOM_FIRST="$(date +%Y%m%d)0000" "build/release/tests/$program"
