@@ -32,6 +32,7 @@ kNeeds=(
     "command pkg-config|pkg-config pkgconf"
     "command git|git"
     "command ccache|ccache"
+    "command mold|mold"
     "command xz|xz-utils"
     "file /etc/ssl/certs/ca-certificates.crt|ca-certificates"
     "file /usr/include/glslang/Public/ShaderLang.h|glslang-dev"
@@ -146,7 +147,6 @@ add_sanitizer_needs() {
     esac
     needs+=(
         "command clang++|clang"
-        "command ld.lld|lld"
         "command llvm-symbolizer|llvm"
         "file /usr/lib/llvm-$version/lib/clang/*/lib/linux/libclang_rt.asan-*.a|libclang-rt-$version-dev"
     )
