@@ -45,8 +45,8 @@ build=build/sanitize
 # The command has no such exit code, so that a report is noticed whatever the command would have returned.
 export ASAN_OPTIONS=exitcode=99 UBSAN_OPTIONS=print_stacktrace=1 LSAN_OPTIONS=exitcode=99
 export NO_COLOR=1
-# Lavapipe's machine code is not what is tested here, and pictures are small.
-export GALLIVM_PERF=nopt
+# Neither lavapipe's machine code nor its threads are tested here, and pictures are small.
+export GALLIVM_PERF=nopt LP_NUM_THREADS=0
 models=${GLINT_MODELS:-../shared/models}
 # Bounds what a hang costs; the longest command takes two minutes.
 export kTimeout=900

@@ -54,10 +54,12 @@ private:
 
 int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
-    // Lavapipe's LLVM passes take longer than what they save in pictures of a few thousand pixels. They
-    // change no result, and the nightly run has them. Commands that a test runs inherit this.
+    // Lavapipe's LLVM passes take longer than what they save in pictures of a few thousand pixels, and its
+    // threads wait for each other while the tests beside this one keep all cores busy. Neither changes a
+    // result, and the nightly run has both. Commands that a test runs inherit this.
     if (!glint::test::nightly()) {
         setenv("GALLIVM_PERF", "nopt", 0);
+        setenv("LP_NUM_THREADS", "0", 0);
     }
     if (const char* const path = std::getenv("GLINT_TEST_TIMES")) {
         testing::UnitTest::GetInstance()->listeners().Append(new CaseTimes(path));
