@@ -1,8 +1,8 @@
 #include "cli/command_line.h"
 
 #include "cli/commands.h"
-#include "cli/options/diagnostics_options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/options.h"
+#include "cli/options/setting_options.h"
 #include "cli/options/usage.h"
 #include "gltf/codecs/basisu.h"
 #include "measure/commit.h"
@@ -14,14 +14,31 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
+#include <unistd.h>
 #include <vector>
 
 namespace glint::cli {
+
+int startCompanion(const Console& console, const char* program, std::span<const char* const> line,
+                   const Diagnostic& missing) {
+    std::error_code error;
+    const std::string path =
+        (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / program).string();
+    std::vector<char*> words{const_cast<char*>(path.c_str())};
+    for (const char* const word : line) {
+        words.push_back(const_cast<char*>(word));
+    }
+    words.push_back(nullptr);
+    execv(path.c_str(), words.data());
+    return fail(console, missing);
+}
 
 namespace {
 

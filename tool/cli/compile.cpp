@@ -3,10 +3,10 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/arguments.h"
-#include "cli/compile/cache.h"
 #include "cli/compile/depfile.h"
 #include "cli/compile/held_signals.h"
 #include "cli/compile/ninja_plan.h"

@@ -1,8 +1,8 @@
 // glint explain: shows which key and which case each material gets, and why.
-#include "base/suggest.h"
+#include "base/text.h"
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/compile/cache.h"
 #include "cli/explain/material_text.h"
 #include "cli/explain/motion_text.h"
 #include "cli/explain/plan_text.h"

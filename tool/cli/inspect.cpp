@@ -4,7 +4,6 @@
 #include "cli/inspect/pipelines.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "cli/traffic.h"
 #include "emit/package/json.h"
 #include "inspect/package.h"
 #include "plan/plan.h"

@@ -1,7 +1,7 @@
 // glint view: shows a scene in a window.
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/compile/cache.h"
 #include "cli/explain/material_text.h"
 #include "cli/render/arguments.h"
 #include "cli/render/pipeline_cache.h"

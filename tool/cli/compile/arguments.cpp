@@ -3,11 +3,11 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "cli/options/options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/setting_options.h"
 #include "emit/compile.h"
 #include "emit/package/embed_source.h"
 #include "emit/package/write.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "resolve/host.h"
 
 #include <CLI/CLI.hpp>

@@ -1,8 +1,8 @@
 // The command line of `glint compile`.
 #pragma once
 
+#include "cli/cache.h"
 #include "cli/compile/depfile.h"
-#include "cli/options/cache_options.h"
 #include "cli/options/setting_options.h"
 
 #include <CLI/CLI.hpp>

@@ -2,7 +2,6 @@
 
 #include "base/files.h"
 #include "emit/module_files.h"
-#include "emit/module_text.h"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,8 @@
 #include "base/files.h"
 #include "base/input_watch.h"
 #include "cli/compile/held_signals.h"
-#include "cli/options/diagnostics_options.h"
 #include "cli/options/options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/setting_options.h"
 #include "emit/package/write.h"
 
 #include <glint/package_watch.h>

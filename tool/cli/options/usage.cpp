@@ -1,6 +1,6 @@
 #include "cli/options/usage.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cctype>

@@ -1,8 +1,8 @@
 #include "cli/render/arguments.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "cli/options/options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/setting_options.h"
 #include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"

@@ -1,7 +1,7 @@
 // The command line of glint render.
 #pragma once
 
-#include "cli/options/cache_options.h"
+#include "cli/cache.h"
 #include "cli/options/motion_options.h"
 #include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"

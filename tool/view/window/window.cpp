@@ -1,7 +1,7 @@
 // The window's start, loop and end.
 #include "view/window/window.h"
 
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/observer.h>
 #include <glint/measure/render_settings.h>
