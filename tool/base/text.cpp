@@ -12,11 +12,20 @@ std::string join(const std::vector<std::string>& words) {
     return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-std::string someOf(const std::vector<std::string>& texts, std::size_t most) {
+std::string firstOf(const std::vector<std::string>& texts, std::size_t most, std::string_view separator,
+                    std::string_view last) {
     const std::size_t shown = std::min(texts.size(), most);
-    const std::string text =
-        fmt::format("{}", fmt::join(texts.begin(), texts.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
-    return texts.size() > shown ? text + fmt::format("; and {} more", texts.size() - shown) : text;
+    const auto end = texts.begin() + static_cast<std::ptrdiff_t>(shown);
+    const std::string text = fmt::format("{}", fmt::join(texts.begin(), end, separator));
+    return texts.size() > shown ? fmt::format("{}{}{} more", text, last, texts.size() - shown) : text;
+}
+
+std::string someOf(const std::vector<std::string>& texts, std::size_t most) {
+    return firstOf(texts, most, "; ", "; and ");
+}
+
+std::string counted(std::size_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
 std::string shellQuoted(std::string_view text) {

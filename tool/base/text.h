@@ -12,8 +12,14 @@ namespace glint::base {
 // Returns "a, b, c", or "-" for an empty list.
 std::string join(const std::vector<std::string>& words);
 
-// Returns "a; b; c" of the first texts, and how many more there are.
+// Returns "a, b and 4 more" of the texts.
+std::string firstOf(const std::vector<std::string>& texts, std::size_t most,
+                    std::string_view separator = ", ", std::string_view last = " and ");
+// Returns "a; b; and 4 more".
 std::string someOf(const std::vector<std::string>& texts, std::size_t most = 5);
+
+// Returns "1 case" or "3 cases".
+std::string counted(std::size_t count, std::string_view noun);
 
 // Returns the text in single quotes, as bash and zsh accept them.
 std::string shellQuoted(std::string_view text);

@@ -26,8 +26,9 @@
 
 namespace glint::cli {
 
-int startCompanion(const Console& console, const char* program, std::span<const char* const> line,
-                   const Diagnostic& missing) {
+using Arguments = std::span<const char* const>;
+
+Diagnostic startCompanion(const char* program, Arguments line, const Diagnostic& missing) {
     std::error_code error;
     const std::string path =
         (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / program).string();
@@ -37,12 +38,10 @@ int startCompanion(const Console& console, const char* program, std::span<const 
     }
     words.push_back(nullptr);
     execv(path.c_str(), words.data());
-    return fail(console, missing);
+    return missing;
 }
 
 namespace {
-
-using Arguments = std::span<const char* const>;
 
 std::string versionText() {
     return fmt::format(
@@ -104,7 +103,8 @@ void addHelp(CLI::App& app, Action& chosen) {
 // Runs the work. It fails if a warning counts as an error, or if its results could not be written.
 int act(const Action& chosen, const ReportArguments& report) {
     const Console console(report.options());
-    int code = chosen(console);
+    const Result<int> done = chosen(console);
+    int code = done ? *done : fail(console, done.error());
     if (console.refused()) {
         console.report(makeError("werror", "", "there are warnings that count as errors",
                                  "fix them, or leave out --werror and -Werror"));

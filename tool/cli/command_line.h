@@ -27,12 +27,9 @@ struct Companion {
                           std::uint64_t boxes) = nullptr;
 };
 
-// Becomes the program of that name beside this one, with the same command line. Returns only if that fails: a
-// failed command's exit code, after `missing` is reported.
-int startCompanion(const Console& console, const char* program, std::span<const char* const> line,
-                   const Diagnostic& missing);
-
-// --- The `glint` command: subcommands, options, exit codes ---
+// Becomes the program of that name beside this one, with the same command line. Returns only if that fails:
+// `missing`.
+Diagnostic startCompanion(const char* program, std::span<const char* const> line, const Diagnostic& missing);
 
 // Parses the command line and does what it says. Results go to stdout, diagnostics to stderr.
 int runCommandLine(int argc, const char* const* argv, const Companion& companion = {});

@@ -52,9 +52,8 @@ std::string featureList(const materials::MaterialModel& model, materials::Featur
 std::string droppedText(const compiler::Plan& plan) {
     std::vector<std::vector<std::string>> rows;
     for (const compiler::DroppedFeature& dropped : plan.dropped) {
-        const std::size_t count = dropped.materials.size();
-        rows.push_back({"  " + dropped.feature, fmt::format("{} material{}", count, count == 1 ? "" : "s"),
-                        dropped.reason});
+        rows.push_back(
+            {"  " + dropped.feature, base::counted(dropped.materials.size(), "material"), dropped.reason});
     }
     return rows.empty() ? std::string() : "\ndropped\n" + formatFields(rows);
 }

@@ -196,15 +196,16 @@ void addJobs(CLI::App& command, int& jobs) {
           [](const std::string& text) { return complaintAboutWhole(text, 0, kMost); });
 }
 
-void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks) {
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks,
+                     const std::string& group) {
     addText(command, "--device", device, "NAME", "part of the GPU's name (default: the first suitable one)")
-        .group("Device");
+        .group(group);
     addFlag(
         command, "--validate", validate,
         wrapped("run with the Vulkan validation layers, synchronisation included: any message is an error" +
                     checks,
                 kHelpColumns))
-        .group("Device");
+        .group(group);
 }
 
 void addWords(const CLI::Option& option, std::vector<std::string>& words) {

@@ -18,8 +18,8 @@ namespace glint::cli {
 // The group of options about how a command works, which change nothing in what it writes.
 inline constexpr const char* kWork = "Work";
 
-// The work of a subcommand once its command line is parsed. Returns the exit code.
-using Action = std::function<int(const Console&)>;
+// The work of a subcommand once its command line is parsed. Returns the exit code; an error is reported.
+using Action = std::function<Result<int>(const Console&)>;
 
 // Adds a subcommand with its short help.
 CLI::App& addCommand(CLI::App& app, const CommandText& text);
@@ -77,7 +77,8 @@ std::string switchFlags(const std::string& flags, const std::string& on, const s
 // Adds --jobs: how many threads work at the same time.
 void addJobs(CLI::App& command, int& jobs);
 // Adds --device and --validate. `checks` is what the latter does besides.
-void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {});
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {},
+                     const std::string& group = "Device");
 
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);

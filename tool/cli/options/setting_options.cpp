@@ -349,13 +349,6 @@ namespace {
 
 constexpr const char* kOption = "--settings";
 
-// Returns null if there is no command of that name.
-const CLI::App* findCommand(const CLI::App& app, std::string_view name) {
-    const auto commands =
-        app.get_subcommands([name](const CLI::App* command) { return command->get_name() == name; });
-    return commands.empty() ? nullptr : commands.front();
-}
-
 // Returns the value of an option, joined to it or as the next word; nothing if the option is not given.
 std::optional<std::string> given(std::span<const char* const> arguments, std::string_view option) {
     for (std::size_t i = 0; i < arguments.size(); ++i) {
