@@ -1,5 +1,4 @@
 // glint explain: shows which key and which case each material gets, and why.
-
 #include "base/text.h"
 #include "cli/cache.h"
 #include "cli/command_line.h"

@@ -266,12 +266,9 @@ void addLint(CLI::App& app, Action& chosen) {
          .examples = {"glint lint scene.glint", "glint lint scene.glint --max-texture-fetches 12 --werror"},
          .usual = {"--max-instructions", "--max-texture-fetches", "--max-ray-queries", "--malioc", "--core",
                    "--werror", "-W", "--json"}});
-    command.add_option("PATH", arguments->paths, "SPIR-V files, packages, or folders of .spv files")
-        ->type_name("FILE|DIR")
-        ->required()
-        ->check(CLI::Validator(
-            [](const std::string& text) { return text.empty() ? std::string("is empty") : std::string(); },
-            ""));
+    addTexts(command, "PATH", arguments->paths, "FILE|DIR",
+             "SPIR-V files, packages, or folders of .spv files")
+        .required();
     addBudget(command, "--max-instructions", arguments->instructions, "instructions");
     addBudget(command, "--max-texture-fetches", arguments->textureFetches, "texture fetches");
     addBudget(command, "--max-ray-queries", arguments->rayQueries, "ray queries");

@@ -244,26 +244,15 @@ constexpr std::string_view kErrorPrefix = "error=";
 // The value that CLI11 gives to a flag without a value.
 constexpr std::string_view kAll = "true";
 
-std::vector<std::string> idsOf(std::uint8_t severities) {
-    std::vector<std::string> ids;
-    for (const DiagnosticInfo& info : diagnosticTable()) {
-        if ((info.severities & severities) != 0) {
-            ids.emplace_back(info.id);
-        }
-    }
-    return ids;
-}
-
 // Returns an empty text if `id` names a diagnostic of one of the severities, else the reason why it does not.
 std::string checkId(const std::string& id, std::uint8_t severities) {
-    const DiagnosticInfo* const info = findDiagnostic(id);
-    if (info == nullptr) {
-        const std::string suggestion = base::suggestion(id, idsOf(severities));
+    const std::uint8_t known = severitiesOf(id);
+    if (known == 0) {
+        const std::string suggestion = base::suggestion(id, diagnosticIds(severities));
         return "there is no diagnostic \"" + id + "\"" +
                (suggestion.empty() ? "; docs/diagnostics.md lists them" : suggestion);
     }
-    return (info->severities & severities) != 0 ? std::string()
-                                                : "\"" + id + "\" is always an error; name a warning";
+    return (known & severities) != 0 ? std::string() : "\"" + id + "\" is always an error; name a warning";
 }
 
 std::string checkWarning(const std::string& value) {
