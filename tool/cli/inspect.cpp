@@ -8,11 +8,12 @@
 #include "inspect/package.h"
 #include "plan/plan.h"
 #include "resolve/resolve.h"
-#include "settings/values.h"
+#include "settings/descriptor.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 
@@ -93,7 +94,8 @@ base::Json scenesToJson(const inspect::InspectedPackage& inspected) {
 std::string bindingsOf(const Package& package) {
     compiler::Settings settings;
     settings.compile.bindings = package.bindings();
-    return compiler::values::kBindings.text(settings);
+    return std::ranges::find(compiler::settingsTable(), "bindings", &compiler::Descriptor::name)
+        ->values.text(settings);
 }
 
 std::string lightsOf(const Package& package) {

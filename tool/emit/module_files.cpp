@@ -4,6 +4,7 @@
 #include "cache/store.h"
 #include "emit/context.h"
 #include "emit/glsl/prune.h"
+#include "emit/warm_modules.h"
 #include "spirv/statistics.h"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
-// Effects, that is, the uses of rays in a picture, as shaders/effects/*/*.json and the declarations of packs
-// define them.
+// The parts of materials and the effects, that is, the uses of rays in a picture, as
+// shaders/materials/*/*.json, shaders/effects/*/*.json and packs declare them.
 #pragma once
 
 #include "materials/expression.h"
@@ -87,9 +87,9 @@ package::EffectSet effectSetOf(const std::vector<EffectDeclaration>& effects, st
 // Returns the bit of the effect of that name, or 0 if there is none.
 package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::string_view name);
 
-// The parts of materials: parameters, textures and features, as shaders/materials/*/*.json declare them. The
-// model is data. materials/declarations.h reads it; importing, planning, records and documents follow from
-// it.
+// --- Materials: parameters, textures and features ---
+//
+// The model is data. materials/declarations.h reads it; importing, planning, records and documents follow.
 
 // A set of features by their bits.
 //

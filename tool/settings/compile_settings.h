@@ -1,4 +1,4 @@
-// The spelling of the words in CompileSettings::layers.
+// The settings with which a package is compiled.
 #pragma once
 
 #include "plan/effects.h"
@@ -18,10 +18,9 @@
 
 namespace glint::compiler {
 
-// Ends a word whose layer a package may lack, because it has no effect with such a layer: "hit-shader?".
+// Ends a word of CompileSettings::layers whose layer a package may lack, because it has no effect with such a
+// layer: "hit-shader?".
 inline constexpr char kOptionalLayer = '?';
-
-// --- The settings with which a package is compiled ---
 
 // The choice of the level of a texture that hits read.
 enum class TextureLod : std::uint8_t {

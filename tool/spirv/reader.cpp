@@ -1,4 +1,5 @@
 // For spv::HasResultAndType().
+#define SPV_ENABLE_UTILITY_CODE
 
 #include "spirv/reader.h"
 
@@ -7,8 +8,6 @@
 #include <cstddef>
 #include <map>
 #include <utility>
-
-#define SPV_ENABLE_UTILITY_CODE
 
 namespace glint::compiler {
 
