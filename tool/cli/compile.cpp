@@ -93,7 +93,7 @@ Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackag
     }
     // The dependency file comes last, because it tells Make and Ninja that the others exist.
     if (!outputs.depfile.file.empty()) {
-        GLINT_TRY(const auto text, makeDepfile(outputs.depfile.targets, outputs.dependencies));
+        GLINT_TRY(const auto text, compiler::makeDepfile(outputs.depfile.targets, outputs.dependencies));
         GLINT_TRY_DO(staging.add(outputs.depfile.file, text));
     }
     if (!outputs.folder.empty()) {
@@ -407,7 +407,8 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
         dependencies.push_back(file.string());
     }
     if (!arguments.depfile.file.empty()) {
-        GLINT_TRY([[maybe_unused]] const auto listed, makeDepfile(arguments.depfile.targets, dependencies));
+        GLINT_TRY([[maybe_unused]] const auto listed,
+                  compiler::makeDepfile(arguments.depfile.targets, dependencies));
     }
     if (arguments.dryRun) {
         // Everything but to compile and to write.
