@@ -24,13 +24,11 @@ if(GLINT_BUILD_COMPILER)
   foreach(header base/files.h base/memo.h emit/compile.h emit/glsl/unit.h emit/material_layout.h
                  emit/package/compiled_package.h emit/package/write.h gltf/animation.h gltf/import.h
                  gltf/import_options.h gltf/planning_inputs.h gltf/scene.h gltf/scene_list.h gltf/texels/fit.h
-                 gltf/texels/levels.h gltf/texels/texture_use.h image/error.h image/png.h image/text.h
-                 materials/effect_declaration.h materials/expression.h materials/interval.h materials/material.h
-                 materials/material_model.h plan/built_in_costs.h plan/cost.h plan/effects.h plan/frame_rounds.h
-                 plan/gpu_costs.h plan/key.h plan/lock_ids.h plan/merge.h plan/plan.h plan/strategy_choice.h
-                 plan/strategy_cost.h resolve/build.h resolve/resolve.h settings/compile_settings.h
-                 settings/configuration.h settings/descriptor.h settings/settings.h settings/table.h
-                 spirv/statistics.h)
+                 gltf/texels/levels.h gltf/texels/texture_use.h image/compare.h image/png.h image/text.h
+                 materials/expression.h materials/interval.h materials/material.h materials/material_model.h
+                 plan/cost.h plan/effects.h plan/frame_rounds.h plan/gpu_costs.h plan/key.h plan/lock.h
+                 plan/merge.h plan/plan.h plan/strategy_cost.h resolve/build.h resolve/resolve.h
+                 settings/compile_settings.h settings/descriptor.h settings/settings.h spirv/statistics.h)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
   endforeach()

@@ -66,11 +66,11 @@ print("| {} | {:,} | {:,} | {:.0f} % |".format(sys.argv[1], lines["count"], line
 printf '| reader | lines | reached | |\n|---|---|---|---|\n'
 row "\`tool/gltf\`" tool/gltf/*.cpp
 row "\`tool/plan/lock*\`" tool/plan/lock*.cpp
-row "\`tool/spirv\`: reader, statistics, lint" tool/spirv/{call_graph,reader,statistics}.cpp tool/spirv/lint*.cpp
-row "\`tool/image\`" tool/image/{png,exr,exr_bounds,hdr,image_file}.cpp
+row "\`tool/spirv\`: reader, statistics, lint" tool/spirv/{reader,statistics}.cpp tool/spirv/lint*.cpp
+row "\`tool/image\`" tool/image/{png,exr,hdr,image_file}.cpp
 row "\`tool/cache\`" tool/cache/*.cpp
 row "\`tool/inspect\`, \`tool/resolve\`: manifest, profile" tool/inspect/package.cpp tool/resolve/profile.cpp
-row "\`tool/base\`: JSON and PNG bounds" tool/base/{json,png_bounds}.cpp
+row "\`tool/base\`: JSON and PNG bounds" tool/base/{json,image_limits}.cpp
 row "\`runtime/src/package/\`" runtime/src/package/package*.cpp
 if [[ -n $html ]]; then
     "$tools/llvm-cov" show -format=html -output-dir "$html" -instr-profile "$build/all.profdata" "${objects[@]}" \

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Fits the model behind `--lights auto` (tool/plan/light_samples.h), and writes tool/plan/light_constants.h.
+"""Fits the model behind `--lights auto` (tool/resolve/light.h), and writes tool/plan/light_constants.h.
 
     benchmarks/lights/fit_light_costs.py [--check]
 

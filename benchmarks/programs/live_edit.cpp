@@ -4,7 +4,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "gltf/import.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 
 #include <glint/context.h>
 #include <glint/package_watch.h>

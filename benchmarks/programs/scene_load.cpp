@@ -5,7 +5,7 @@
 #include "context/commands.h"
 #include "emit/compile.h"
 #include "gltf/import.h"
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <glint/context.h>
 #include <glint/measure/render_settings.h>

@@ -5,7 +5,7 @@
 #include "image/compare.h"
 #include "image/image_file.h"
 #include "resolve/resolve.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/render_settings.h>
 #include <glint/measure/target.h>

@@ -80,16 +80,12 @@ void expectKnownDiagnostics(const std::string& err, bool raised) {
         if (!std::regex_search(line, match, kDiagnostic)) {
             continue;
         }
-        const cli::DiagnosticInfo* const info = cli::findDiagnostic(match[2].str());
-        if (info == nullptr) {
-            ADD_FAILURE() << "not in the table of diagnostics: " << line;
-            continue;
-        }
+        const std::uint8_t known = cli::severitiesOf(match[2].str());
         const std::uint8_t severity = match[1] == "error"     ? cli::kError
                                       : match[1] == "warning" ? cli::kWarning
                                                               : cli::kNote;
-        const bool isRaised = raised && severity == cli::kError && (info->severities & cli::kWarning) != 0;
-        EXPECT_TRUE((info->severities & severity) != 0 || isRaised) << line;
+        const bool isRaised = raised && severity == cli::kError && (known & cli::kWarning) != 0;
+        EXPECT_TRUE((known & severity) != 0 || isRaised) << "not in the table of diagnostics: " << line;
     }
 }
 

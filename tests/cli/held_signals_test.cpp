@@ -1,4 +1,4 @@
-#include "cli/compile/held_signals.h"
+#include "cli/compile/watch.h"
 
 #include <gtest/gtest.h>
 

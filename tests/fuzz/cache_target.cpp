@@ -2,7 +2,6 @@
 // it as other versions may have packed them. The worst result may be that there is no entry.
 #include "cache/action.h"
 #include "cache/module_cache.h"
-#include "cache/packing.h"
 #include "cache/store.h"
 #include "cli/compile/summary.h"
 #include "fuzz/fuzz_target.h"

@@ -1,6 +1,6 @@
 // Fuzzes the text of a lock file.
 #include "fuzz/fuzz_target.h"
-#include "plan/lock_text.h"
+#include "plan/lock.h"
 
 #include <string>
 #include <variant>

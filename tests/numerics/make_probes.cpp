@@ -6,7 +6,7 @@
 #include "emit/glsl/flatten.h"
 #include "emit/material_code.h"
 #include "materials/material_model.h"
-#include "resolve/builtin.h"
+#include "resolve/host.h"
 #include "translate.h"
 
 #include <fmt/format.h>

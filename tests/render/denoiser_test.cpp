@@ -2,7 +2,7 @@
 // what a package lacks.
 #include "denoiser.h"
 
-#include "image/error.h"
+#include "image/compare.h"
 #include "render/hall.h"
 #include "render/harness.h"
 

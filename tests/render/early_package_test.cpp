@@ -1,7 +1,7 @@
 // Early packages, which show an edit of a pack as a draft until the whole package is made.
 #include "base/files.h"
 #include "emit/package/early.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "render/edited_scene.h"
 #include "render/pixel_test.h"
 #include "render/replacement.h"

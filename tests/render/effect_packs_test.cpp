@@ -2,7 +2,6 @@
 #include "emit/compile.h"
 #include "materials/declaration_files.h"
 #include "materials/declarations.h"
-#include "materials/packs.h"
 #include "render/pixel_test.h"
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include "emit/glsl/flatten.h"
 #include "emit/sources.h"
 #include "gltf/import.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "render/hit_kernel.h"
 #include "render/pixel_test.h"
 #include "spirv/compiler.h"

@@ -39,5 +39,5 @@ list(JOIN added "\n" added)
 file(WRITE "${OUTPUT}/embedded.list" "${files}${added}\n")
 execute_process(
   COMMAND "${CMAKE_COMMAND}" "-DOUTPUT=${OUTPUT}/embedded.cpp" "-DLIST=${OUTPUT}/embedded.list"
-          "-DHEADER=resolve/builtin.h" "-DFUNCTION=glint::compiler::builtinFiles" -P
+          "-DHEADER=resolve/host.h" "-DFUNCTION=glint::compiler::builtinFiles" -P
           "${SOURCE}/cmake/GlintEmbed.cmake" COMMAND_ERROR_IS_FATAL ANY)

@@ -1,7 +1,7 @@
 // The strategy that docs/strategies.md makes, as it is printed. This program is linked with a copy of the
 // table that has its row, and with its shaders among those of Glint; all else is the product.
 #include "emit/compile.h"
-#include "plan/strategy_choice.h"
+#include "plan/strategy_cost.h"
 #include "render/pixel_test.h"
 #include "settings/settings.h"
 

@@ -1,7 +1,7 @@
 // What packs add beside lobes: attributes of vertices, a time, coordinates and opacity. Every strategy,
 // tracer and merge policy shows them alike.
 #include "base/files.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "render/pixel_test.h"
 #include "render/ways.h"
 #include "support/temporary_folder.h"

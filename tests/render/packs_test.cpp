@@ -1,8 +1,7 @@
 // Materials of packs: the example packs, and the pack that docs/material_features.md makes as it is printed.
-#include "materials/packs.h"
-
 #include "base/files.h"
 #include "gltf/import.h"
+#include "materials/declarations.h"
 #include "render/pixel_test.h"
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"

@@ -8,7 +8,7 @@
 #include "render/traced_frame.h"
 #include "renderer/pass_dependencies.h"
 #include "renderer/renderer_state.h"
-#include "resolve/builtin.h"
+#include "resolve/host.h"
 #include "support/temporary_folder.h"
 
 #include <glint/ray_steps.h>

@@ -1,7 +1,7 @@
 #include "view/shot_command.h"
 
 #include "resolve/resolve.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "view/passes_panel.h"
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "view/virtual_screen.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "cache/module_cache.h"
 
-#include "cache/packing.h"
+#include "cache/store.h"
 
 #include <cstring>
 #include <utility>

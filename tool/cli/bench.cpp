@@ -4,9 +4,9 @@
 #include "base/json.h"
 #include "cli/bench/arguments.h"
 #include "cli/bench/text.h"
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/compile/cache.h"
 #include "cli/console.h"
 #include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
@@ -86,21 +86,15 @@ std::string fittedText(const std::optional<measure::DeviceFile>& fitted, const f
 }
 
 // Measures and writes the results. Returns the exit code.
-int calibrate(const Console& console, const BenchArguments& arguments) {
+Result<int> calibrate(const Console& console, const BenchArguments& arguments) {
     measure::CalibrationReport report;
     report.command = arguments.command;
     report.date = measure::utcNow();
     report.rounds = static_cast<std::uint32_t>(arguments.rounds);
     report.seed = arguments.render.frame.seed + 1;
     report.quick = arguments.quick;
-    if (Status done = measureAll(console, arguments, report); !done) {
-        return fail(console, done.error());
-    }
-    const Result<std::optional<measure::DeviceFile>> fitted =
-        measure::fitCalibration(console, arguments.output);
-    if (!fitted) {
-        return fail(console, fitted.error());
-    }
+    GLINT_TRY_DO(measureAll(console, arguments, report));
+    GLINT_TRY(const auto fitted, measure::fitCalibration(console, arguments.output));
     if (console.refused()) {
         return kExitFailed;
     }
@@ -110,7 +104,7 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
         console.print(toText(report));
         console.print(fmt::format("\n{} has the same numbers.\n",
                                   (fs::path(arguments.output) / measure::kCalibrationFile).string()));
-        console.print(fittedText(*fitted, arguments.output));
+        console.print(fittedText(fitted, arguments.output));
     }
     return kExitDone;
 }
@@ -134,31 +128,18 @@ Status bench(const Console& console, const BenchArguments& arguments, const gltf
     return done;
 }
 
-int run(const Console& console, const BenchArguments& arguments) {
-    const auto fail = [&console](const Diagnostic& error) {
-        console.report(error);
-        return kExitFailed;
-    };
-    if (Status writable = measure::checkBenchFolder(arguments.output); !writable) {
-        return fail(writable.error());
-    }
+Result<int> run(const Console& console, const BenchArguments& arguments) {
+    GLINT_TRY_DO(measure::checkBenchFolder(arguments.output));
     console.progress("reading " + arguments.render.scene);
     CompileCache known(arguments.render.cache, "");
-    const Result<gltf::ImportOptions> import =
-        importOptions(arguments.render, ImageReading::Files, known.store());
-    if (!import) {
-        return fail(import.error());
-    }
-    const Result<gltf::Scene> scene = importScene(arguments.render.scene, *import);
-    if (!scene) {
-        return fail(scene.error());
-    }
-    console.report(scene->warnings);
+    GLINT_TRY(const auto import, importOptions(arguments.render, ImageReading::Files, known.store()));
+    GLINT_TRY(const auto scene, importScene(arguments.render.scene, import));
+    console.report(scene.warnings);
     if (console.refused()) {
         return kExitFailed;
     }
     const measure::SceneReader reader = [&](bool trustsTextures) {
-        gltf::ImportOptions other = *import;
+        gltf::ImportOptions other = import;
         other.trustTextures = trustsTextures;
         return importScene(arguments.render.scene, other);
     };
@@ -172,15 +153,11 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = measure::metricNamed(arguments.metric);
-    if (Status done = bench(console, arguments, *scene, reader, report); !done) {
-        return fail(done.error());
-    }
+    GLINT_TRY_DO(bench(console, arguments, scene, reader, report));
     if (console.refused()) {
         return kExitFailed;
     }
-    if (Status written = measure::writeBench(report, arguments.output); !written) {
-        return fail(written.error());
-    }
+    GLINT_TRY_DO(measure::writeBench(report, arguments.output));
     if (console.isJson()) {
         console.result(measure::toJson(report));
     } else {
@@ -190,32 +167,22 @@ int run(const Console& console, const BenchArguments& arguments) {
                                   (std::filesystem::path(arguments.output) / measure::kReportFile).string()));
     }
     if (report.advice && !report.advice->point) {
-        return fail(makeError(
+        return makeError(
             "bench-advice", arguments.render.scene, report.advice->why,
-            "allow more time or more error, or leave out the limit; the measurements are still written"));
+            "allow more time or more error, or leave out the limit; the measurements are still written");
     }
     return kExitDone;
 }
 
-int reportDevice(const Console& console, const BenchArguments& arguments) {
+Result<int> reportDevice(const Console& console, const BenchArguments& arguments) {
     const std::string& file = arguments.calibrate.deviceReport;
-    if (Status writable = base::checkOutputFile(file); !writable) {
-        return fail(console, writable.error());
-    }
+    GLINT_TRY_DO(base::checkOutputFile(file));
     CompileCache cache(arguments.render.cache, "");
     std::optional<gltf::Scene> scene;
     if (!arguments.render.scene.empty()) {
-        const Result<gltf::ImportOptions> import =
-            importOptions(arguments.render, ImageReading::Files, cache.store());
-        if (!import) {
-            return fail(console, import.error());
-        }
-        Result<gltf::Scene> read = importScene(arguments.render.scene, *import);
-        if (!read) {
-            return fail(console, read.error());
-        }
-        console.report(read->warnings);
-        scene = std::move(*read);
+        GLINT_TRY(const auto import, importOptions(arguments.render, ImageReading::Files, cache.store()));
+        GLINT_TRY(scene, importScene(arguments.render.scene, import));
+        console.report(scene->warnings);
     }
     const measure::DeviceReportSettings settings{arguments.render,
                                                  static_cast<std::uint32_t>(arguments.rounds),
@@ -224,11 +191,9 @@ int reportDevice(const Console& console, const BenchArguments& arguments) {
                                                                 cache.modules(), cache.store());
     cache.close(console);
     if (!report) {
-        return fail(console, report.error());
+        return report.error();
     }
-    if (Status written = base::writeFile(file, base::toText(*report)); !written) {
-        return fail(console, written.error());
-    }
+    GLINT_TRY_DO(base::writeFile(file, base::toText(*report)));
     if (console.refused()) {
         return kExitFailed;
     }
@@ -241,7 +206,7 @@ int reportDevice(const Console& console, const BenchArguments& arguments) {
     return kExitDone;
 }
 
-int runChosen(const Console& console, const BenchArguments& arguments) {
+Result<int> runChosen(const Console& console, const BenchArguments& arguments) {
     if (!arguments.calibrate.deviceReport.empty()) {
         return reportDevice(console, arguments);
     }

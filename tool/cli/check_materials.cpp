@@ -142,31 +142,23 @@ Result<std::vector<std::string>> writePictures(const std::string& folder,
     return files;
 }
 
-int checkMaterialFeatures(const Console& console, const CheckArguments& arguments) {
+Result<int> checkMaterialFeatures(const Console& console, const CheckArguments& arguments) {
     measure::CheckMaterialsOptions options = arguments.options;
     options.samples = static_cast<std::uint32_t>(arguments.samples);
     options.combinations = static_cast<std::uint32_t>(arguments.combinations);
     options.pictures = !arguments.pictures.empty();
     if (options.pictures) {
-        if (Status possible = base::checkOutputFolder(arguments.pictures); !possible) {
-            return fail(console, possible.error());
-        }
+        GLINT_TRY_DO(base::checkOutputFolder(arguments.pictures));
     }
-    const Result<measure::MaterialChecksReport> report = measure::checkMaterials(options, console);
-    if (!report) {
-        return fail(console, report.error());
-    }
-    const Result<std::vector<std::string>> pictures = writePictures(arguments.pictures, report->pictures);
-    if (!pictures) {
-        return fail(console, pictures.error());
-    }
+    GLINT_TRY(const auto report, measure::checkMaterials(options, console));
+    GLINT_TRY(const auto pictures, writePictures(arguments.pictures, report.pictures));
     if (console.isJson()) {
-        console.result(toJson(*report, *pictures));
+        console.result(toJson(report, pictures));
     } else {
-        console.print(toText(*report, console.isVerbose() ? Detail::Whole : Detail::Short));
+        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     bool failed = false;
-    for (const measure::FeatureChecks& feature : report->features) {
+    for (const measure::FeatureChecks& feature : report.features) {
         for (const Diagnostic& failure : failuresOf(feature)) {
             console.report(failure);
             failed = true;
@@ -220,13 +212,13 @@ void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* cons
                                                      : "is for --prove; give both, or neither");
             }
         }
-        chosen = [arguments, line, companion](const Console& console) {
+        chosen = [arguments, line, companion](const Console& console) -> Result<int> {
             if (!arguments->prove) {
                 return checkMaterialFeatures(console, *arguments);
             }
             if (companion.proveMaterials == nullptr) {
                 return startCompanion(
-                    console, "glint-verify", line,
+                    "glint-verify", line,
                     makeError("verify-missing", "", "this glint was built without its proofs",
                               "build the target glint-verify, which GLINT_VERIFY=ON has"));
             }

@@ -1,8 +1,8 @@
 #include "cli/command_line.h"
 
 #include "cli/commands.h"
-#include "cli/options/diagnostics_options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/options.h"
+#include "cli/options/setting_options.h"
 #include "cli/options/usage.h"
 #include "gltf/codecs/basisu.h"
 #include "measure/commit.h"
@@ -14,18 +14,34 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <system_error>
+#include <unistd.h>
 #include <vector>
 
 namespace glint::cli {
 
-namespace {
-
 using Arguments = std::span<const char* const>;
+
+Diagnostic startCompanion(const char* program, Arguments line, const Diagnostic& missing) {
+    std::error_code error;
+    const std::string path =
+        (std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / program).string();
+    std::vector<char*> words{const_cast<char*>(path.c_str())};
+    for (const char* const word : line) {
+        words.push_back(const_cast<char*>(word));
+    }
+    words.push_back(nullptr);
+    execv(path.c_str(), words.data());
+    return missing;
+}
+
+namespace {
 
 std::string versionText() {
     return fmt::format(
@@ -87,7 +103,8 @@ void addHelp(CLI::App& app, Action& chosen) {
 // Runs the work. It fails if a warning counts as an error, or if its results could not be written.
 int act(const Action& chosen, const ReportArguments& report) {
     const Console console(report.options());
-    int code = chosen(console);
+    const Result<int> done = chosen(console);
+    int code = done ? *done : fail(console, done.error());
     if (console.refused()) {
         console.report(makeError("werror", "", "there are warnings that count as errors",
                                  "fix them, or leave out --werror and -Werror"));

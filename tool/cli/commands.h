@@ -1,7 +1,6 @@
 // The subcommands. Each declares its options. If the command line names it, it sets `chosen` to its work.
 #pragma once
 
-#include "cli/companion.h"
 #include "cli/options/options.h"
 
 #include <CLI/CLI.hpp>
@@ -9,6 +8,8 @@
 #include <span>
 
 namespace glint::cli {
+
+struct Companion;
 
 // `line` has the words of the command line, without the program.
 void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line);

@@ -89,10 +89,10 @@ std::string toText(const image::ImageDifference& difference, double flip, const 
           fmt::format("{} in A, {} in B", difference.nonFinite, difference.referenceNonFinite)}});
 }
 
-// Returns nothing if the images are near enough.
-std::optional<Diagnostic> judge(const CompareArguments& arguments, const image::ImageDifference& difference) {
+// Has the error "max-error" unless the images are near enough.
+Status judge(const CompareArguments& arguments, const image::ImageDifference& difference) {
     if (!arguments.maxError) {
-        return std::nullopt;
+        return okStatus();
     }
     if (difference.nonFinite + difference.referenceNonFinite > 0) {
         return makeError("max-error", arguments.image,
@@ -103,42 +103,28 @@ std::optional<Diagnostic> judge(const CompareArguments& arguments, const image::
                          fmt::format("differs from {} by {:.6g}; the limit is {:.6g}", arguments.reference,
                                      difference.relative.value, *arguments.maxError));
     }
-    return std::nullopt;
+    return okStatus();
 }
 
-int compare(const Console& console, const CompareArguments& arguments) {
+Result<int> compare(const Console& console, const CompareArguments& arguments) {
     if (!arguments.diff.empty()) {
-        if (Status possible = base::checkOutputFile(arguments.diff); !possible) {
-            return fail(console, possible.error());
-        }
+        GLINT_TRY_DO(base::checkOutputFile(arguments.diff));
     }
-    const Result<LinearImage> image = image::readImage(arguments.image);
-    if (!image) {
-        return fail(console, image.error());
-    }
-    const Result<LinearImage> reference = image::readImage(arguments.reference);
-    if (!reference) {
-        return fail(console, reference.error());
-    }
-    const Result<image::ImageDifference> difference =
-        image::compareImages(*image, *reference, arguments.image, arguments.reference);
-    if (!difference) {
-        return fail(console, difference.error());
-    }
+    GLINT_TRY(const auto image, image::readImage(arguments.image));
+    GLINT_TRY(const auto reference, image::readImage(arguments.reference));
+    GLINT_TRY(const auto difference,
+              image::compareImages(image, reference, arguments.image, arguments.reference));
     if (!arguments.diff.empty()) {
-        if (Status written = image::writeImage(arguments.diff, image::differenceMap(*image, *reference));
-            !written) {
-            return fail(console, written.error());
-        }
+        GLINT_TRY_DO(image::writeImage(arguments.diff, image::differenceMap(image, reference)));
     }
-    const double flip = measureFlip(arguments, *image, *reference);
+    const double flip = measureFlip(arguments, image, reference);
     if (console.isJson()) {
-        console.result(toJson(*difference, flip, *image));
+        console.result(toJson(difference, flip, image));
     } else {
-        console.print(toText(*difference, flip, *image));
+        console.print(toText(difference, flip, image));
     }
-    const std::optional<Diagnostic> verdict = judge(arguments, *difference);
-    return verdict ? fail(console, *verdict) : kExitDone;
+    GLINT_TRY_DO(judge(arguments, difference));
+    return kExitDone;
 }
 
 }  // namespace

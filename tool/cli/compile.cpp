@@ -3,17 +3,15 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
 #include "cli/compile/arguments.h"
-#include "cli/compile/cache.h"
-#include "cli/compile/depfile.h"
-#include "cli/compile/held_signals.h"
-#include "cli/compile/ninja_plan.h"
 #include "cli/compile/summary.h"
 #include "cli/compile/watch.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "emit/module_files.h"
 #include "emit/package/embed_source.h"
 #include "emit/package/json.h"
 #include "emit/package/write.h"
@@ -47,7 +45,7 @@ namespace {
 struct CompileOutputs {
     std::filesystem::path folder;  // of the package
     std::filesystem::path embed;   // a C++ source
-    const DepfileArguments& depfile;
+    const compiler::Depfile& depfile;
     std::span<const std::string> dependencies;
 };
 
@@ -95,7 +93,7 @@ Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackag
     }
     // The dependency file comes last, because it tells Make and Ninja that the others exist.
     if (!outputs.depfile.file.empty()) {
-        GLINT_TRY(const auto text, makeDepfile(outputs.depfile.targets, outputs.dependencies));
+        GLINT_TRY(const auto text, compiler::makeDepfile(outputs.depfile.targets, outputs.dependencies));
         GLINT_TRY_DO(staging.add(outputs.depfile.file, text));
     }
     if (!outputs.folder.empty()) {
@@ -142,8 +140,8 @@ base::Json shadersToJson(const Outcome& outcome) {
 }
 
 base::Json planToJson(const Outcome& outcome) {
-    return outcome.planned ? base::Json{{"folder", outcome.arguments.planOnly},
-                                        {"ninja", planFile(outcome.arguments)},
+    return outcome.planned ? base::Json{{"folder", outcome.arguments.planOnly.path},
+                                        {"ninja", outcome.arguments.planOnly.buildFile()},
                                         {"modules", *outcome.planned}}
                            : base::Json(nullptr);
 }
@@ -224,7 +222,7 @@ std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
     }
     if (outcome.planned) {
         rows.push_back({"to compile", fmt::format("{} modules", *outcome.planned)});
-        rows.push_back({"next", "ninja -f " + shellWord(planFile(outcome.arguments))});
+        rows.push_back({"next", "ninja -f " + base::shellWords({outcome.arguments.planOnly.buildFile()})});
         return rows;
     }
     const bool written = outcome.package != nullptr;
@@ -274,58 +272,65 @@ std::vector<Diagnostic> warningsOf(std::span<const gltf::Scene> scenes) {
     return warnings;
 }
 
+// Returns the plan that makes the package of these arguments.
+compiler::NinjaPlan ninjaPlan(const CompileArguments& arguments) {
+    std::error_code error;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+    const auto wordsWith = [&](const std::vector<std::string>& further) {
+        std::vector<std::string> words{"compile"};
+        words.insert(words.end(), arguments.words.begin(), arguments.words.end());
+        words.insert(words.end(), further.begin(), further.end());
+        words.emplace_back("--");
+        words.insert(words.end(), arguments.scenes.begin(), arguments.scenes.end());
+        return words;
+    };
+    std::vector<std::string> again = arguments.reportWords;
+    again.push_back("--plan-only=" + arguments.planOnly.path);
+    if (!arguments.launcher.empty()) {
+        again.push_back("--launcher=" + arguments.launcher);
+    }
+    // Making the package is quiet, because planning has already reported everything.
+    return {.tool = error ? "glint" : self.string(),
+            .launcher = arguments.launcher,
+            .folder = arguments.planOnly,
+            .outputs = mainOutputs(arguments),
+            .plan = wordsWith(again),
+            .package = wordsWith({"--modules=" + arguments.planOnly.modules(),
+                                  "--depfile=" + arguments.planOnly.packageDepfile(), "--quiet"})};
+}
+
 // Writes the plan of what would be compiled. The plan decides shader IDs, so the lock file is written now.
-int planOnly(const Console& console, const CompileArguments& arguments, const compiler::Build& build,
-             std::span<const std::string> dependencies, base::Clock::time_point start) {
-    const Result<compiler::PackagePlan> planned = planPackage(build);
-    if (!planned) {
-        return fail(console, planned.error());
-    }
-    console.progress("writing " + planFile(arguments));
-    if (Status written = writePlan(arguments, *planned, dependencies); !written) {
-        return fail(console, written.error());
-    }
+Result<int> planOnly(const Console& console, const CompileArguments& arguments, const compiler::Build& build,
+                     std::span<const std::string> dependencies, base::Clock::time_point start) {
+    GLINT_TRY(const auto planned, planPackage(build));
+    console.progress("writing " + arguments.planOnly.buildFile());
+    GLINT_TRY_DO(writePlan(ninjaPlan(arguments), planned, dependencies));
     if (build.lockText) {
-        if (Status kept = base::writeFile(arguments.settings.lock.file, *build.lockText); !kept) {
-            return fail(console, kept.error());
-        }
+        GLINT_TRY_DO(base::writeFile(arguments.settings.lock.file, *build.lockText));
     }
-    if (Status listed = writeDepfile(arguments.depfile, dependencies); !listed) {
-        return fail(console, listed.error());
-    }
-    const Outcome outcome{.arguments = arguments, .build = build, .planned = planned->modules.size()};
+    GLINT_TRY_DO(writeDepfile(arguments.depfile, dependencies));
+    const Outcome outcome{.arguments = arguments, .build = build, .planned = planned.modules.size()};
     tell(console, summaryOf(outcome), std::nullopt, false, base::millisecondsSince(start));
     return kExitDone;
 }
 
-// Does everything but to compile and to write.
-int dryRun(const Console& console, const CompileArguments& arguments, const compiler::Build& build,
-           base::Clock::time_point start) {
-    if (const Result<compiler::PackagePlan> planned = planPackage(build); !planned) {
-        return fail(console, planned.error());
-    }
-    tell(console, summaryOf(Outcome{arguments, build}), std::nullopt, false, base::millisecondsSince(start));
-    return kExitDone;
-}
-
-// If nothing has to be done, repeats the output of an earlier run that did the same.
-std::optional<int> repeatEarlier(const Console& console, const CompileArguments& arguments,
-                                 CompileCache& cache, base::Clock::time_point start) {
+// If nothing has to be done, repeats the output of an earlier run that did the same, and returns the exit
+// code.
+Result<std::optional<int>> repeatEarlier(const Console& console, const CompileArguments& arguments,
+                                         CompileCache& cache, base::Clock::time_point start) {
     const std::optional<compiler::ActionRecord> earlier = cache.findUpToDate();
     const std::optional<CompileSummary> summary =
         earlier ? unpackSummary(earlier->summary, console.isJson()) : std::nullopt;
     if (!summary) {
-        return std::nullopt;
+        return std::optional<int>();
     }
     console.report(earlier->diagnostics);
     if (console.refused()) {
-        return kExitFailed;
+        return std::optional(kExitFailed);
     }
-    if (Status listed = writeDepfile(arguments.depfile, pathsOf(earlier->inputs)); !listed) {
-        return fail(console, listed.error());
-    }
+    GLINT_TRY_DO(writeDepfile(arguments.depfile, pathsOf(earlier->inputs)));
     tell(console, *summary, ModuleCounts{0, summary->modules}, true, base::millisecondsSince(start));
-    return kExitDone;
+    return std::optional(kExitDone);
 }
 
 // Adds the files that a run has written.
@@ -373,14 +378,15 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
 }
 
 // `watched` is null unless the run is one of a watch.
-int compileOnce(const Console& console, const CompileArguments& arguments, CompileCache& cache,
-                std::span<const std::filesystem::path> further, WatchedRun* watched) {
+Result<int> compileOnce(const Console& console, const CompileArguments& arguments, CompileCache& cache,
+                        std::span<const std::filesystem::path> further, WatchedRun* watched) {
     const base::Clock::time_point start = base::Clock::now();
-    const std::optional<int> done = watched != nullptr || arguments.dryRun || !arguments.planOnly.empty()
-                                        ? std::nullopt
-                                        : repeatEarlier(console, arguments, cache, start);
-    if (done) {
-        return *done;
+    const bool plans = !arguments.planOnly.path.empty();
+    if (watched == nullptr && !arguments.dryRun && !plans) {
+        GLINT_TRY(const auto done, repeatEarlier(console, arguments, cache, start));
+        if (done) {
+            return *done;
+        }
     }
     compiler::ActionRecord run;
     const bool known = addFiles(run.inputs, further);
@@ -388,29 +394,30 @@ int compileOnce(const Console& console, const CompileArguments& arguments, Compi
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
     };
-    const Result<Resolved> resolved = readAndResolve(console, arguments, cache, report);
-    if (!resolved) {
-        return fail(console, resolved.error());
-    }
+    GLINT_TRY(const auto resolved, readAndResolve(console, arguments, cache, report));
     if (console.refused()) {
         return kExitFailed;
     }
-    const compiler::Build& build = resolved->build;
+    const compiler::Build& build = resolved.build;
     // The files of scenes come first, each in the state in which it was read.
-    const std::vector<compiler::FileState> sceneFiles = filesOf(resolved->scenes);
+    const std::vector<compiler::FileState> sceneFiles = filesOf(resolved.scenes);
     run.inputs.insert(run.inputs.begin(), sceneFiles.begin(), sceneFiles.end());
     std::vector<std::string> dependencies = pathsOf(sceneFiles);
     for (const std::filesystem::path& file : further) {
         dependencies.push_back(file.string());
     }
-    if (const Result<std::string> listed = makeDepfile(arguments.depfile.targets, dependencies);
-        !arguments.depfile.file.empty() && !listed) {
-        return fail(console, listed.error());
+    if (!arguments.depfile.file.empty()) {
+        GLINT_TRY([[maybe_unused]] const auto listed,
+                  compiler::makeDepfile(arguments.depfile.targets, dependencies));
     }
     if (arguments.dryRun) {
-        return dryRun(console, arguments, build, start);
+        // Everything but to compile and to write.
+        GLINT_TRY([[maybe_unused]] const auto planned, planPackage(build));
+        tell(console, summaryOf(Outcome{arguments, build}), std::nullopt, false,
+             base::millisecondsSince(start));
+        return kExitDone;
     }
-    if (!arguments.planOnly.empty()) {
+    if (plans) {
         return planOnly(console, arguments, build, dependencies, start);
     }
     if (watched != nullptr) {
@@ -420,41 +427,31 @@ int compileOnce(const Console& console, const CompileArguments& arguments, Compi
         watched->readMs = base::millisecondsSince(start) - build.milliseconds;
     }
     console.progress("compiling " + base::join(arguments.scenes));
-    Result<compiler::CompiledPackage> package =
-        compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr,
-                       watched != nullptr && watched->showing ? &*watched->showing : nullptr);
-    if (!package) {
-        if (watched != nullptr && package.error().id == "outdated") {
-            watched->outdated = true;
-            return kExitFailed;
-        }
-        return fail(console, package.error());
-    }
+    GLINT_TRY(auto package,
+              compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr,
+                             watched != nullptr && watched->showing ? &*watched->showing : nullptr));
     console.progress("writing " + outputsOf(arguments));
     const base::Clock::time_point compiled = base::Clock::now();
-    if (Status written = writeOutputs(build, *package,
-                                      {arguments.output, arguments.embed, arguments.depfile, dependencies});
-        !written) {
-        return fail(console, written.error());
-    }
+    GLINT_TRY_DO(
+        writeOutputs(build, package, {arguments.output, arguments.embed, arguments.depfile, dependencies}));
     if (watched != nullptr) {
-        describeRun(*package, *watched);
-        watched->writeMs = package->tablesMs + base::millisecondsSince(compiled);
-        watched->made = std::move(*package);
+        describeRun(package, *watched);
+        watched->writeMs = package.tablesMs + base::millisecondsSince(compiled);
+        watched->made = std::move(package);
         return kExitDone;
     }
-    CompileSummary summary = summaryOf(Outcome{.arguments = arguments, .build = build, .package = &*package});
+    CompileSummary summary = summaryOf(Outcome{.arguments = arguments, .build = build, .package = &package});
     // A run that changes its own input may report other things next time, so it is not kept.
-    if (known && !build.lockText && addOutputs(*package, arguments, run)) {
+    if (known && !build.lockText && addOutputs(package, arguments, run)) {
         run.summary = pack(summary);
         cache.keep(run);
     }
     cache.close(console);
-    tell(console, std::move(summary), countModules(*package), false, base::millisecondsSince(start));
+    tell(console, std::move(summary), countModules(package), false, base::millisecondsSince(start));
     return kExitDone;
 }
 
-int compile(const Console& console, const CompileArguments& arguments) {
+Result<int> compile(const Console& console, const CompileArguments& arguments) {
     // The names of further inputs belong to the key: a new file in a pack is a new run.
     const std::vector<std::filesystem::path> further = furtherInputs(arguments);
     CompileCache cache(arguments.cache, arguments.options, further);
@@ -467,6 +464,23 @@ int compile(const Console& console, const CompileArguments& arguments) {
                                  });
     cache.close(console);
     return code;
+}
+
+// --- glint compile-module: compiles one module of a plan ---
+
+struct ModuleArguments {
+    std::string input;
+    std::string output;
+};
+
+Result<int> compileModule(const Console& console, const ModuleArguments& arguments) {
+    GLINT_TRY_DO(base::checkOutputFile(arguments.output));
+    console.progress("compiling " + arguments.input);
+    GLINT_TRY_DO(compiler::compileModuleFile(arguments.input, arguments.output));
+    if (console.isJson()) {
+        console.result(base::Json{{"input", arguments.input}, {"output", arguments.output}});
+    }
+    return kExitDone;
 }
 
 }  // namespace
@@ -485,6 +499,24 @@ void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line
     command.callback([arguments, &command, &chosen] {
         finishCompile(command, *arguments);
         chosen = [arguments](const Console& console) { return compile(console, *arguments); };
+    });
+}
+
+void addCompileModule(CLI::App& app, Action& chosen) {
+    auto arguments = std::make_shared<ModuleArguments>();
+    CLI::App& command = addCommand(
+        app, {.name = "compile-module",
+              .what = "Compile one module of a plan, for build farms",
+              .examples = {"glint compile-module plan/modules/0.glsl -o plan/modules/0.module",
+                           "glint compile-module plan/modules/0.glsl -o plan/modules/0.module --json"},
+              .usual = {"--output", "--quiet"}});
+    addText(command, "IN", arguments->input, "FILE", "a module that glint compile --plan-only wrote")
+        .required();
+    addOutputFile(command, "-o,--output", arguments->output, "FILE", {},
+                  "the compiled module, which glint compile --modules takes")
+        .required();
+    command.callback([arguments, &chosen] {
+        chosen = [arguments](const Console& console) { return compileModule(console, *arguments); };
     });
 }
 

@@ -37,17 +37,6 @@ std::string_view changeOf(bool before, bool after) {
     return before && after ? "changed" : after ? "added" : "removed";
 }
 
-// Names the ordering, or the tracer, of a module that exists several times.
-std::string orderingLabel(const package::ModuleKey& key) {
-    const bool ordered = package::findRole(key.role)->repeated == package::Repeated::ByOrdering;
-    return ordered ? std::string(package::nameOf(static_cast<package::Ordering>(key.index))) : std::string();
-}
-
-std::string tracerLabel(const package::ModuleKey& key) {
-    return key.tracer != 0 ? std::string(package::nameOf(static_cast<package::Tracer>(key.tracer)))
-                           : std::string();
-}
-
 // "1 Pbr"; empty beyond the end of the list.
 std::string shaderAt(const std::vector<int>& ids, std::size_t place, const inspect::DiffPackage& package,
                      Detail detail) {
@@ -82,7 +71,7 @@ std::string moduleName(const inspect::ModuleChange& change) {
         name += moved ? fmt::format(" {} -> {}", id(change.idBefore), id(change.idAfter))
                       : fmt::format(" {}", id(change.idBefore ? change.idBefore : change.idAfter));
     }
-    for (const std::string& word : {orderingLabel(change.key), tracerLabel(change.key)}) {
+    for (const std::string& word : {orderingName(change.key), tracerName(change.key)}) {
         name += word.empty() ? std::string() : fmt::format(" {}", word);
     }
     return name;
@@ -195,8 +184,8 @@ base::Json modulesToJson(const inspect::PackageDiff& diff) {
     for (const inspect::ModuleChange& change : diff.modules) {
         list.push_back(base::Json{{"change", changeOf(change.before != nullptr, change.after != nullptr)},
                                   {"role", std::string(package::roleName(change.key.role))},
-                                  {"ordering", base::textOrNull(orderingLabel(change.key))},
-                                  {"tracer", base::textOrNull(tracerLabel(change.key))},
+                                  {"ordering", base::textOrNull(orderingName(change.key))},
+                                  {"tracer", base::textOrNull(tracerName(change.key))},
                                   {"before", moduleToJson(change.before, change.idBefore)},
                                   {"after", moduleToJson(change.after, change.idAfter)}});
     }
@@ -265,19 +254,11 @@ struct DiffArguments {
     bool exitCode = false;
 };
 
-int diff(const Console& console, const DiffArguments& arguments) {
-    const Result<inspect::DiffPackage> before = inspect::readDiffPackage(arguments.before);
-    if (!before) {
-        console.report(before.error());
-        return kExitFailed;
-    }
-    const Result<inspect::DiffPackage> after = inspect::readDiffPackage(arguments.after);
-    if (!after) {
-        console.report(after.error());
-        return kExitFailed;
-    }
-    const inspect::PackageDiff difference = inspect::comparePackages(*before, *after);
-    const DiffSides sides{arguments.before, arguments.after, *before, *after};
+Result<int> diff(const Console& console, const DiffArguments& arguments) {
+    GLINT_TRY(const auto before, inspect::readDiffPackage(arguments.before));
+    GLINT_TRY(const auto after, inspect::readDiffPackage(arguments.after));
+    const inspect::PackageDiff difference = inspect::comparePackages(before, after);
+    const DiffSides sides{arguments.before, arguments.after, before, after};
     if (console.isJson()) {
         console.result(diffJson(difference, sides));
     } else {

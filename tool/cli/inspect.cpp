@@ -4,16 +4,16 @@
 #include "cli/inspect/pipelines.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "cli/traffic.h"
 #include "emit/package/json.h"
 #include "inspect/package.h"
 #include "plan/plan.h"
 #include "resolve/resolve.h"
-#include "settings/values.h"
+#include "settings/descriptor.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <bit>
 #include <memory>
 
@@ -94,7 +94,8 @@ base::Json scenesToJson(const inspect::InspectedPackage& inspected) {
 std::string bindingsOf(const Package& package) {
     compiler::Settings settings;
     settings.compile.bindings = package.bindings();
-    return compiler::values::kBindings.text(settings);
+    return std::ranges::find(compiler::settingsTable(), "bindings", &compiler::Descriptor::name)
+        ->values.text(settings);
 }
 
 std::string lightsOf(const Package& package) {
@@ -120,19 +121,15 @@ std::string sceneTable(const inspect::InspectedPackage& inspected) {
 
 // Returns the first few names, and how many more there are.
 std::string materialsText(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
-    constexpr std::size_t kShown = 3;
     const auto found = inspected.materials.find(shaderId);
     if (found == inspected.materials.end()) {
         return "-";
     }
     std::vector<std::string> names;
     for (const inspect::MaterialPlace& material : found->second) {
-        if (names.size() < kShown) {
-            names.push_back(inspected.materialName(material));
-        }
+        names.push_back(inspected.materialName(material));
     }
-    const std::size_t more = found->second.size() - names.size();
-    return base::join(names) + (more > 0 ? fmt::format(" and {} more", more) : std::string());
+    return base::firstOf(names, 3);
 }
 
 // Features that a shader has; their names where there is room for them.
@@ -331,49 +328,23 @@ struct InspectArguments {
     PackagePipelineArguments pipelines;
 };
 
-int tell(const Console& console, const inspect::InspectedPackage& inspected) {
-    if (console.isJson()) {
+Result<int> show(const Console& console, const InspectArguments& arguments) {
+    console.progress("reading " + arguments.folder);
+    GLINT_TRY(const auto package, Package::load(arguments.folder));
+    if (arguments.pipelines.enabled) {
+        return showPipelines(console, package, arguments.folder, arguments.pipelines);
+    }
+    GLINT_TRY(const auto manifest, inspect::readManifest(arguments.folder));
+    GLINT_TRY(const auto inspected, inspect::inspectPackage(package, manifest, arguments.folder));
+    if (!arguments.disassemble.empty()) {
+        GLINT_TRY(const auto list, inspect::disassembleModules(inspected, arguments.disassemble));
+        console.isJson() ? console.result(toJson(inspected, list)) : console.print(toText(inspected, list));
+    } else if (console.isJson()) {
         console.result(toJson(inspected));
     } else {
         console.print(toText(inspected, console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     return kExitDone;
-}
-
-int tell(const Console& console, const inspect::InspectedPackage& inspected,
-         const std::vector<inspect::Disassembly>& list) {
-    if (console.isJson()) {
-        console.result(toJson(inspected, list));
-    } else {
-        console.print(toText(inspected, list));
-    }
-    return kExitDone;
-}
-
-int show(const Console& console, const InspectArguments& arguments) {
-    console.progress("reading " + arguments.folder);
-    const Result<Package> package = Package::load(arguments.folder);
-    if (!package) {
-        return fail(console, package.error());
-    }
-    if (arguments.pipelines.enabled) {
-        return showPipelines(console, *package, arguments.folder, arguments.pipelines);
-    }
-    const Result<inspect::Manifest> manifest = inspect::readManifest(arguments.folder);
-    if (!manifest) {
-        return fail(console, manifest.error());
-    }
-    const Result<inspect::InspectedPackage> inspected =
-        inspect::inspectPackage(*package, *manifest, arguments.folder);
-    if (!inspected) {
-        return fail(console, inspected.error());
-    }
-    if (arguments.disassemble.empty()) {
-        return tell(console, *inspected);
-    }
-    const Result<std::vector<inspect::Disassembly>> list =
-        inspect::disassembleModules(*inspected, arguments.disassemble);
-    return list ? tell(console, *inspected, *list) : fail(console, list.error());
 }
 
 }  // namespace

@@ -95,15 +95,11 @@ std::string nonZero(std::size_t count) {
     return count == 0 ? "-" : fmt::format("{}", count);
 }
 
-std::string plural(std::size_t count, const char* noun) {
-    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
-
 std::string summaryOf(const inspect::LintReport& report) {
-    return fmt::format("\n{}: {}, {}, {}\n", plural(report.modules.size(), "module"),
-                       plural(report.count(Severity::Error), "error"),
-                       plural(report.count(Severity::Warning), "warning"),
-                       plural(report.count(Severity::Note), "note")) +
+    return fmt::format("\n{}: {}, {}, {}\n", base::counted(report.modules.size(), "module"),
+                       base::counted(report.count(Severity::Error), "error"),
+                       base::counted(report.count(Severity::Warning), "warning"),
+                       base::counted(report.count(Severity::Note), "note")) +
            (report.malioc ? "" : "malioc not found: no cycle estimates\n");
 }
 
@@ -224,18 +220,14 @@ Status lintPath(const Console& console, const LintArguments& arguments, const st
     return okStatus();
 }
 
-int lint(const Console& console, const LintArguments& arguments) {
+Result<int> lint(const Console& console, const LintArguments& arguments) {
     inspect::LintReport report;
     report.malioc = inspect::findProgram(arguments.malioc.empty() ? "malioc" : arguments.malioc);
     if (!report.malioc && !arguments.malioc.empty()) {
-        console.report(makeError("malioc", arguments.malioc, "is not a program that can be run"));
-        return kExitFailed;
+        return makeError("malioc", arguments.malioc, "is not a program that can be run");
     }
     for (const std::string& path : arguments.paths) {
-        if (Status linted = lintPath(console, arguments, path, report); !linted) {
-            console.report(linted.error());
-            return kExitFailed;
-        }
+        GLINT_TRY_DO(lintPath(console, arguments, path, report));
     }
     for (inspect::LintedModule& module : report.modules) {
         judge(console.policy(), module.findings);
@@ -274,12 +266,9 @@ void addLint(CLI::App& app, Action& chosen) {
          .examples = {"glint lint scene.glint", "glint lint scene.glint --max-texture-fetches 12 --werror"},
          .usual = {"--max-instructions", "--max-texture-fetches", "--max-ray-queries", "--malioc", "--core",
                    "--werror", "-W", "--json"}});
-    command.add_option("PATH", arguments->paths, "SPIR-V files, packages, or folders of .spv files")
-        ->type_name("FILE|DIR")
-        ->required()
-        ->check(CLI::Validator(
-            [](const std::string& text) { return text.empty() ? std::string("is empty") : std::string(); },
-            ""));
+    addTexts(command, "PATH", arguments->paths, "FILE|DIR",
+             "SPIR-V files, packages, or folders of .spv files")
+        .required();
     addBudget(command, "--max-instructions", arguments->instructions, "instructions");
     addBudget(command, "--max-texture-fetches", arguments->textureFetches, "texture fetches");
     addBudget(command, "--max-ray-queries", arguments->rayQueries, "ray queries");

@@ -1,9 +1,9 @@
 // glint render: renders a picture of a scene with the runtime.
 #include "base/clock.h"
 #include "base/files.h"
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/compile/cache.h"
 #include "cli/render/arguments.h"
 #include "cli/render/frames.h"
 #include "cli/render/open_image_denoise.h"

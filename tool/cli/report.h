@@ -7,6 +7,8 @@
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
+#include <glint/frame_traffic.h>
+#include <glint/package.h>
 #include <glint/package_modules.h>
 #include <glint/result.h>
 
@@ -37,5 +39,21 @@ base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId);
 // These name which of the modules of its role it is; empty if there is only one.
 std::string tracerName(const package::ModuleKey& key);    // "ray-query"
 std::string orderingName(const package::ModuleKey& key);  // "wave-ballot"
+
+// --- The bytes that the passes of a frame move, as JSON and as tables ---
+
+// The bytes that a frame moved. The rows are those of its shape.
+struct TrafficReport {
+    TrafficShape shape;
+    TrafficCounts counts;
+};
+base::Json toJson(const TrafficReport& report);
+std::string toText(const TrafficReport& report);
+// "X bytes a pixel moved".
+std::string summaryOf(const TrafficReport& report);
+
+// The bytes that frames of a package move for each pixel, ray and hit, by strategy.
+base::Json trafficToJson(const Package& package);
+std::string trafficTable(const Package& package);
 
 }  // namespace glint::cli

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 namespace glint::cli {
 
@@ -151,6 +152,21 @@ std::string formatTable(const Rows& rows, Detail detail) {
     std::string text;
     for (const std::vector<std::string>& row : rows) {
         text += lineOf(row, columns);
+    }
+    return text;
+}
+
+std::string formatMarkdown(const Rows& rows) {
+    const std::vector<Column> columns = columnsOf(rows, false);
+    std::string text;
+    std::string line;
+    for (const std::vector<std::string>& row : rows) {
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            const std::size_t width = std::max<std::size_t>(columns[c].width, 3);
+            text += fmt::format("| {}{} ", row[c], std::string(width - displayWidth(row[c]), ' '));
+            line += &row == &rows.front() ? fmt::format("|{}", std::string(width + 2, '-')) : "";
+        }
+        text += "|\n" + (line.empty() ? line : std::exchange(line, {}) + "|\n");
     }
     return text;
 }

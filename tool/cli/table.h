@@ -28,6 +28,9 @@ inline constexpr std::size_t kMostTableWidth = 100;
 // of a path.
 std::string formatTable(const std::vector<std::vector<std::string>>& rows, Detail detail = Detail::Short);
 
+// Formats the same as a table in Markdown, with nothing cut.
+std::string formatMarkdown(const std::vector<std::vector<std::string>>& rows);
+
 // Formats lines of "label  value" with padded labels. With Detail::Short the last cell of a row is wrapped at
 // spaces, and continues below itself.
 std::string formatFields(const std::vector<std::vector<std::string>>& rows, Detail detail = Detail::Short);

@@ -1,8 +1,8 @@
 // glint view: shows a scene in a window.
+#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/commands.h"
-#include "cli/compile/cache.h"
-#include "cli/explain/material_text.h"
+#include "cli/explain/text.h"
 #include "cli/render/arguments.h"
 #include "cli/render/pipeline_cache.h"
 #include "view/request.h"
@@ -57,7 +57,7 @@ view::Request requestOf(const Console& console, const ViewArguments& arguments, 
     return request;
 }
 
-int show(const Console& console, const ViewArguments& arguments, const Companion& companion) {
+Result<int> show(const Console& console, const ViewArguments& arguments, const Companion& companion) {
     CompileCache cache(arguments.cache, "");
     view::Request request = requestOf(console, arguments, cache);
     std::unique_ptr<PipelineCacheFile> pipelines;
@@ -71,11 +71,7 @@ int show(const Console& console, const ViewArguments& arguments, const Companion
     };
     const Status shown = companion.showWindow(request);
     cache.close(console);
-    if (!shown) {
-        console.report(shown.error());
-        return kExitFailed;
-    }
-    return kExitDone;
+    return shown ? Result<int>(kExitDone) : shown.error();
 }
 
 }  // namespace
@@ -107,11 +103,11 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, c
         checkPackageChoice(command);
         checkSceneOptions(command, *arguments);
         checkProfile(command, *arguments);
-        chosen = [arguments, line, companion](const Console& console) {
+        chosen = [arguments, line, companion](const Console& console) -> Result<int> {
             return companion.showWindow != nullptr
                        ? show(console, *arguments, companion)
                        : startCompanion(
-                             console, "glint-view", line,
+                             "glint-view", line,
                              makeError(
                                  "window-missing", "", "this glint was built without its window",
                                  "install libglfw3-dev, libimgui-dev, libxtst-dev and glslang-tools, then "

@@ -2,9 +2,7 @@
 
 #include "base/parallel.h"
 #include "cache/module_cache.h"
-#include "emit/measured_module.h"
 #include "emit/module_files.h"
-#include "emit/module_text.h"
 #include "emit/warm_modules.h"
 
 #include <fmt/format.h>

@@ -1,8 +1,8 @@
 // Makes SPIR-V of the GLSL of shader modules, in parallel, or takes modules that were compiled before.
 #pragma once
 
-#include "emit/module_source.h"
 #include "emit/package/compiled_package.h"
+#include "emit/source_set.h"
 
 #include <glint/result.h>
 

@@ -1,13 +1,310 @@
 #include "emit/effects.h"
 
-#include "emit/layers.h"
+#include "emit/material_layout.h"
+#include "resolve/layers.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
+#include <interop/frame.h>
+#include <iterator>
+#include <set>
+#include <tuple>
 #include <vector>
 
 namespace glint::compiler {
+
+namespace mustache = kainjow::mustache;
+
+using package::LayerEntry;
+using package::LayerInfo;
+using package::LayerSubject;
+
+namespace {
+
+// "geometric-normal" gives geometricNormal, "reflection.radiance" reflectionRadiance.
+std::string variableNamed(std::string_view layer) {
+    std::string variable;
+    bool raises = false;
+    for (const char character : layer) {
+        const bool isLetter = std::isalnum(static_cast<unsigned char>(character)) != 0;
+        if (isLetter) {
+            variable +=
+                raises ? static_cast<char>(std::toupper(static_cast<unsigned char>(character))) : character;
+        }
+        raises = !isLetter;
+    }
+    return variable;
+}
+
+// The fields of one layer.
+mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
+    const LayerInfo& info = infoOf(entry);
+    const package::LayerFormatInfo& format = package::infoOf(info.format);
+    const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
+    const std::string variable = variableNamed(layerNameOf(entry, *plan.model));
+    mustache::data fields;
+    fields.set("binding", fmt::format("kBindingLayers + {}u", place));
+    fields.set("qualifier", std::string(format.qualifier));
+    fields.set("image", info.format == package::LayerFormat::Integer ? "uimage2D" : "image2D");
+    fields.set("value", variable);
+    fields.set("variable", variable + "Layer");
+    fields.set("function", std::string(info.function));
+    fields.set("absent", std::string(info.absent));
+    fields.set("isMean", mustache::data(info.mean == package::LayerMean::Mean));
+    return fields;
+}
+
+const LayerEntry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect,
+                            std::uint32_t bounce = 0) {
+    const LayerEntry entry{package::findLayer(layer)->number, effect, bounce};
+    const auto found = std::ranges::find(plan.layers, entry);
+    return found == plan.layers.end() ? nullptr : &*found;
+}
+
+std::string variableOf(const LayerEntry& entry, const Plan& plan) {
+    return fieldsOf(entry, plan).get("variable")->string_value();
+}
+
+std::string albedoVariable(const Plan& plan, package::Effect effect) {
+    return variableOf({albedoOf(effect, *plan.model).number, 0, 0}, plan);
+}
+
+// The fields of the layers of light: of a source, or of one bounce of its paths; false if it has none.
+mustache::data lightFields(const Plan& plan, package::Effect effect, std::uint32_t bounce = 0) {
+    const std::string prefix = bounce == 0 ? "" : "bounce-";
+    const LayerEntry* const radiance = findEntry(plan, prefix + "radiance", effect, bounce);
+    if (radiance == nullptr) {
+        return false;
+    }
+    mustache::data fields;
+    fields.set("radiance", variableOf(*radiance, plan));
+    for (const char* const name : {"demodulated", "variance"}) {
+        const LayerEntry* const entry = findEntry(plan, prefix + name, effect, bounce);
+        mustache::data own(false);
+        if (entry != nullptr) {
+            own = mustache::data();
+            own.set("variable", variableOf(*entry, plan));
+            own.set("albedo", demodulates(infoOf(*entry)) ? albedoVariable(plan, effect) : std::string());
+        }
+        fields.set(name, own);
+    }
+    return fields;
+}
+
+// The fields of a layer alone; false if the package lacks it.
+mustache::data imageFields(const Plan& plan, std::string_view layer, package::Effect effect,
+                           std::uint32_t bounce = 0) {
+    const LayerEntry* const found = findEntry(plan, layer, effect, bounce);
+    if (found == nullptr) {
+        return false;
+    }
+    mustache::data fields;
+    fields.set("variable", variableOf(*found, plan));
+    fields.set("shows", declarationOf(*plan.model, effect).shows);
+    return fields;
+}
+
+// The macro GLINT_SLOTS_READ(features): a bit for each texture of a record that a surface with these features
+// reads.
+std::string slotsRead(const Plan& plan) {
+    const MaterialLayout layout = materialLayoutOf(plan);
+    std::vector<std::string> bits;
+    for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
+        const materials::MaterialTexture& texture =
+            plan.model->textures[static_cast<std::size_t>(layout.textures[slot])];
+        const std::string& macro = plan.model->features[static_cast<std::size_t>(texture.feature)].macro;
+        // The macro of a feature begins with GLINT_.
+        bits.push_back(
+            fmt::format("(GLINT_HAS_{}(features) ? {}u : 0u)", macro.substr(6), std::uint64_t{1} << slot));
+    }
+    return fmt::format("#define GLINT_SLOTS_READ(features) ({})\n",
+                       bits.empty() ? "0u" : fmt::format("{}", fmt::join(bits, " | ")));
+}
+
+}  // namespace
+
+std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) {
+    std::uint32_t demands = 0;
+    bool ofSurfaces = false;
+    bool ofEffects = false;
+    std::uint32_t bounces = 0;
+    bool walks = false;
+    bool groups = false;
+    std::set<std::string_view> tallies;
+    for (const LayerEntry& entry : plan.layers) {
+        const LayerInfo& info = infoOf(entry);
+        demands |= info.demands;
+        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::Lighting;
+        ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
+        groups = groups || (!info.tally.empty() && package::hasSources(info));
+        tallies.insert(info.tally);
+        bounces = std::max(bounces, entry.bounce);
+        walks = walks || package::showsWalkedLight(entry, plan.effects.effects.walks);
+    }
+    tallies.erase("");
+    const bool history = (demands & package::kLayerHistory) != 0;
+    const auto flag = [](bool value) { return value ? 1 : 0; };
+    std::string text = fmt::format(
+        "// Layers beside the picture\n"
+        "#define GLINT_LAYER_MEMBERS {}\n"
+        "#define GLINT_SURFACE_LAYERS {}\n"
+        "#define GLINT_EFFECT_LAYERS {}\n"
+        "#define GLINT_LAYER_HISTORY {}\n"
+        "#define GLINT_LAYER_DEFORMS {}\n"
+        "#define GLINT_LAYER_RAYS {}\n"
+        "#define GLINT_LAYER_BOUNCES {}\n"
+        "#define GLINT_LAYER_WALKS {}\n"
+        "#define GLINT_LAYER_CLOCK {}\n"
+        "#define GLINT_LAYER_BRANCHES {}\n"
+        "#define GLINT_LAYER_GROUPS {}\n"
+        "#define GLINT_LAYER_TEXTURE_LEVEL {}\n"
+        "#define GLINT_TALLIES {}\n",
+        flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
+        flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
+        flag(walks && findsSizedLights), flag((demands & package::kLayerClock) != 0),
+        flag(findEntry(plan, "branches", 0) != nullptr), flag(groups),
+        flag(findEntry(plan, "texture-level", 0) != nullptr), flag(!tallies.empty()));
+    if (findEntry(plan, "texture-level", 0) != nullptr) {
+        text += slotsRead(plan);
+    }
+    // Tallies that no layer shows leave no code.
+    for (const LayerInfo& info : package::layerTable()) {
+        if (!info.tally.empty() && !tallies.contains(info.tally)) {
+            text += fmt::format("#define {}({})\n", info.tally,
+                                package::hasSources(info) ? "target, value" : "amount");
+        }
+    }
+    if ((demands & package::kLayerClock) == 0) {
+        text += "#define GLINT_CLOCK_START\n#define GLINT_CLOCK_STOP\n";
+    }
+    return text;
+}
+
+namespace {
+
+// The fields of tallies.glsl.mustache.
+void addTallies(mustache::data& context, const Plan& plan) {
+    mustache::data tallies(mustache::data::type::list);
+    mustache::data added(mustache::data::type::list);
+    std::vector<std::pair<const LayerInfo*, mustache::data>> images;  // of each kind that samples have
+    for (const LayerEntry& entry : plan.layers) {
+        const LayerInfo& info = infoOf(entry);
+        if (info.tally.empty()) {
+            continue;
+        }
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("macro", std::string(info.tally));
+        fields.set("slot", fmt::format("{}", package::effectSlot(plan.effects.effects, entry.effect)));
+        tallies.push_back(fields);
+        if (!package::hasSources(info)) {
+            added.push_back(fields);
+            continue;
+        }
+        auto found = std::ranges::find(images, &info, [](const auto& pair) { return pair.first; });
+        if (found == images.end()) {
+            images.emplace_back(&info, mustache::data(mustache::data::type::list));
+            found = images.end() - 1;
+        }
+        found->second.push_back(fields);
+    }
+    mustache::data kept(mustache::data::type::list);
+    for (const auto& [info, ofSources] : images) {
+        mustache::data fields;
+        fields.set("macro", std::string(info->tally));
+        std::string name = variableNamed(info->name);
+        name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
+        fields.set("name", name);
+        fields.set("images", ofSources);
+        kept.push_back(fields);
+    }
+    context.set("tallies", tallies);
+    context.set("added", added);
+    context.set("kept", kept);
+    context.set("hasClock", mustache::data(findEntry(plan, "clocks", 0) != nullptr));
+}
+
+}  // namespace
+
+void addLayers(mustache::data& context, const Plan& plan) {
+    mustache::data lighting(mustache::data::type::list);
+    mustache::data surface(mustache::data::type::list);
+    for (const LayerEntry& entry : plan.layers) {
+        if (passOf(entry) != package::LayerPass::Lighting) {
+            continue;
+        }
+        const LayerInfo& info = infoOf(entry);
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("access", info.continues ? "" : "writeonly ");
+        lighting.push_back(fields);
+        if (info.subject == LayerSubject::Surface) {
+            surface.push_back(fields);
+        }
+    }
+    context.set("lightingLayers", lighting);
+    context.set("surfaceLayers", surface);
+    context.set("directLight", lightFields(plan, 0));
+
+    // Those that compose writes, and the albedos that it reads.
+    mustache::data effects(mustache::data::type::list);
+    std::set<std::string> read;
+    for (const LayerEntry& entry : plan.layers) {
+        if (passOf(entry) != package::LayerPass::Compose) {
+            continue;
+        }
+        const LayerInfo& info = infoOf(entry);
+        mustache::data fields = fieldsOf(entry, plan);
+        fields.set("access", info.continues ? "" : "writeonly ");
+        effects.push_back(fields);
+        if (demodulates(info) && read.insert(albedoVariable(plan, entry.effect)).second) {
+            mustache::data albedo = fieldsOf({albedoOf(entry.effect, *plan.model).number, 0, 0}, plan);
+            albedo.set("access", "readonly ");
+            effects.push_back(albedo);
+        }
+    }
+    addTallies(context, plan);
+    context.set("hasRayLayers", mustache::data(std::ranges::any_of(plan.layers, [](const LayerEntry& entry) {
+                    return infoOf(entry).subject == LayerSubject::Ray &&
+                           passOf(entry) == package::LayerPass::Compose;
+                })));
+    context.set("hasEffectLayers", mustache::data(effects.is_non_empty_list()));
+    context.set("effectLayers", effects);
+}
+
+void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect) {
+    const mustache::data light = lightFields(plan, effect);
+    entry.set("lightLayers", light);
+    const mustache::data distance = imageFields(plan, "distance", effect);
+    const mustache::data motion = imageFields(plan, "virtual-motion", effect);
+    const mustache::data shader = imageFields(plan, "hit-shader", effect);
+    mustache::data rays(!distance.is_false() || !motion.is_false() || !shader.is_false());
+    if (rays.is_true()) {
+        rays = mustache::data();
+        rays.set("distance", distance);
+        rays.set("motion", motion);
+        rays.set("shader", shader);
+    }
+    entry.set("rayLayers", rays);
+
+    mustache::data bounces(mustache::data::type::list);
+    for (std::uint32_t bounce = 1; bounce <= package::kMostLayerBounces; ++bounce) {
+        const mustache::data ofBounce = lightFields(plan, effect, bounce);
+        const mustache::data length = imageFields(plan, "bounce-distance", effect, bounce);
+        if (!ofBounce.is_false() || !length.is_false()) {
+            mustache::data fields;
+            fields.set("bounce", fmt::format("{}", bounce));
+            fields.set("slice", fmt::format("{}", bounce - 1));
+            fields.set("isFirst", mustache::data(bounce == 1));
+            fields.set("light", ofBounce);
+            fields.set("distance", length);
+            bounces.push_back(fields);
+        }
+    }
+    entry.set("bounceLayers", bounces);
+    entry.set("storesLight", mustache::data(!light.is_false() || bounces.is_non_empty_list()));
+}
 
 namespace mustache = kainjow::mustache;
 

@@ -3,12 +3,11 @@
 #include "cache/module_cache.h"
 #include "emit/context.h"
 #include "emit/glsl/flatten.h"
-#include "emit/glsl/prefix.h"
 #include "emit/glsl/prune.h"
 #include "emit/glsl/readable.h"
 #include "emit/material_code.h"
 #include "emit/sources.h"
-#include "resolve/builtin.h"
+#include "resolve/host.h"
 #include "spirv/compiler.h"
 
 #include <fmt/format.h>

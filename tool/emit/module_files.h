@@ -1,20 +1,61 @@
-// Modules that are compiled one by one, by other processes or on other machines, through a file before and a
-// file after.
+// Modules that are compiled one by one, also by other processes or on other machines: their text, and their
+// compiled form.
 #pragma once
 
 #include "cache/module_cache.h"
-#include "emit/module_source.h"
 #include "emit/package/compiled_package.h"
+#include "emit/source_set.h"
+#include "spirv/compiler.h"
 
 #include <glint/result.h>
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace glint::compiler {
+
+// Compiles a shader, or the part that `link` says, and measures it. Has the errors of compileShader() and
+// compilePart().
+Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
+                                     const std::optional<LinkNames>& link = {});
+
+// Joins compiled parts, the one with the entry point first, on at most `jobs` threads. If a part can't be
+// joined, `source` is compiled as a whole.
+Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
+                                  std::span<const CachedModule* const> parts, int jobs = 1);
+
+// Returns a text that differs between compilers that may give different words for the same source.
+std::string moduleCompiler();
+
+// A module as a self-contained text that holds everything that decides about its words, so that it can be
+// compiled anywhere.
+
+// Returns the GLSL below comments that hold the other inputs: the stage, the functions that are kept apart or
+// linked, the names of the texts of its parts, and its own name if names are kept. Two modules have equal
+// texts exactly if they are compiled alike. Without debug information the GLSL is that of essentialText().
+std::string makeModuleText(const ModuleSource& source, bool debugInfo);
+
+struct ModuleText {
+    ShaderSource source;
+    ShaderCompileOptions options;
+    std::optional<LinkNames> link;   // of a part
+    std::vector<std::string> parts;  // names of the texts whose modules are joined; empty: it is compiled
+};
+// Parses the text that makeModuleText() made. `name` is used in messages if the text has no name. Error
+// "module-format".
+Result<ModuleText> readModuleText(std::string_view text, const std::string& name);
+
+// Returns a name for the text of a module: a 128-bit hash in hexadecimal digits.
+std::string nameOfModuleText(std::string_view text);
+inline constexpr std::size_t kModuleNameLength = 32;
+
+// Modules that are compiled one by one, by other processes or on other machines, through a file before and a
+// file after.
 
 inline constexpr std::string_view kModuleTextSuffix = ".glsl";
 inline constexpr std::string_view kCompiledModuleSuffix = ".module";

@@ -1,7 +1,6 @@
 // Decides which shader modules a package has, and makes their GLSL.
 #pragma once
 
-#include "emit/module_source.h"
 #include "emit/source_set.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene_list.h"

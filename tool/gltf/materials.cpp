@@ -1,6 +1,6 @@
 #include "gltf/materials.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "gltf/document/conformance.h"
 #include "gltf/textures.h"
 

@@ -1,7 +1,6 @@
 #include "image/exr.h"
 
 #include "base/image_limits.h"
-#include "image/exr_bounds.h"
 
 #include <ImathBox.h>
 #include <ImfChannelList.h>
@@ -16,11 +15,220 @@
 #include <cstring>
 #include <exception>
 #include <half.h>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 namespace glint::image {
+
+namespace {
+
+// The layout is described in "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
+constexpr std::size_t kHeaderStart = 8;
+constexpr std::uint32_t kMultipart = 0x1000;
+// The library has room for a whole block of pixels before it reads one. The largest block of four 32-bit
+// channels and 16384 columns has half of this, in 256 lines.
+constexpr double kMaxBlockBytes = 1ULL << 27;
+
+class ExrReader {
+public:
+    ExrReader(std::string_view bytes, std::size_t start)
+        : rest_(bytes.substr(std::min(start, bytes.size()))) {}
+
+    // Reads a zero-terminated text. Returns nothing if the file ends first.
+    std::optional<std::string_view> text() {
+        const std::size_t end = rest_.find('\0');
+        if (end == std::string_view::npos) {
+            return std::nullopt;
+        }
+        const std::string_view found = rest_.substr(0, end);
+        rest_.remove_prefix(end + 1);
+        return found;
+    }
+    std::optional<std::uint32_t> word() {
+        std::uint32_t value = 0;
+        if (rest_.size() < sizeof value) {
+            return std::nullopt;
+        }
+        std::memcpy(&value, rest_.data(), sizeof value);
+        rest_.remove_prefix(sizeof value);
+        return value;
+    }
+    bool skip(std::size_t size) {
+        if (size > rest_.size()) {
+            return false;
+        }
+        rest_.remove_prefix(size);
+        return true;
+    }
+
+    std::string_view rest() const {
+        return rest_;
+    }
+    bool atEnd() const {
+        return rest_.empty();
+    }
+
+private:
+    std::string_view rest_;
+};
+
+// For these attribute types the library ignores the size that the file gives. A wrong size would make it read
+// everything that follows as something else.
+struct FixedType {
+    std::string_view name;
+    std::size_t size;
+};
+constexpr std::array kFixedTypes{
+    FixedType{"box2i", 16},      FixedType{"box2f", 16},   FixedType{"chromaticities", 32},
+    FixedType{"compression", 1}, FixedType{"double", 8},   FixedType{"envmap", 1},
+    FixedType{"float", 4},       FixedType{"int", 4},      FixedType{"keycode", 28},
+    FixedType{"lineOrder", 1},   FixedType{"m33f", 36},    FixedType{"m44f", 64},
+    FixedType{"m33d", 72},       FixedType{"m44d", 128},   FixedType{"rational", 8},
+    FixedType{"tiledesc", 9},    FixedType{"timecode", 8}, FixedType{"v2i", 8},
+    FixedType{"v2f", 8},         FixedType{"v2d", 16},     FixedType{"v3i", 12},
+    FixedType{"v3f", 12},        FixedType{"v3d", 24},     FixedType{"deepImageState", 1}};
+
+bool isChannelList(std::string_view value) {
+    constexpr std::size_t kChannelBytes = 16;
+    ExrReader reader(value, 0);
+    std::optional<std::string_view> name = reader.text();
+    while (name && !name->empty() && reader.skip(kChannelBytes)) {
+        name = reader.text();
+    }
+    return name && name->empty() && reader.atEnd();
+}
+
+bool isStringVector(std::string_view value) {
+    ExrReader reader(value, 0);
+    while (!reader.atEnd()) {
+        const std::optional<std::uint32_t> length = reader.word();
+        if (!length || !reader.skip(*length)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool isPreview(std::string_view value) {
+    ExrReader reader(value, 0);
+    const std::uint64_t width = reader.word().value_or(0);
+    const std::uint64_t height = reader.word().value_or(0);
+    constexpr std::size_t kSizeBytes = 8;
+    return value.size() >= kSizeBytes && width * height == (value.size() - kSizeBytes) / 4;
+}
+
+std::int32_t wordAt(std::string_view value, std::size_t index) {
+    std::int32_t word = 0;
+    std::memcpy(&word, value.data() + index * sizeof word, sizeof word);
+    return word;
+}
+
+// Returns the bytes of a pixel in all channels. isChannelList() must have accepted `value`.
+double bytesPerPixel(std::string_view value) {
+    constexpr std::int32_t kHalf = 1;
+    constexpr std::size_t kChannelWords = 4;  // the first word is the type
+    double bytes = 0.0;
+    ExrReader reader(value, 0);
+    for (std::optional<std::string_view> name = reader.text(); name && !name->empty(); name = reader.text()) {
+        bytes += wordAt(reader.rest(), 0) == kHalf ? 2.0 : 4.0;
+        reader.skip(kChannelWords * sizeof(std::uint32_t));
+    }
+    return bytes;
+}
+
+double linesOfBlock(std::string_view value) {
+    // The index is the number of the compression, from none to DWAB.
+    constexpr std::array kLines{1.0, 1.0, 1.0, 16.0, 32.0, 16.0, 32.0, 32.0, 32.0, 256.0};
+    const auto compression = static_cast<unsigned char>(value[0]);
+    return compression < kLines.size() ? kLines[compression] : kLines.back();
+}
+
+// Computes how many bytes one block of pixels takes from the attributes of a header. If an attribute occurs
+// twice, the larger value counts.
+class BlockSize {
+public:
+    // `value` has the size that its type asks for.
+    void add(std::string_view name, std::string_view type, std::string_view value) {
+        if (name == "dataWindow" && type == "box2i") {
+            raise(width_, double{1} + wordAt(value, 2) - wordAt(value, 0));
+        } else if (name == "channels" && type == "chlist") {
+            raise(pixelBytes_, bytesPerPixel(value));
+        } else if (name == "compression" && type == "compression") {
+            raise(lines_, linesOfBlock(value));
+        } else if (name == "tiles" && type == "tiledesc") {
+            const auto side = [&](std::size_t index) {
+                return static_cast<double>(static_cast<std::uint32_t>(wordAt(value, index)));
+            };
+            raise(tilePixels_, side(0) * side(1));
+        }
+    }
+    double bytes() const {
+        return pixelBytes_ * std::max(width_ * lines_, tilePixels_);
+    }
+
+private:
+    static void raise(double& largest, double value) {
+        largest = std::max(largest, value);
+    }
+
+    double width_ = 0.0;
+    double lines_ = 0.0;
+    double pixelBytes_ = 0.0;
+    double tilePixels_ = 0.0;
+};
+
+// Returns whether the library reads the whole value and nothing beyond it.
+bool fits(std::string_view type, std::string_view value) {
+    const auto fixed = std::ranges::find(kFixedTypes, type, &FixedType::name);
+    if (fixed != kFixedTypes.end()) {
+        return value.size() == fixed->size;
+    }
+    // An ID manifest is compressed, and only deep pictures have one.
+    return type == "chlist"         ? isChannelList(value)
+           : type == "stringvector" ? isStringVector(value)
+           : type == "preview"      ? isPreview(value)
+                                    : type != "idmanifest";
+}
+
+}  // namespace
+
+std::string findExrExcess(std::span<const std::uint8_t> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    const std::optional<std::uint32_t> version = ExrReader(text, sizeof(std::uint32_t)).word();
+    ExrReader reader(text, kHeaderStart);
+    bool isEmpty = true;
+    BlockSize block;
+    while (version) {
+        const std::optional<std::string_view> name = reader.text();
+        if (!name) {
+            return "its header ends early";
+        }
+        if (name->empty()) {
+            // This is the end of a header. If there are several headers, an empty one is the last.
+            if ((*version & kMultipart) == 0 || isEmpty) {
+                break;
+            }
+            isEmpty = true;
+            block = {};
+            continue;
+        }
+        isEmpty = false;
+        const std::optional<std::string_view> type = reader.text();
+        const std::optional<std::uint32_t> size = type ? reader.word() : std::nullopt;
+        const std::string_view rest = reader.rest();
+        if (!size || !reader.skip(*size) || !fits(*type, rest.substr(0, *size))) {
+            return "the size of its attribute " + std::string(*name) + " is wrong";
+        }
+        block.add(*name, *type, rest.substr(0, *size));
+        if (block.bytes() > kMaxBlockBytes) {
+            return "one block of its pixels would take more than 128 MiB";
+        }
+    }
+    return {};
+}
 
 namespace {
 

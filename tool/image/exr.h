@@ -6,10 +6,15 @@
 #include <glint/image.h>
 #include <glint/result.h>
 
+#include <cstdint>
 #include <span>
 #include <string>
 
 namespace glint::image {
+
+// Returns the first element that does not fit. Returns an empty text if everything fits, or if the library
+// would not read the file any further.
+std::string findExrExcess(std::span<const std::uint8_t> bytes);
 
 // An image in a file beside the picture. Its channels are called "NAME.C", by the conventions of OpenEXR for
 // layers.

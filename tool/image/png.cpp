@@ -1,7 +1,6 @@
 #include "image/png.h"
 
 #include "base/image_limits.h"
-#include "base/png_bounds.h"
 #include "image/tone.h"
 
 #include <array>

@@ -1,4 +1,4 @@
-// Draws text and areas into pictures for legends.
+// Draws text and areas into pictures for legends, in colours that people tell apart.
 #pragma once
 
 #include "image/png.h"
@@ -29,5 +29,18 @@ void drawText(DisplayImage& image, std::uint32_t x, std::uint32_t y, std::string
 // Fills a rectangle, as far as it is in the picture.
 void fillArea(DisplayImage& image, std::uint32_t x, std::uint32_t y, std::uint32_t width,
               std::uint32_t height, Color8 color);
+
+// --- Colours that people tell apart, colour-blind people included ---
+
+// Colours of categories: seven of those of Okabe and Ito, "Color Universal Design" (2008), then the same
+// paler, then the same darker. Black is left to pixels without a category.
+inline constexpr std::uint32_t kCategoryColors = 21;
+// Returns the colour of a number; numbers that are equal modulo kCategoryColors share one.
+Color8 categoryColor(std::uint32_t number);
+
+// Returns the colour of a quantity from 0 to 1, clamped: "viridis" by Smith and van der Walt (2015), which
+// matplotlib has in the public domain (CC0). Its lightness grows evenly. It is interpolated between nine of
+// its colours.
+Color8 quantityColor(double share);
 
 }  // namespace glint::image

@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMiddleGrey = 0.18;
 // Sunlight of 100,000 lux needs 17 stops. --exposure has the same limit.
-constexpr double kMaxStops = 32.0;
 // A pixel with a smaller share of the median luminance counts as black. A pixel 20 stops below the others
 // would change the log-average by less than a display can show.
 constexpr double kBlackShare = 1e-6;
@@ -86,7 +85,7 @@ double automaticExposure(const LinearImage& image, std::span<const std::uint8_t>
             ++count;
         }
     }
-    return std::clamp(std::log2(kMiddleGrey) - sum / static_cast<double>(count), -kMaxStops, kMaxStops);
+    return std::clamp(std::log2(kMiddleGrey) - sum / static_cast<double>(count), -kMaxExposure, kMaxExposure);
 }
 
 Rgb displayed(const Rgb& color, double exposure) {

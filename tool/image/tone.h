@@ -23,9 +23,12 @@ float srgbToLinear(float value);
 // Specification"). It keeps base colours up to 0.8 and compresses highlights; the result is within [0, 1].
 Rgb toneMapNeutral(const Rgb& color);
 
+// The limit of an exposure in stops, either way.
+inline constexpr double kMaxExposure = 32.0;
+
 // Returns the exposure in stops that brings the log-average luminance of surfaces to a mid-grey of 0.18
-// (Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), clamped to
-// ±32 stops. `surfaces` has a byte for each pixel, which is not 0 if the pixel sees a surface. All pixels
+// (Reinhard et al. 2002, "Photographic Tone Reproduction for Digital Images", equations 1 and 2), within
+// kMaxExposure. `surfaces` has a byte for each pixel, which is not 0 if the pixel sees a surface. All pixels
 // count if it is empty or has no such pixel, as in a picture of the sky alone. Pixels that are not finite or
 // are black do not count; a pixel is black if it is below a millionth of the median of those above 0. Returns
 // 0 stops if no pixel is left.

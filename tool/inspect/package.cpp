@@ -1,7 +1,7 @@
 #include "inspect/package.h"
 
 #include "base/files.h"
-#include "base/suggest.h"
+#include "base/text.h"
 #include "inspect/manifest_file.h"
 #include "spirv/compiler.h"
 

@@ -1,6 +1,5 @@
 #include "inspect/pipelines.h"
 
-#include "base/suggest.h"
 #include "base/text.h"
 #include "emit/compile.h"
 #include "inspect/gpu_tables.h"

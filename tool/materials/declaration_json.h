@@ -1,7 +1,7 @@
 // Reads the JSON of declarations, and fails with the place of the fault.
 #pragma once
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "materials/interval.h"
 
 #include <glint/result.h>

@@ -2,7 +2,6 @@
 
 #include "base/json.h"
 #include "materials/declaration_json.h"
-#include "materials/effect_declaration.h"
 #include "materials/feature_code.h"
 #include "materials/material_model.h"
 #include "materials/model_builder.h"

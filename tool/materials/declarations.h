@@ -8,8 +8,11 @@
 
 #include <glint/result.h>
 
+#include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint::materials {
 
@@ -18,5 +21,18 @@ namespace glint::materials {
 // members, uses a name twice, refers to one that does not exist, or has an expression that can't be read; the
 // place is file#/json/pointer.
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
+
+// --- Packs: material features of a user's own, beside those that Glint has ---
+
+// Returns the files of the packs in `folders`: each folder's own declarations (.json) and GLSL (.glsl), and
+// those of the folders in it, sorted by name. Error "materials-folder" if one can't be listed or has no
+// declaration.
+Result<std::vector<std::filesystem::path>> packFiles(std::span<const std::string> folders);
+
+// Returns the model of Glint's own features together with those of the packs. It lives as long as the
+// program, as materials refer to it. Without folders it is builtinMaterialModel(). Has the errors of
+// packFiles(), readFile() and readDeclarations(), and "materials-glsl" if a file that a declaration names is
+// not there.
+Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders);
 
 }  // namespace glint::materials

@@ -1,4 +1,4 @@
-#include "materials/effect_declaration.h"
+#include "materials/material_model.h"
 
 #include <algorithm>
 #include <cctype>

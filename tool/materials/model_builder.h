@@ -115,7 +115,7 @@ private:
     void collectAliases(const File& file);
     MaterialTexture& textureNamed(const Members& members, std::string_view member);
 
-    // feature_bits.cpp
+    // link_declarations.cpp: the bits, between the passes
 
     // Lobes and inputs have words of their own. In each, bits follow the declared order, then the names.
     void assignBits();

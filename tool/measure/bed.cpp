@@ -1,5 +1,5 @@
 #include "gltf/scene_list.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "spirv/compiler.h"
 
 #include <glint/measure/bed.h>

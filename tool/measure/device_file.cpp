@@ -1,5 +1,5 @@
 #include "base/json.h"
-#include "plan/strategy_choice.h"
+#include "plan/strategy_cost.h"
 
 #include <glint/measure/device_file.h>
 

@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "image/error.h"
+#include "image/compare.h"
 #include "measure/rounds.h"
 
 #include <fmt/format.h>

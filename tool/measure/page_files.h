@@ -1,7 +1,7 @@
 // The sources of the page (tool/measure/page/), which are compiled into the tool.
 #pragma once
 
-#include "resolve/builtin.h"
+#include "resolve/host.h"
 
 namespace glint::measure {
 

@@ -2,11 +2,10 @@
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "cache/packing.h"
-#include "cache/program.h"
+#include "cache/action.h"
 #include "cache/store.h"
 #include "image/tone.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <fmt/format.h>
 

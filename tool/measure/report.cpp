@@ -1,5 +1,5 @@
 #include "base/text.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/render_settings.h>
 #include <glint/measure/report.h>

@@ -3,7 +3,7 @@
 #include "base/text.h"
 #include "emit/package/json.h"
 #include "measure/commit.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/render_settings.h>
 

@@ -1,4 +1,4 @@
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
 

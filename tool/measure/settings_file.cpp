@@ -1,7 +1,7 @@
 #include "base/files.h"
 #include "base/json.h"
-#include "base/suggest.h"
-#include "settings/table.h"
+#include "base/text.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/settings_file.h>
 

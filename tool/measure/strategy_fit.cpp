@@ -1,5 +1,5 @@
 #include "measure/least_squares.h"
-#include "plan/strategy_choice.h"
+#include "plan/strategy_cost.h"
 
 #include <glint/measure/statistics.h>
 #include <glint/measure/strategy_fit.h>

@@ -1,6 +1,5 @@
 #include "plan/effects.h"
 
-#include "plan/held_text.h"
 #include "plan/key.h"
 
 #include <fmt/format.h>

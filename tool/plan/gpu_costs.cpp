@@ -1,11 +1,13 @@
 #include "plan/gpu_costs.h"
 
 #include "plan/cost.h"
+#include "plan/strategy_constants.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace glint::compiler {
 
@@ -243,6 +245,25 @@ std::string describe(const GpuCosts& gpu) {
     return text + (branches ? fmt::format("In a case that branches it costs {:.2f} times as much.", *branches)
                             : std::string("The table has no package of --merge family or all, so branches "
                                           "cost what they cost without it."));
+}
+
+DeviceCosts builtInCosts(bool onCpu) {
+    const auto* row = std::ranges::find(fitted::kDevices, onCpu, &fitted::DeviceRow::onCpu);
+    if (row == std::end(fitted::kDevices)) {
+        row = std::begin(fitted::kDevices);
+    }
+    DeviceCosts costs{std::string(row->device),
+                      std::string(row->driver),
+                      row->onCpu,
+                      row->subgroupSize,
+                      std::string(row->tracer),
+                      std::string(row->shadows),
+                      std::string(row->command),
+                      {}};
+    for (const fitted::StrategyConstants& strategy : row->strategies) {
+        costs.strategies.push_back({std::string(strategy.strategy), strategy.constants});
+    }
+    return costs;
 }
 
 }  // namespace glint::compiler

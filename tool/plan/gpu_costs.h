@@ -105,4 +105,8 @@ inline constexpr double kHalfError = 4e-6;
 // Says what the table has about strategies and merging, and what it lacks, for people: full sentences.
 std::string describe(const GpuCosts& gpu);
 
+// Returns the constants of the measured device of that type (plan/strategy_constants.h), for devices without
+// a calibration. If no device of that type was measured, it returns those of the other type.
+DeviceCosts builtInCosts(bool onCpu);
+
 }  // namespace glint::compiler

@@ -3,7 +3,7 @@
 
 #include "plan/effects.h"
 #include "plan/key.h"
-#include "plan/lock_ids.h"
+#include "plan/lock.h"
 #include "plan/merge.h"
 
 #include <glint/layers.h>

@@ -1,6 +1,6 @@
 #include "plan/plan_cost.h"
 
-#include "plan/cluster.h"
+#include "plan/merge.h"
 
 #include <algorithm>
 

@@ -2,8 +2,11 @@
 
 #include "plan/cost.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 
@@ -134,6 +137,169 @@ TermValues estimate(const Round& round, const StrategyCosts& costs, double subgr
 double estimatedMs(const Round& round, const StrategyCosts& costs, double subgroupSize) {
     const TermValues parts = estimate(round, costs, subgroupSize);
     return std::accumulate(parts.begin(), parts.end(), 0.0);
+}
+
+namespace {
+
+double partOf(const StrategyEstimate& estimate, CostTerm term) {
+    return estimate.parts[static_cast<std::size_t>(term)];
+}
+
+// Three digits are enough, because no estimate is more accurate.
+std::string milliseconds(double ms) {
+    return ms < 1000.0 ? fmt::format("{:.3g} ms", ms) : fmt::format("{:.0f} ms", ms);
+}
+
+std::string whole(double count) {
+    const std::string digits = fmt::format("{:.0f}", count);
+    std::string text;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        const bool opensGroup = i > 0 && (digits.size() - i) % 3 == 0;
+        text += opensGroup ? "," : "";
+        text += digits[i];
+    }
+    return text;
+}
+
+const StrategyEstimate* find(const StrategyChoice& choice, std::string_view strategy) {
+    const auto row = std::ranges::find(choice.estimates, strategy, &StrategyEstimate::strategy);
+    return row == choice.estimates.end() ? nullptr : &*row;
+}
+
+bool ordersHits(std::string_view strategy) {
+    return hasTerm(strategy, CostTerm::Buckets);
+}
+
+// Describes the rays' hits in numbers.
+std::string factsText(const FrameFacts& facts) {
+    const std::string alike = facts.coherence >= 0.75  ? "mostly alike"
+                              : facts.coherence > 0.25 ? "partly alike"
+                                                       : "unlike";
+    const std::string paths =
+        facts.bounces == 1
+            ? std::string()
+            : fmt::format(" in {} bounces, {:.0f} % of them after the first, where neighbours go everywhere",
+                          facts.bounces, 100.0 * facts.laterRays / std::max(facts.rays, 1e-12));
+    std::string text = fmt::format(
+        "{} rays{}, {} case{}, {} instructions a hit, hits of neighbouring rays {}", whole(facts.rays), paths,
+        facts.cases, facts.cases == 1 ? "" : "s", whole(facts.instructions), alike);
+    if (facts.cases > 1) {
+        text +=
+            fmt::format(": a subgroup of unsorted hits runs {:.1f} cases one after another", facts.casesRun);
+    }
+    return text + ".";
+}
+
+// Returns the best strategy of the other kind (ordering or not), for a comparison of the time that ordering
+// saves or would save.
+const StrategyEstimate* rivalOf(const StrategyChoice& choice) {
+    const StrategyEstimate* best = nullptr;
+    for (const StrategyEstimate& other : choice.estimates) {
+        const bool rivals = other.available && ordersHits(other.strategy) != ordersHits(choice.strategy);
+        if (rivals && (best == nullptr || other.ms < best->ms)) {
+            best = &other;
+        }
+    }
+    return best;
+}
+
+// Compares the two strategies term by term.
+std::string comparisonText(const StrategyEstimate& chosen, const StrategyEstimate& rival) {
+    const bool ordered = ordersHits(chosen.strategy);
+    const StrategyEstimate& sorted = ordered ? chosen : rival;
+    const StrategyEstimate& unsorted = ordered ? rival : chosen;
+    const auto waits = [](const StrategyEstimate& row) {
+        return partOf(row, CostTerm::Divergence) + partOf(row, CostTerm::Code) +
+               partOf(row, CostTerm::Misses);
+    };
+    const double spared = waits(unsorted) - waits(sorted);
+    const double shading = partOf(sorted, CostTerm::Instructions) - partOf(unsorted, CostTerm::Instructions);
+    const double around = sorted.ms - unsorted.ms + spared - shading;
+    return fmt::format(
+        "{} is expected to take {}, and {} {} ({:.2f} times): sorting {} {} of divergence, {} {} of "
+        "launches, records and sorting, and {} {} of shading.",
+        chosen.strategy, milliseconds(chosen.ms), rival.strategy, milliseconds(rival.ms),
+        rival.ms / std::max(chosen.ms, 1e-12), spared < 0.0 ? "adds" : "saves",
+        milliseconds(std::abs(spared)), around < 0.0 ? "saves" : "adds", milliseconds(std::abs(around)),
+        shading < 0.0 ? "saves" : "adds", milliseconds(std::abs(shading)));
+}
+
+void explain(StrategyChoice& choice) {
+    if (choice.facts.rays <= 0.0) {
+        choice.why = "No effect sends rays whose hits are shaded: strategies do not differ.";
+        return;
+    }
+    choice.why = factsText(choice.facts);
+    const StrategyEstimate* const chosen = find(choice, choice.strategy);
+    if (const StrategyEstimate* const rival = rivalOf(choice)) {
+        choice.why += fmt::format(" {}", comparisonText(*chosen, *rival));
+    } else {
+        choice.why +=
+            fmt::format(" {} is expected to take {}; no strategy can be chosen that treats hits differently.",
+                        choice.strategy, milliseconds(chosen->ms));
+    }
+}
+
+}  // namespace
+
+bool isBetterChoice(const ChoiceTime& a, const ChoiceTime& b, std::size_t cases) {
+    if (cases <= 1 && ordersHits(a.strategy) != ordersHits(b.strategy)) {
+        return ordersHits(b.strategy);
+    }
+    return a.ms < b.ms;
+}
+
+FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize) {
+    FrameFacts facts;
+    for (const Round& round : rounds) {
+        const double hits = round.rays * round.hitShare;
+        facts.rays += round.rays;
+        facts.laterRays += round.bounce > 1 ? round.rays : 0.0;
+        facts.bounces = std::max(facts.bounces, round.bounce);
+        facts.hits += hits;
+        facts.cases = std::max(facts.cases, round.cases.size());
+        facts.coherence += round.rays * round.coherence;
+        facts.instructions += round.rays * instructionsRun(round, 1.0);
+        facts.casesRun += hits * casesRun(round, subgroupSize);
+    }
+    facts.coherence /= std::max(facts.rays, 1e-12);
+    facts.instructions /= std::max(facts.hits, 1e-12);
+    facts.casesRun /= std::max(facts.hits, 1e-12);
+    return facts;
+}
+
+std::optional<StrategyChoice> chooseStrategy(std::span<const Round> rounds, const DeviceCosts& device,
+                                             std::span<const std::string> available) {
+    StrategyChoice choice;
+    choice.facts = factsOf(rounds, device.subgroupSize);
+    const StrategyEstimate* best = nullptr;
+    choice.estimates.reserve(simplestFirst().size());  // The vector must not reallocate, so that `best`
+                                                       // stays valid.
+    for (const std::string_view name : simplestFirst()) {
+        const StrategyCosts* const costs = findCosts(device, name);
+        if (costs == nullptr) {
+            continue;
+        }
+        StrategyEstimate& row = choice.estimates.emplace_back();
+        row.strategy = name;
+        row.available = std::ranges::find(available, name) != available.end();
+        for (const Round& round : rounds) {
+            const TermValues parts = estimate(round, *costs, device.subgroupSize);
+            std::ranges::transform(row.parts, parts, row.parts.begin(), std::plus());
+        }
+        row.ms = std::accumulate(row.parts.begin(), row.parts.end(), 0.0);
+        if (row.available &&
+            (best == nullptr ||
+             isBetterChoice({row.strategy, row.ms}, {best->strategy, best->ms}, choice.facts.cases))) {
+            best = &row;
+        }
+    }
+    if (best == nullptr) {
+        return std::nullopt;
+    }
+    choice.strategy = best->strategy;
+    explain(choice);
+    return choice;
 }
 
 }  // namespace glint::compiler

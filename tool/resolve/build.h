@@ -3,10 +3,10 @@
 #pragma once
 
 #include "gltf/scene_list.h"
-#include "plan/built_in_costs.h"
 #include "plan/frame_rounds.h"
 #include "plan/gpu_costs.h"
 #include "plan/plan.h"
+#include "plan/strategy_cost.h"
 #include "settings/settings.h"
 
 #include <glint/package_modules.h>

@@ -1,7 +1,6 @@
 #include "resolve/host.h"
 
-#include "base/suggest.h"
-#include "resolve/builtin.h"
+#include "base/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,14 +1,22 @@
-// The host: the functions through which shading reads geometry, materials, textures, lights and sky. Glint's
-// own are in shaders/host; a folder of the user's may have others in their place.
+// The shaders that modules are made of: those that are compiled into the tool, and those of a host.
 #pragma once
+
+#include "base/builtin_file.h"
 
 #include <glint/result.h>
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace glint::compiler {
+
+// Returns the files of shaders/, then those of templates/, each sorted by name. They have static storage.
+std::span<const base::BuiltinFile> builtinFiles();
+
+// The host: the functions through which shading reads geometry, materials, textures, lights and sky. Glint's
+// own are in shaders/host; a folder of the user's may have others in their place.
 
 // Returns the files of a host's folder, sorted: those of the folder, which stand in for files of shaders/host
 // with the same names, and the .glsl and .h files of folders in it, which they may include. No folder gives

@@ -1,7 +1,7 @@
 #include "resolve/layers.h"
 
-#include "base/suggest.h"
-#include "settings/layer_words.h"
+#include "base/text.h"
+#include "settings/compile_settings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

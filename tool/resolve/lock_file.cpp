@@ -1,19 +1,45 @@
 #include "resolve/lock_file.h"
 
 #include "base/files.h"
-#include "base/suggest.h"
 #include "base/text.h"
-#include "plan/lock.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <iterator>
+#include <set>
 #include <system_error>
 #include <utility>
 
 namespace glint::compiler {
+
+LockUpdate updateLock(const LockedIds& locked, const Plan& plan, bool prune) {
+    std::set<int> known;
+    for (const auto& [mask, id] : locked) {
+        known.insert(id);
+    }
+    LockUpdate update;
+    for (const Key& key : plan.keys) {
+        update.ids[key.mask] = key.shaderId;
+        const auto found = locked.find(key.mask);
+        if (found == locked.end()) {
+            update.added.push_back(key.mask);
+        } else if (found->second != key.shaderId) {
+            update.moved.push_back({key.mask, found->second, key.shaderId, !known.contains(key.shaderId)});
+        }
+    }
+    for (const auto& [mask, id] : locked) {
+        if (!update.ids.contains(mask)) {
+            update.stale.push_back(mask);
+        }
+    }
+    for (std::size_t i = 0; !prune && i < update.stale.size(); ++i) {
+        update.ids[update.stale[i]] = locked.at(update.stale[i]);
+    }
+    return update;
+}
 
 namespace {
 
@@ -45,10 +71,6 @@ std::string listSome(const List& list, const Describe& describe) {
     return base::someOf(texts, 8);
 }
 
-std::string counted(std::size_t number, std::string_view what) {
-    return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
-}
-
 // Returns "clearcoat normals (Varnish)": the key as in the file, with a material that has it.
 std::string describeKey(materials::FeatureMask mask, const Plan& plan, const gltf::SceneList& scenes) {
     const auto key = std::ranges::find(plan.keys, mask, &Key::mask);
@@ -76,7 +98,7 @@ public:
         const std::string missing =
             update_.added.empty()
                 ? std::string("IDs of keys change")
-                : fmt::format("{} without a shader ID: {}", counted(update_.added.size(), "key"),
+                : fmt::format("{} without a shader ID: {}", base::counted(update_.added.size(), "key"),
                               listSome(update_.added, [&](materials::FeatureMask mask) {
                                   return describeKey(mask, plan_, scenes_);
                               }));
@@ -129,15 +151,15 @@ private:
         });
         const bool many = update_.stale.size() > 1;
         if (request_.prune) {
-            messages.push_back(
-                {Severity::Note, "lock-stale", request_.file,
-                 fmt::format("loses {} that no scene has: {}", counted(update_.stale.size(), "key"), list),
-                 ""});
+            messages.push_back({Severity::Note, "lock-stale", request_.file,
+                                fmt::format("loses {} that no scene has: {}",
+                                            base::counted(update_.stale.size(), "key"), list),
+                                ""});
         } else {
-            messages.push_back(
-                {Severity::Note, "lock-stale", request_.file,
-                 fmt::format("keeps {} that no scene has: {}", counted(update_.stale.size(), "key"), list),
-                 fmt::format("--lock-prune drops {}", many ? "them" : "it")});
+            messages.push_back({Severity::Note, "lock-stale", request_.file,
+                                fmt::format("keeps {} that no scene has: {}",
+                                            base::counted(update_.stale.size(), "key"), list),
+                                fmt::format("--lock-prune drops {}", many ? "them" : "it")});
         }
     }
 

@@ -1,14 +1,14 @@
 #include "resolve/resolve.h"
 
 #include "base/clock.h"
-#include "base/suggest.h"
 #include "base/text.h"
+#include "resolve/build.h"
 #include "resolve/layers.h"
 #include "resolve/light.h"
 #include "resolve/lock_file.h"
 #include "resolve/profile.h"
-#include "settings/configuration.h"
-#include "settings/table.h"
+#include "scene/deformed.h"
+#include "settings/descriptor.h"
 #include "spirv/compiler.h"
 
 #include <fmt/format.h>
@@ -20,6 +20,36 @@
 #include <utility>
 
 namespace glint::compiler {
+
+namespace {
+
+std::vector<std::uint32_t> retiredIds(const Plan& plan) {
+    std::vector<std::uint32_t> ids;
+    for (const Case& shaderCase : plan.cases) {
+        if (shaderCase.isRetired()) {
+            ids.push_back(static_cast<std::uint32_t>(shaderCase.shaderId));
+        }
+    }
+    return ids;
+}
+
+}  // namespace
+
+package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
+                              const CompileSettings& settings) {
+    return {settings.strategies,
+            settings.tracers,
+            settings.shadows,
+            plan.effects.effects,
+            settings.plan.keys.alpha != package::AlphaPolicy::Opaque,
+            static_cast<std::uint32_t>(plan.cases.size()),
+            retiredIds(plan),
+            std::ranges::any_of(scenes.scenes(), hasDeformedMesh),
+            settings.passes,
+            settings.maxBounces,
+            settings.plan.fallback,
+            settings.shadowThrough != package::ShadowThrough::Alpha};
+}
 
 namespace {
 

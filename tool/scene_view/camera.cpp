@@ -1,4 +1,4 @@
-#include "base/suggest.h"
+#include "base/text.h"
 #include "base/vectors.h"
 #include "scene/deformed.h"
 

@@ -1,6 +1,5 @@
 #include "base/clock.h"
 #include "base/files.h"
-#include "cache/packing.h"
 #include "cache/store.h"
 #include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"

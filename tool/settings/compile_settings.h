@@ -3,7 +3,7 @@
 
 #include "plan/effects.h"
 #include "plan/plan.h"
-#include "plan/strategy_choice.h"
+#include "plan/strategy_cost.h"
 
 #include <glint/names.h>
 #include <glint/package_modules.h>
@@ -17,6 +17,10 @@
 #include <vector>
 
 namespace glint::compiler {
+
+// Ends a word of CompileSettings::layers whose layer a package may lack, because it has no effect with such a
+// layer: "hit-shader?".
+inline constexpr char kOptionalLayer = '?';
 
 // The choice of the level of a texture that hits read.
 enum class TextureLod : std::uint8_t {

@@ -1,4 +1,4 @@
-// The description of one setting: a row of the table of settings.
+// The table of settings: the description of each, and values by name.
 #pragma once
 
 #include "settings/settings.h"
@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -161,5 +162,25 @@ std::string idleReason(const Descriptor& row, const BenchFacts& facts, const Con
 std::string complaintAbout(const Descriptor& row, std::string_view text);
 // Returns a bound of a range: "0.5", "1e9".
 std::string boundText(double bound);
+
+// The table of settings. The options of the command line with their help, their checks and their completion,
+// files of settings, the sweeps of a bench, the settings in a manifest and the table in docs/cli.md follow
+// from it.
+
+// Rows of the same name have no command in common.
+std::span<const Descriptor> settingsTable();
+// Returns the row that a bench sweeps; null for other names.
+const Descriptor* sweptSetting(std::string_view name);
+
+// --- Settings by name, as command lines, files and a bench's points have them ---
+
+// Returns the names of the settings that a bench sweeps, in the order of the table.
+std::vector<std::string> settingNames();
+// Returns the value of every setting of settingNames().
+Configuration configurationOf(const Settings& settings);
+// Returns `settings` with the values of `configuration`, which must be valid.
+Settings withSettings(Settings settings, const Configuration& configuration);
+// Returns the words of a command line: {"--spp", "4"}.
+std::vector<std::string> wordsOf(const Configuration& configuration);
 
 }  // namespace glint::compiler

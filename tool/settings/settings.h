@@ -1,5 +1,5 @@
 // All settings of a package and of its pictures, as the values of compiler and runtime. Each setting has a
-// row in the table of settings/table.h, which gives its name, its text and its help.
+// row in the table of settings/descriptor.h, which gives its name, its text and its help.
 #pragma once
 
 #include "settings/compile_settings.h"

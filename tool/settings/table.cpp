@@ -1,6 +1,5 @@
-#include "settings/table.h"
-
 #include "settings/bench_rules.h"
+#include "settings/descriptor.h"
 #include "settings/values.h"
 
 namespace glint::compiler {

@@ -2,7 +2,6 @@
 
 #include "spirv/join/parsed_module.h"
 #include "spirv/reader.h"
-#include "spirv/wide_loads.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 

@@ -1,6 +1,5 @@
 #include "spirv/lint.h"
 
-#include "spirv/call_graph.h"
 #include "spirv/lint_finding.h"
 #include "spirv/lint_flow.h"
 #include "spirv/lint_prepare.h"

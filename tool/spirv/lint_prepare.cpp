@@ -1,6 +1,5 @@
 #include "spirv/lint_prepare.h"
 
-#include "spirv/call_graph.h"
 #include "spirv/reader.h"
 
 #include <fmt/format.h>

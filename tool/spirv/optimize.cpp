@@ -1,6 +1,5 @@
 #include "spirv/optimize.h"
 
-#include "spirv/call_graph.h"
 #include "spirv/finish.h"
 #include "spirv/reader.h"
 

@@ -1,5 +1,4 @@
-#include "spirv/wide_loads.h"
-
+#include "spirv/finish.h"
 #include "spirv/join/parsed_module.h"
 #include "spirv/reader.h"
 

@@ -4,7 +4,7 @@
 #include "base/files.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "resolve/host.h"
 #include "resolve/layers.h"
 

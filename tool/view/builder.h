@@ -6,7 +6,7 @@
 #include "emit/warm_modules.h"
 #include "gltf/scene.h"
 #include "resolve/resolve.h"
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 #include "view/request.h"
 
 #include <glint/package.h>

@@ -1,6 +1,6 @@
 #include "view/look.h"
 
-#include "settings/layer_words.h"
+#include "settings/compile_settings.h"
 
 #include <glint/measure/layer_view.h>
 

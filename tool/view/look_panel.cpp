@@ -1,6 +1,6 @@
 #include "view/look_panel.h"
 
-#include "image/palette.h"
+#include "image/text.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "view/picture.h"
 
 #include "base/clock.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/render_settings.h>
 #include <glint/scene_view/environment.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gltf/scene.h"
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <glint/package.h>
 #include <glint/renderer.h>

@@ -2,7 +2,7 @@
 // appears here.
 #pragma once
 
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "view/controls.h"
 
 #include <map>

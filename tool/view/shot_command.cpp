@@ -1,6 +1,6 @@
 #include "view/shot_command.h"
 
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <fmt/format.h>
 

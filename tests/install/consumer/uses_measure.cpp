@@ -1,5 +1,5 @@
 // A program that evaluates measurements of its own, and asks which settings are worth measuring.
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
 #include <glint/measure/statistics.h>

@@ -1,8 +1,7 @@
 #include "cache/action.h"
 
 #include "base/files.h"
-#include "cache/packing.h"
-#include "cache/program.h"
+#include "cache/store.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>

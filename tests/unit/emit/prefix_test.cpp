@@ -1,4 +1,4 @@
-#include "emit/glsl/prefix.h"
+#include "emit/glsl/prune.h"
 
 #include <gtest/gtest.h>
 

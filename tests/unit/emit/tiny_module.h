@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emit/compile_modules.h"
-#include "emit/glsl/tokens.h"
+#include "emit/glsl/items.h"
 
 #include <cstdint>
 #include <string>

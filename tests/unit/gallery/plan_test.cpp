@@ -3,9 +3,8 @@
 
 #include "document.h"
 #include "gltf/import.h"
-#include "plan/built_in_costs.h"
 #include "plan/frame_rounds.h"
-#include "plan/strategy_choice.h"
+#include "plan/gpu_costs.h"
 #include "support/features.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Attributes of vertices that packs declare.
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "plan/plan.h"
 #include "unit/gltf/only_primitive.h"
 

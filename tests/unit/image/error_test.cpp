@@ -1,4 +1,4 @@
-#include "image/error.h"
+#include "image/compare.h"
 
 #include <gtest/gtest.h>
 

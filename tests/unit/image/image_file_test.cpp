@@ -2,8 +2,7 @@
 
 #include "base/files.h"
 #include "base/image_limits.h"
-#include "base/png_bounds.h"
-#include "image/exr_bounds.h"
+#include "image/exr.h"
 #include "image/tone.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 // Packs: material features of a user's own.
-#include "materials/packs.h"
-
 #include "base/files.h"
+#include "materials/declarations.h"
 #include "materials/material.h"
 #include "plan/plan.h"
 #include "support/temporary_folder.h"

@@ -1,5 +1,5 @@
 // Views of values that are given: statistics, colours, legends.
-#include "image/palette.h"
+#include "image/text.h"
 
 #include <glint/measure/views.h>
 

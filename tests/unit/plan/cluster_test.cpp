@@ -1,6 +1,4 @@
 // Compares the clustering with exhaustive search, and tests what planning promises for any keys.
-#include "plan/cluster.h"
-
 #include "plan/merge.h"
 #include "support/features.h"
 #include "unit/plan/weighted_keys.h"

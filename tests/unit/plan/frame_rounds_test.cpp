@@ -1,8 +1,7 @@
 // Tests the rays that a frame is expected to send, bounce by bounce, and what --strategy auto makes of them.
 #include "plan/frame_rounds.h"
 
-#include "plan/built_in_costs.h"
-#include "plan/strategy_choice.h"
+#include "plan/gpu_costs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 // What --lights auto takes, by its model of time and noise and by the measurements behind it.
-#include "plan/light_samples.h"
-
 #include "base/json.h"
+#include "resolve/light.h"
 
 #include <glint/package_format.h>
 

@@ -1,7 +1,7 @@
 // Tests shader IDs that outlive changes of the scene, and the text that keeps them.
 #include "plan/lock.h"
 
-#include "plan/lock_text.h"
+#include "resolve/lock_file.h"
 #include "support/features.h"
 
 #include <gtest/gtest.h>

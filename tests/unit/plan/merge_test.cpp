@@ -1,7 +1,6 @@
 // Tests which keys share a case under each policy, depending on the keys' hits.
 #include "plan/merge.h"
 
-#include "plan/cluster.h"
 #include "support/features.h"
 #include "unit/plan/weighted_keys.h"
 

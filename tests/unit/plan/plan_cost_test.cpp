@@ -1,7 +1,7 @@
 // Compares the reported cost of a plan with the clusters' own sums, and with plans in which keys did move.
 #include "plan/plan_cost.h"
 
-#include "plan/cluster.h"
+#include "plan/merge.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 #include "plan/cost.h"
 #include "plan/gpu_costs.h"
 #include "plan/merge.h"
-#include "plan/strategy_choice.h"
 #include "support/features.h"
 
 #include <gtest/gtest.h>

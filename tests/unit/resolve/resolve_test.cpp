@@ -2,7 +2,7 @@
 #include "resolve/resolve.h"
 
 #include "render/scene_builder.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/render_settings.h>
 

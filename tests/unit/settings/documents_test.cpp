@@ -1,7 +1,7 @@
 // Documents and schemas name the settings and the values that the program has. GLINT_UPDATE_DOCUMENTS=1 in
 // the environment writes the table into docs/cli.md instead of comparing it.
 #include "base/text.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,5 @@
 // The table of settings agrees with itself: each value that it names is one, and is kept.
-#include "settings/table.h"
-
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <gtest/gtest.h>
 

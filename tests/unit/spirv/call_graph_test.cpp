@@ -1,6 +1,5 @@
-#include "spirv/call_graph.h"
-
 #include "spirv/compiler.h"
+#include "spirv/reader.h"
 #include "spirv/statistics.h"
 
 #include <gtest/gtest.h>

@@ -2,9 +2,7 @@
 #include "spirv/join/join.h"
 
 #include "spirv/compiler.h"
-#include "spirv/join/clear.h"
 #include "spirv/join/parsed_module.h"
-#include "spirv/join/validate.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"

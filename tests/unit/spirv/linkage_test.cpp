@@ -1,5 +1,3 @@
-#include "spirv/linkage.h"
-
 #include "spirv/compiler.h"
 #include "spirv/reader.h"
 

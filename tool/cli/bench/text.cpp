@@ -49,33 +49,6 @@ std::string cellOf(const measure::CalibrationEntry& entry, const std::string& st
     return fmt::format("{:.2f} ({:.2f}–{:.2f})", ratio.median, ratio.q1, ratio.q3);
 }
 
-// Counts code points, which is the width in a terminal and in Markdown source.
-std::size_t widthOf(const std::string& text) {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(text, [](char byte) { return (byte & 0xC0) != 0x80; }));
-}
-
-std::string markdownTable(const std::vector<std::vector<std::string>>& rows) {
-    std::vector<std::size_t> widths(rows.front().size(), 3);
-    for (const std::vector<std::string>& row : rows) {
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            widths[i] = std::max(widths[i], widthOf(row[i]));
-        }
-    }
-    std::string text;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        for (std::size_t i = 0; i < rows[r].size(); ++i) {
-            text += fmt::format("| {}{} ", rows[r][i], std::string(widths[i] - widthOf(rows[r][i]), ' '));
-        }
-        text += "|\n";
-        for (std::size_t i = 0; r == 0 && i < widths.size(); ++i) {
-            text += fmt::format("|{}", std::string(widths[i] + 2, '-'));
-        }
-        text += r == 0 ? "|\n" : "";
-    }
-    return text;
-}
-
 std::string percentText(double share) {
     return fmt::format("{:.1f} %", 100.0 * share);
 }
@@ -282,7 +255,7 @@ std::string toText(const measure::CalibrationReport& report) {
     return fmt::format(
         "{}, {}. Passes from the list of rays to their shaded hits; ratios are to uber in the same\nround: "
         "median (quartiles) of {}.\n\n{}",
-        report.machine.device, report.machine.driver, report.rounds, markdownTable(rows));
+        report.machine.device, report.machine.driver, report.rounds, formatMarkdown(rows));
 }
 
 std::string describe(const measure::DeviceFile& file) {

@@ -3,11 +3,11 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "cli/options/options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/setting_options.h"
 #include "emit/compile.h"
 #include "emit/package/embed_source.h"
 #include "emit/package/write.h"
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "resolve/host.h"
 
 #include <CLI/CLI.hpp>
@@ -28,11 +28,6 @@ constexpr const char* kPlanOnly = "--plan-only";
 constexpr const char* kLauncher = "--launcher";
 constexpr const char* kModules = "--modules";
 constexpr const char* kWatch = "--watch";
-
-bool isGiven(const CLI::App& command, const std::string& name) {
-    const CLI::Option* const option = command.get_option_no_throw(name);
-    return option != nullptr && option->count() > 0;
-}
 
 // Says what is wrong with a folder's name that looks like a file of another kind.
 std::string complaintAboutFolder(const std::string& text) {
@@ -64,7 +59,7 @@ void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
 
 // Options for compilation by other processes.
 void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option& dry) {
-    CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly, "DIR",
+    CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly.path, "DIR",
                                 "compile nothing: write each module's source into this\n"
                                 "folder, and a build.ninja that compiles them one by one\n"
                                 "and makes the package; an earlier plan is replaced");
@@ -116,7 +111,16 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
         ->needs(&watch);
     addJobs(command, arguments.settings.compile.jobs);
     addCacheOptions(command, arguments.cache);
-    addDepfileOptions(command, arguments.depfile);
+    CLI::Option& depfile = addOutputFile(command, "--depfile", arguments.depfile.file, "FILE", {},
+                                         "list the files that were read, for Make and Ninja");
+    depfile.group("Output");
+    addTexts(command, "--depfile-target", arguments.depfile.targets, "NAME",
+             "target of that list (default: the package's\n"
+             "manifest.json, else the file of --embed); needs --depfile;\n"
+             "may be repeated")
+        .group("Output")
+        ->needs(&depfile)
+        ->allow_extra_args(false);
     addFarmOptions(command, arguments, dry);
 }
 
@@ -139,14 +143,14 @@ void finishCompile(const CLI::App& command, CompileArguments& arguments) {
     if (arguments.watch && arguments.output.empty()) {
         throw CLI::ValidationError("--output", "is missing, and --watch needs it; give -o DIR");
     }
-    if (arguments.watch && isGiven(command, "--json")) {
+    if (arguments.watch && command.count("--json") > 0) {
         throw CLI::ExcludesError(kWatch, "--json");
     }
     checkProfile(command, arguments.settings);
     checkSettings(command, arguments.settings);
     if (arguments.depfile.targets.empty()) {
-        arguments.depfile.targets = {arguments.planOnly.empty() ? mainOutputs(arguments).front()
-                                                                : planFile(arguments)};
+        arguments.depfile.targets = {arguments.planOnly.path.empty() ? mainOutputs(arguments).front()
+                                                                     : arguments.planOnly.buildFile()};
     }
     arguments.options = describeOptions(command);
     // The words already contain what the settings file says.
@@ -171,12 +175,12 @@ void finishCompile(const CLI::App& command, CompileArguments& arguments) {
 
 Status checkOutputs(const CompileArguments& arguments) {
     Status possible = okStatus();
-    if (!arguments.planOnly.empty()) {
-        possible = base::checkOutputFolder(arguments.planOnly);
+    if (!arguments.planOnly.path.empty()) {
+        possible = base::checkOutputFolder(arguments.planOnly.path);
     } else if (!arguments.output.empty()) {
         possible = compiler::checkPackageFolder(arguments.output);
     }
-    if (possible && arguments.planOnly.empty() && !arguments.embed.empty()) {
+    if (possible && arguments.planOnly.path.empty() && !arguments.embed.empty()) {
         // Its folder is made.
         possible = base::checkOutputFolder(std::filesystem::path(arguments.embed).parent_path());
         if (!possible) {
@@ -190,10 +194,6 @@ Status checkOutputs(const CompileArguments& arguments) {
     }
     return possible && !arguments.depfile.file.empty() ? base::checkOutputFile(arguments.depfile.file)
                                                        : possible;
-}
-
-std::string planFile(const CompileArguments& arguments) {
-    return (std::filesystem::path(arguments.planOnly) / "build.ninja").string();
 }
 
 std::vector<std::string> mainOutputs(const CompileArguments& arguments) {

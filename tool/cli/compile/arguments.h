@@ -1,9 +1,9 @@
 // The command line of `glint compile`.
 #pragma once
 
-#include "cli/compile/depfile.h"
-#include "cli/options/cache_options.h"
+#include "cli/cache.h"
 #include "cli/options/setting_options.h"
+#include "emit/build_files.h"
 
 #include <CLI/CLI.hpp>
 
@@ -21,12 +21,12 @@ struct CompileArguments {
     compiler::Settings settings;
     std::vector<std::string> emit{"header"};
     CacheArguments cache;
-    DepfileArguments depfile;
+    compiler::Depfile depfile;
     std::string settingsFile;              // that completeLine() has read; empty: none
     std::string options;                   // all that are given, see describeOptions()
     std::vector<std::string> words;        // those that decide about the package, one a word
     std::vector<std::string> reportWords;  // those that decide which diagnostics are errors
-    std::string planOnly;                  // folder of the plan; empty: none
+    compiler::PlanFolder planOnly;         // empty: no plan
     std::string launcher;                  // of the plan's compilations
     std::string modules;                   // folder of compiled modules; empty: they are compiled
     bool dryRun = false;
@@ -45,8 +45,6 @@ void finishCompile(const CLI::App& command, CompileArguments& arguments);
 // Returns the settings with what else the package is to contain.
 compiler::Settings settingsOf(const CompileArguments& arguments);
 
-// Returns the build file of --plan-only.
-std::string planFile(const CompileArguments& arguments);
 // Returns the files that stand for the whole output: the manifest, and those of --embed.
 std::vector<std::string> mainOutputs(const CompileArguments& arguments);
 // Returns the files that are read besides scenes.

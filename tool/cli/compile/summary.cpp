@@ -2,7 +2,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
-#include "cache/packing.h"
+#include "cache/store.h"
 #include "cli/table.h"
 
 #include <fmt/format.h>

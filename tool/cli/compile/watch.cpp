@@ -3,10 +3,8 @@
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/input_watch.h"
-#include "cli/compile/held_signals.h"
-#include "cli/options/diagnostics_options.h"
 #include "cli/options/options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/setting_options.h"
 #include "emit/package/write.h"
 
 #include <glint/package_watch.h>
@@ -35,39 +33,17 @@ namespace fs = std::filesystem;
 constexpr std::chrono::milliseconds kPause(25);  // between two polls
 constexpr std::size_t kNamed = 3;                // files that a line names
 
-// A signal handler can only reach global data.
+// Signal handlers can only reach global data.
 volatile std::sig_atomic_t interrupted = 0;
+volatile std::sig_atomic_t heldSignal = 0;
 
 void interrupt(int /*signal*/) {
     interrupted = 1;
 }
 
-// While it lives, the first SIGINT or SIGTERM sets `interrupted`. A second one has its usual effect, so that
-// a long compilation can be ended.
-class Interruptions {
-public:
-    Interruptions() {
-        interrupted = 0;
-        struct sigaction action {};
-        action.sa_handler = interrupt;
-        action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);
-        sigemptyset(&action.sa_mask);
-        for (std::size_t i = 0; i < kSignals.size(); ++i) {
-            sigaction(kSignals[i], &action, &earlier_[i]);
-        }
-    }
-    Interruptions(const Interruptions&) = delete;
-    Interruptions& operator=(const Interruptions&) = delete;
-    ~Interruptions() {
-        for (std::size_t i = 0; i < kSignals.size(); ++i) {
-            sigaction(kSignals[i], &earlier_[i], nullptr);
-        }
-    }
-
-private:
-    static constexpr std::array kSignals{SIGINT, SIGTERM};
-    std::array<struct sigaction, kSignals.size()> earlier_{};
-};
+void hold(int signal) {
+    heldSignal = signal;
+}
 
 // Parses the command line once more, with the settings file as it is now.
 Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
@@ -124,14 +100,6 @@ std::vector<std::string> withoutFolders(std::vector<std::string> changed) {
     return files.empty() ? changed : files;
 }
 
-std::string namesOf(const std::vector<std::string>& changed) {
-    std::string text;
-    for (std::size_t i = 0; i < std::min(changed.size(), kNamed); ++i) {
-        text += (i > 0 ? ", " : "") + changed[i];
-    }
-    return changed.size() > kNamed ? text + fmt::format(" and {} more", changed.size() - kNamed) : text;
-}
-
 std::uint64_t hashOfTables(const compiler::CompiledPackage& package) {
     const auto tables = std::ranges::find(package.files, package::kTablesFile, &compiler::PackageFile::name);
     return tables == package.files.end() ? 0 : base::hashBytes(tables->bytes);
@@ -155,7 +123,7 @@ public:
                 // Folders are watched after a failure, and change with any file in them.
                 std::ranges::copy_if(changed, std::inserter(changed_, changed_.end()), isFile);
                 takeSettings(changed);
-                compile(namesOf(withoutFolders(std::move(changed))));
+                compile(base::firstOf(withoutFolders(std::move(changed)), kNamed));
             }
         }
     }
@@ -221,7 +189,12 @@ private:
         if (settingsError_) {
             own.report(*settingsError_);
         } else {
-            done = compileOnce_(own, arguments_, run) == 0;
+            const Result<int> code = compileOnce_(own, arguments_, run);
+            run.outdated = !code && code.error().id == "outdated";
+            done = code && *code == kExitDone;
+            if (!code && !run.outdated) {
+                own.report(code.error());
+            }
         }
         warm_.endRun();
         if (!run.inputs.empty()) {
@@ -373,10 +346,41 @@ void describeRun(const compiler::CompiledPackage& package, WatchedRun& run) {
     run.compileMs = package.compileMs;
 }
 
+SignalHandler::SignalHandler(std::initializer_list<int> signals, void (*handler)(int), int flags) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    action.sa_flags = flags;
+    sigemptyset(&action.sa_mask);
+    for (const int signal : signals) {
+        sigaction(signal, &action, &earlier_.emplace_back(signal, action).second);
+    }
+}
+
+SignalHandler::~SignalHandler() {
+    for (const auto& [signal, earlier] : earlier_) {
+        sigaction(signal, &earlier, nullptr);
+    }
+}
+
+HeldSignals::HeldSignals() {
+    heldSignal = 0;
+    handler_.emplace(std::initializer_list<int>{SIGINT, SIGTERM, SIGHUP}, hold, SA_RESTART);
+}
+
+HeldSignals::~HeldSignals() {
+    handler_.reset();
+    if (heldSignal != 0) {
+        std::raise(heldSignal);
+    }
+}
+
 int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce) {
-    const Interruptions interruptions;
+    interrupted = 0;
+    // The first signal ends the watch. A second one has its usual effect, so that a long compilation can be
+    // ended.
+    const SignalHandler handler({SIGINT, SIGTERM}, interrupt, static_cast<int>(SA_RESETHAND | SA_RESTART));
     Watch(console, arguments, compileOnce).run();
-    return 0;
+    return kExitDone;
 }
 
 }  // namespace glint::cli

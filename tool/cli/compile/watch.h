@@ -7,10 +7,13 @@
 #include "emit/compile.h"
 #include "emit/warm_modules.h"
 
+#include <csignal>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint::cli {
@@ -46,10 +49,36 @@ struct WatchedRun {
 // Sets the counts and times of a package that was compiled.
 void describeRun(const compiler::CompiledPackage& package, WatchedRun& run);
 
-// Calls `compileOnce`, which reports and returns an exit code, at the start and after each change of an
-// input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts the
-// stamp up (glint/package_watch.h). Returns the exit code of the command, which is 0.
-using CompileOnce = std::function<int(const Console&, const CompileArguments&, WatchedRun&)>;
+// While it lives, signals have another handler.
+class SignalHandler {
+public:
+    SignalHandler(std::initializer_list<int> signals, void (*handler)(int), int flags);
+    SignalHandler(const SignalHandler&) = delete;
+    SignalHandler& operator=(const SignalHandler&) = delete;
+    ~SignalHandler();
+
+private:
+    std::vector<std::pair<int, struct sigaction>> earlier_;
+};
+
+// While it lives, SIGINT, SIGTERM and SIGHUP wait, because files are being replaced. Afterwards the last one
+// that came has its usual effect. Use it for short stretches, and only one at a time: the command acts on one
+// thread.
+class HeldSignals {
+public:
+    HeldSignals();
+    HeldSignals(const HeldSignals&) = delete;
+    HeldSignals& operator=(const HeldSignals&) = delete;
+    ~HeldSignals();
+
+private:
+    std::optional<SignalHandler> handler_;
+};
+
+// Calls `compileOnce`, which returns an exit code or the error of the run, at the start and after each change
+// of an input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts
+// the stamp up (glint/package_watch.h). Returns the exit code of the command, which is 0.
+using CompileOnce = std::function<Result<int>(const Console&, const CompileArguments&, WatchedRun&)>;
 int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce);
 
 }  // namespace glint::cli

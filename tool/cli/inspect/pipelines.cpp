@@ -128,9 +128,8 @@ Result<inspect::PipelineReport> obtainOther(const Console& console,
     if (!std::filesystem::is_directory(arguments.compare)) {
         return inspect::readPipelineReport(arguments.compare);
     }
-    const Result<Package> package = Package::load(arguments.compare);
-    return package ? make(console, *package, arguments.compare, arguments)
-                   : Result<inspect::PipelineReport>(package.error());
+    GLINT_TRY(const auto package, Package::load(arguments.compare));
+    return make(console, package, arguments.compare, arguments);
 }
 
 // Reports pipelines that could not be made, statistics that are missing, and budgets that are exceeded.
@@ -188,8 +187,9 @@ void addPipelineReportOptions(CLI::App& command, PackagePipelineArguments& argum
                 "make every pipeline of the package on the device, and\nshow what its driver says of them")
             .group(kGroup);
     const auto ofPipelines = [&](CLI::Option& option) { option.needs(pipelines)->group(kGroup); };
-    ofPipelines(addText(command, "--device", arguments.device, "NAME",
-                        "part of the GPU's name (default: the first suitable one)"));
+    addDeviceChoice(command, arguments.device, arguments.validate, "", kGroup);
+    ofPipelines(*command.get_option("--device"));
+    ofPipelines(*command.get_option("--validate"));
     ofPipelines(addChoice(command, "--sort", arguments.sort, sortWords(), "what the list is sorted by"));
     ofPipelines(addText(command, "--compare", arguments.compare, "FILE|DIR",
                         "show what was before beside it: a report of --json, or\nanother package (default: "
@@ -199,40 +199,27 @@ void addPipelineReportOptions(CLI::App& command, PackagePipelineArguments& argum
                 "report an error where a pipeline exceeds a limit of the\nfile (default: no limits)"));
     ofPipelines(addInteger(command, "--pipeline-threads", arguments.threads, 0, 1024,
                            "threads that make pipelines; 0: as many as the machine\nruns at once"));
-    ofPipelines(addFlag(command, "--validate", arguments.validate,
-                        "run with the Vulkan validation layers: any message is an\nerror"));
 }
 
-int showPipelines(const Console& console, const Package& package, const std::string& folder,
-                  const PackagePipelineArguments& arguments) {
+Result<int> showPipelines(const Console& console, const Package& package, const std::string& folder,
+                          const PackagePipelineArguments& arguments) {
     std::optional<inspect::PipelineBudget> budget;
     if (!arguments.budget.empty()) {
-        Result<inspect::PipelineBudget> read = inspect::readPipelineBudget(arguments.budget);
-        if (!read) {
-            return fail(console, read.error());
-        }
-        budget = std::move(*read);
+        GLINT_TRY(budget, inspect::readPipelineBudget(arguments.budget));
     }
     std::optional<inspect::PipelineReport> other;
     if (!arguments.compare.empty()) {
-        Result<inspect::PipelineReport> made = obtainOther(console, arguments);
-        if (!made) {
-            return fail(console, made.error());
-        }
-        other = std::move(*made);
+        GLINT_TRY(other, obtainOther(console, arguments));
     }
-    Result<inspect::PipelineReport> report = make(console, package, folder, arguments);
-    if (!report) {
-        return fail(console, report.error());
-    }
-    sortPipelines(*report, factNamed(arguments.sort));
-    const bool good = judge(console, *report, budget);
+    GLINT_TRY(auto report, make(console, package, folder, arguments));
+    sortPipelines(report, factNamed(arguments.sort));
+    const bool good = judge(console, report, budget);
     if (console.isJson()) {
-        base::Json json = toJson(*report);
+        base::Json json = toJson(report);
         json["compared"] = other ? toJson(*other, false) : base::Json(nullptr);
         console.result(json);
     } else {
-        console.print(toText(*report, other ? &*other : nullptr, arguments.sort,
+        console.print(toText(report, other ? &*other : nullptr, arguments.sort,
                              console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     return good ? kExitDone : kExitFailed;

@@ -26,8 +26,8 @@ struct PackagePipelineArguments {
 void addPipelineReportOptions(CLI::App& command, PackagePipelineArguments& arguments);
 
 // Makes the pipelines of the package in `folder` and prints the report. Returns the exit code.
-int showPipelines(const Console& console, const Package& package, const std::string& folder,
-                  const PackagePipelineArguments& arguments);
+Result<int> showPipelines(const Console& console, const Package& package, const std::string& folder,
+                          const PackagePipelineArguments& arguments);
 
 // Returns the table, with the facts of `other` beside those of `report` unless it is null.
 std::string pipelineTable(const inspect::PipelineReport& report, const inspect::PipelineReport* other,

@@ -1,469 +1,108 @@
 #include "cli/options/diagnostic_table.h"
 
-#include <algorithm>
+#include <set>
+#include <sstream>
 
 namespace glint::cli {
 
 namespace {
 
-constexpr DiagnosticInfo kTable[] = {
-    {"accessor-bounds", kWarning,
-     "Positions or times of keyframes have no `min` and `max`, or these have a wrong length; Glint takes the "
-     "bounds from the data."},
-    {"accessor-component-type", kError, "An accessor's component type is not one that glTF allows there."},
-    {"accessor-count", kError,
-     "An accessor without a buffer view has more elements than Glint fills with zeros."},
-    {"accessor-form", kWarning,
-     "An accessor has a component type, or a mark of normalised integers, that glTF does not allow for its "
-     "use; its values are read all the same."},
-    {"accessor-layout", kWarning,
-     "A buffer view or an accessor breaks a rule of glTF on alignment, strides, or kinds of data in one "
-     "view; "
-     "its values are read all the same."},
-    {"accessor-range", kError, "An accessor's elements reach beyond their buffer view."},
-    {"accessor-stride", kError,
-     "The stride of a buffer view is shorter than the elements that are read from it."},
-    {"accessor-type", kError, "An accessor's type is unknown, or not one that glTF allows there."},
-    {"alpha-blend", kNote, "Materials have the alpha mode BLEND, which is drawn opaque, as `--alpha` asks."},
-    {"alpha-mode", kWarning, "A material's alpha mode is unknown."},
-    {"alpha-stochastic", kNote,
-     "`--alpha auto`: the scene has the alpha mode BLEND, which is seen with the probability alpha."},
-    {"alpha-tested", kNote, "`--alpha auto`: the scene has alpha masks, so rays test them."},
-    {"animation-channel", kWarning,
-     "A channel of an animation drives nothing that Glint moves, and is not played, or what an earlier one "
-     "drives."},
-    {"animation-keyframes", kWarning,
-     "The keyframes of an animation are not well formed. Most such flaws keep what they drive from being "
-     "played."},
-    {"animation-missing", kError, "`glint render` was asked to play an animation, but the scene has none."},
-    {"animation-pointer", kNote | kWarning,
-     "The target of a `KHR_animation_pointer` is not animated, because the pointer is wrong or Glint does "
-     "not "
-     "have that data, or the channel says more than the pointer."},
-    {"animation-unknown", kError, "The scene has no such animation."},
-    {"asset-version", kWarning | kError,
-     "The file has a version of glTF that Glint does not read, or names none; a warning where it is "
-     "malformed."},
-    {"attribute-count", kError,
-     "The attributes of a primitive, or of instances, have different numbers of elements."},
-    {"attribute-name", kWarning,
-     "An attribute has no name that glTF knows and does not start with an underscore, or its set is not the "
-     "next one."},
-    {"attribute-not-finite", kWarning, "Values of an attribute are NaN or infinite."},
-    {"attribute-type", kError, "An attribute has another number of components than glTF allows."},
-    {"bench-advice", kError,
-     "`glint bench`: no measured configuration is certain to be within `--budget-ms` or `--max-error`."},
-    {"bench-folder", kError,
-     "`glint bench` can't write its folder, or the folder holds something other than a bench."},
-    {"bench-point", kWarning, "`glint bench` left out a configuration that can't be rendered, and says why."},
-    {"bench-reference", kWarning,
-     "The reference of `glint bench` is less certain than `--reference-error` asks for."},
-    {"bindings", kError, "A number of `--bindings` can't be used."},
-    {"bounces", kError, "A number of bounces is outside of its range, or given with `--passes steps`."},
-    {"budget-instructions", kError,
-     "`glint lint`: a module has more instructions than `--max-instructions`."},
-    {"budget-ray-queries", kError, "`glint lint`: a module has more ray queries than `--max-ray-queries`."},
-    {"budget-texture-fetches", kError,
-     "`glint lint`: a module has more texture fetches than `--max-texture-fetches`."},
-    {"buffer-data", kError, "A buffer is the fallback of compressed data, and something reads it."},
-    {"buffer-external", kWarning | kError,
-     "A buffer has no data in the file and names none; a warning where a primitive needs it and is left "
-     "out."},
-    {"buffer-size", kError, "A buffer is shorter than it says, or larger than the device takes."},
-    {"buffer-view-range", kError, "A buffer view reaches beyond its buffer."},
-    {"cache-write", kNote, "The folder of the cache can't be written: nothing is kept for the next run."},
-    {"calibrate-picture", kWarning,
-     "`glint bench --calibrate`: a strategy shows another picture than `uber`; its times don't count."},
-    {"calibrate-point", kWarning,
-     "`glint bench --calibrate` left out a strategy at a point where it can't run, and says why."},
-    {"calibration-device", kWarning, "The device file of `--calibration` was measured on another device."},
-    {"calibration-format", kError,
-     "The file of `--calibration`, or that of the measurements to be fitted, is not valid."},
-    {"calibration-points", kError | kNote,
-     "Measurements of `glint bench --calibrate` can't be used, or are too few for the constants of a "
-     "strategy."},
-    {"calibration-strategies", kError,
-     "There are no constants for any strategy that `--strategy auto` could use."},
-    {"camera", kError,
-     "The runtime was given an invalid camera: not finite, not orthogonal, or without a range."},
-    {"camera-matrix", kError, "The transform of a camera's node is singular."},
-    {"camera-range", kWarning | kError, "A value of a camera is outside of its range."},
-    {"camera-type", kError, "A camera's type is unknown."},
-    {"camera-unknown", kError, "The scene has no such camera."},
-    {"check-albedo", kError,
-     "`glint check-materials`: a layer reflects another share of a white sky than its function says."},
-    {"check-density", kError, "`glint check-materials`: the density of a layer does not integrate to one."},
-    {"check-energy", kError, "`glint check-materials`: a material with the feature creates energy."},
-    {"check-proof", kError,
-     "`glint check-materials --prove`: an input was found for which a feature's code fails or leaves its "
-     "range."},
-    {"check-range", kError,
-     "`glint check-materials`: a feature returns NaN, infinity, or a value out of range."},
-    {"check-reciprocity", kError,
-     "`glint check-materials`: a layer that claims it changes when view and light change places."},
-    {"check-samples", kError, "`glint check-materials`: samples of a layer do not follow its density."},
-    {"check-unreachable", kError,
-     "`glint check-materials`: a feature changes nothing, whatever values its parameters have."},
-    {"color-normalized", kWarning, "Integer vertex colours are not marked as normalised."},
-    {"context-handles", kError, "The runtime was given incomplete Vulkan handles."},
-    {"context-queue", kError, "The runtime was given a queue without graphics and compute."},
-    {"data-uri", kError, "A data URI is malformed."},
-    {"declaration", kError, "A declaration of a material feature is malformed."},
-    {"denoise-failed", kError, "`glint render --denoise`: Open Image Denoise can't do its work."},
-    {"denoise-missing", kError, "`glint render --denoise`: glint was built without Open Image Denoise."},
-    {"depfile-name", kError,
-     "`--depfile`: the name of a file can't be written to a file for Make and Ninja."},
-    {"device-features", kError, "The device lacks features that Glint needs."},
-    {"device-layers", kError,
-     "Shaders of the device can't write as many images as the package has layers, or read no clock."},
-    {"device-missing", kError, "There is no Vulkan driver, or no suitable device."},
-    {"device-tracer", kError, "The device can't trace rays in the way that is asked for."},
-    {"draco-attribute", kError | kWarning, "The Draco data lacks an attribute, or has it in another form."},
-    {"draco-count", kWarning, "Accessors and the Draco data disagree on the number of indices or vertices."},
-    {"draco-decode", kError, "Draco data can't be decoded."},
-    {"draco-size", kError, "Draco data claims more triangles or attributes than its bytes can hold."},
-    {"effect-absent", kNote, "The picture has a light, but the package has no effect `shadow`."},
-    {"effect-missing", kError, "The runtime was asked for the rays of an effect that the package lacks."},
-    {"effect-unknown", kError, "`--effects` names an effect that neither Glint nor a pack has."},
-    {"effect-unused", kWarning, "An effect is asked for that the scene can't use."},
-    {"emissive-lights", kError,
-     "`--emissive-lights` in a package that has no shadow rays, or whose lights or geometry are a host's "
-     "own."},
-    {"engine-scene", kError,
-     "A scene of a host's own (`EngineScene`) has a number out of range, or lacks something that the package "
-     "reads."},
-    {"environment-aspect", kWarning, "An environment map is not twice as wide as high."},
-    {"environment-missing", kError, "The package reads an environment map, but none was given."},
-    {"environment-negative", kWarning, "An environment map has negative radiance."},
-    {"environment-radiance", kError, "An environment map has a radiance that is not finite or too large."},
-    {"environment-resampled", kNote, "An environment map was scaled to the size that Glint filters."},
-    {"environment-size", kError, "An environment map is empty, or too large for the device."},
-    {"environment-unread", kError, "An environment map is given, but the package reads none."},
-    {"environment-unsampled", kError,
-     "The package samples the sky as a light, but the environment map was made without its distribution."},
-    {"exr-encode", kError, "An image can't be written as OpenEXR."},
-    {"extension-ignored", kWarning,
-     "An extension that the scene uses is not supported; what it adds is left out."},
-    {"extension-no-picture", kNote,
-     "The scene uses extensions that change no picture; Glint does not read them."},
-    {"extension-unlisted", kWarning,
-     "An extension that the file uses, or needs, is missing in `extensionsUsed` or `extensionsRequired`."},
-    {"extension-unsupported", kError, "An extension that the scene needs is not supported."},
-    {"file-open", kError, "A file does not exist, is not a regular file, or may not be read."},
-    {"file-read", kError, "A file ended early or could not be read."},
-    {"file-size", kError, "A file is larger than Glint reads."},
-    {"file-write", kError, "A file could not be written."},
-    {"frame-not-recorded", kError, "The runtime was asked for a picture before a frame was recorded."},
-    {"frame-options", kError, "The runtime was given frame options that are out of range."},
-    {"glb-chunk", kWarning | kError, "A chunk of a GLB is damaged, unknown or not aligned."},
-    {"glb-length", kWarning | kError, "A GLB is longer or shorter than it says."},
-    {"glb-version", kError, "A GLB is of another version."},
-    {"glsl", kError, "A generated shader does not compile: a defect of Glint."},
-    {"gltf", kError, "A scene can't be read, for a reason that has no id of its own."},
-    {"gpu-choice", kNote,
-     "A table of `--gpu` decided, or could not decide, what a setting that is `auto` stands for."},
-    {"gpu-device", kWarning, "`--gpu device` can't ask the device's compiler."},
-    {"gpu-table", kError, "The table of `--gpu` is not valid."},
-    {"gpu-unknown", kError, "`--gpu` names neither a file nor a GPU that Glint has a table of."},
-    {"half-precision", kError, "A package computes in 16-bit float, which the device does not support."},
-    {"hit-lobe-unknown", kError, "`--hit-lobes` names a lobe that neither Glint nor a pack has."},
-    {"host-folder", kError, "The folder of `--host` can't be listed, or has no file of a host."},
-    {"host-unknown", kError, "A file in the folder of `--host` replaces none of Glint's files."},
-    {"image-data", kError, "An image has no source, or two."},
-    {"image-decode", kError, "An image can't be decoded."},
-    {"image-extension", kError, "The file name of an image has an unknown extension."},
-    {"image-format", kError, "An image file is damaged, or of a kind that Glint does not read."},
-    {"image-mismatch", kError, "Two images that are compared have different sizes."},
-    {"image-size", kError, "An image is empty or too large."},
-    {"image-type", kWarning, "An image has another media type than the file says, or the file says none."},
-    {"index-range", kError, "An index is out of range."},
-    {"input-missing", kWarning,
-     "A material asks for a texture or a lobe that a primitive lacks the input of, such as a UV set."},
-    {"internal", kError, "Compiling failed unexpectedly: a defect of Glint, or no memory left."},
-    {"json-depth", kError, "The scene's JSON is nested too deeply."},
-    {"json-missing", kError, "A member that glTF requires is missing."},
-    {"json-padding", kWarning, "Zero bytes follow the JSON of the scene."},
-    {"json-range", kError, "A member is outside of its range."},
-    {"json-syntax", kError, "The scene is not valid JSON."},
-    {"json-type", kError, "A member has the wrong type."},
-    {"ktx2-metadata", kWarning,
-     "The header of a KTX2 image breaks a rule of `KHR_texture_basisu`, a DDS image has alpha that is "
-     "premultiplied, or either contradicts the use of the "
-     "texture."},
-    {"layer-effect", kError,
-     "`--layers` names a layer of an effect that the package lacks, or that has no such layer."},
-    {"layer-missing", kError, "A program asks a renderer for a layer that its package lacks."},
-    {"light-range", kWarning, "A value of a light is outside of its range."},
-    {"light-type", kError, "A light's type is unknown."},
-    {"lights", kError, "`--lights` asks for a hierarchy over lights that are a host's own."},
-    {"lint-path", kError, "`glint lint`: there is nothing to read at a path."},
-    {"lock-conflict", kWarning,
-     "Keys claim one shader ID in the lock file and are different cases now: one of them gets a new ID."},
-    {"lock-format", kError, "A lock file can't be read, or has a merge conflict that was left in it."},
-    {"lock-moved", kNote, "Keys of the lock file have another shader ID now, that of the case they share."},
-    {"lock-outdated", kError, "The lock file would change, and `--locked` forbids it."},
-    {"lock-stale", kNote, "The lock file has keys that no scene has."},
-    {"malioc", kWarning | kError, "`glint lint`: `malioc` can't be run, or can't compile a module."},
-    {"manifest-format", kError, "A manifest can't be read."},
-    {"material-conflict", kWarning, "A material has two extensions of which one excludes the other."},
-    {"material-range", kWarning, "A value of a material is outside of its range and clamped."},
-    {"material-unknown", kError, "The scene has no such material."},
-    {"materials-folder", kError, "A folder of `--materials` can't be listed, or has no declaration."},
-    {"materials-glsl", kError, "A declaration of a pack names a GLSL file that is not there."},
-    {"max-error", kError, "`glint compare`: the images differ by more than `--max-error`."},
-    {"max-shaders", kWarning | kError,
-     "The scene needs more shaders than `--max-shaders` (a warning from `explain`)."},
-    {"memory-count", kError, "The scene needs more memory allocations than the device has."},
-    {"memory-size", kError, "A resource is larger than the device takes."},
-    {"memory-type", kError, "The device has no memory of the kind that a resource needs."},
-    {"meshopt-decode", kError, "meshopt data can't be decoded."},
-    {"meshopt-layout", kWarning | kError,
-     "meshopt data is of a mode or layout that glTF does not have; a warning where a buffer view has both "
-     "extensions."},
-    {"meshopt-size", kError, "meshopt data claims more bytes than it can hold."},
-    {"module-features", kError, "A module of the package needs a feature that the device lacks."},
-    {"module-format", kError,
-     "A module that is compiled by itself is damaged, or of another version of Glint."},
-    {"module-missing", kError, "`glint compile --modules`: a module was not compiled."},
-    {"module-stale", kError, "`glint compile --modules`: a module is of another scene or another compiler."},
-    {"module-unknown", kError, "`glint inspect --disassemble`: the package has no such module."},
-    {"morph-attribute", kWarning,
-     "A morph target changes an attribute that its primitive lacks, or that Glint does not morph, or not "
-     "over "
-     "time."},
-    {"morph-limit", kError, "The nodes of the scene have more morph weights than Glint reads."},
-    {"morph-targets", kWarning, "Primitives of one mesh have different numbers of morph targets."},
-    {"morph-weights", kWarning, "A mesh has a different number of weights than of morph targets."},
-    {"ninja-name", kError, "`glint compile --plan-only`: a path can't be written to a file for Ninja."},
-    {"node-cycle", kError, "A node is its own ancestor."},
-    {"node-instances", kNote | kWarning,
-     "The instances of a node have attributes that Glint does not read, follow a skin and are drawn as one "
-     "mesh, or have no mesh."},
-    {"node-matrix", kWarning, "A node has a matrix and another transform, or a matrix that shears."},
-    {"node-parents", kError, "A node has several parents."},
-    {"node-rotation", kWarning, "A node's rotation is not a unit quaternion."},
-    {"node-transform", kError, "The transform of a node overflows."},
-    {"non-finite", kWarning, "Samples of the picture were NaN or infinite; they count as black."},
-    {"normal-invalid", kWarning, "Normals are zero or not finite."},
-    {"nothing-drawn", kWarning, "No node of the scene draws a triangle."},
-    {"nothing-seen", kWarning, "A picture shows no surface of the scene."},
-    {"order-check", kError,
-     "`glint render --validate`: hits were lost, doubled or misplaced; a defect of Glint or of the driver."},
-    {"out-of-memory", kError, "The scene does not fit into memory."},
-    {"outdated", kError, "An input changed while `compile --watch` compiled, so the command compiles again."},
-    {"output", kError, "Standard output can't be written."},
-    {"output-busy", kError, "Another process is writing below the same folder."},
-    {"output-folder", kError, "The folder of an output is not there, or the output is a folder."},
-    {"output-not-a-folder", kError, "The output of `glint compile` is a file."},
-    {"output-not-a-package", kError, "The output folder holds something that is not a package."},
-    {"output-not-a-plan", kError, "The folder of `--plan-only` has a build.ninja that is not Glint's."},
-    {"output-write", kError, "The package could not be written."},
-    {"package-altered", kError, "A package differs from what was written, or contradicts itself."},
-    {"package-bounces", kError, "Paths of more bounces are asked for than a package has."},
-    {"package-fallback", kError,
-     "Pipelines are to be made in the background, and a package has no fallback (`--fallback`)."},
-    {"package-file-name", kError, "A package names a file outside of its folder."},
-    {"package-foreign", kError, "A file is not a package."},
-    {"package-frame", kError, "A package can't replace a renderer's, because its frames have other images."},
-    {"package-mismatch", kError,
-     "A package does not fit the scene, the strategy or the sky that is asked for."},
-    {"package-missing", kError, "There is no package in the folder."},
-    {"package-module-altered", kError, "A module of a package has another size or hash, or is not SPIR-V."},
-    {"package-module-missing", kError, "A module of a package is not there."},
-    {"package-passes", kError, "A package with steps was given to `Renderer`, or one without to `RaySteps`."},
-    {"package-read", kError, "A file of a package can't be read."},
-    {"package-replaced", kError, "A renderer's package was replaced through another renderer of the scene."},
-    {"package-strategy", kError, "A package lacks the strategy that is asked for."},
-    {"package-tracer", kError, "A package lacks the tracer that is asked for."},
-    {"package-truncated", kError, "The tables of a package are cut short."},
-    {"package-version", kError, "A package is of another version."},
-    {"passes", kError,
-     "`--answer` or `--bindings` was given without `--passes steps`, or `--texture-levels` or `--layers` "
-     "with it."},
-    {"payload-bytes", kNote | kWarning, "`glint lint`: a ray payload is large."},
-    {"pipeline-budget", kError, "`glint inspect --pipelines`: a pipeline exceeds a limit of `--budget`."},
-    {"pipeline-budget-file", kError, "The file of `--budget` is not valid."},
-    {"pipeline-budget-unused", kWarning,
-     "`glint inspect --pipelines`: a rule of `--budget` fits no pipeline."},
-    {"pipeline-cache", kNote | kError,
-     "A pipeline cache is damaged, too large, or of another device or driver: pipelines are made without "
-     "it."},
-    {"pipeline-failed", kError, "`glint inspect --pipelines`: the driver could not make a pipeline."},
-    {"pipeline-report", kError, "The report of `--compare` is not valid."},
-    {"pipeline-statistics", kNote | kError, "The device does not report statistics of pipelines."},
-    {"png-encode", kError, "An image can't be written as PNG."},
-    {"pose-degenerate", kWarning, "The scale of a node leaves its camera or light without a direction."},
-    {"position-fetch", kError,
-     "`--position-fetch` is not supported by this build's glslang, by the device, or by any strategy of the "
-     "package."},
-    {"position-missing", kError, "A primitive has no positions."},
-    {"position-not-finite", kWarning, "Positions are NaN or infinite; their triangles are dropped."},
-    {"primitive-empty", kWarning, "A primitive has no triangle."},
-    {"primitive-mode", kError, "A primitive's mode is unknown."},
-    {"primitive-restart", kError | kWarning,
-     "An index is the value of a primitive restart, which glTF does not have."},
-    {"primitive-skipped", kWarning, "Points and lines are skipped: no ray can hit them."},
-    {"profile-empty", kWarning, "A profile has no hit of the scene's keys."},
-    {"profile-format", kError, "A profile can't be read."},
-    {"profile-keys", kNote | kWarning, "A profile and the scene have different keys."},
-    {"profile-settings", kWarning, "A profile was counted with other settings."},
-    {"profile-stale", kNote, "A profile was counted in another version of the scene."},
-    {"prove-unsupported", kError,
-     "`glint check-materials --prove`: the code reads a resource, or has a loop whose end depends on its "
-     "inputs."},
-    {"query-flags", kNote | kWarning, "`glint lint`: the flags of a ray query hinder the compiler."},
-    {"query-live-objects", kError,
-     "`glint lint`: several ray queries are live at the same time, which is slow."},
-    {"query-micromap-states", kWarning,
-     "`glint lint`: a ray query decides unknown micro-triangles without their alpha test."},
-    {"query-proceed-conditional", kError, "`glint lint`: a ray query proceeds on some paths only."},
-    {"query-proceed-loop", kWarning, "`glint lint`: a ray query proceeds in a loop."},
-    {"query-proceed-missing", kWarning, "`glint lint`: a ray query never proceeds."},
-    {"query-proceeds", kError, "`glint lint`: a ray query proceeds at several places."},
-    {"query-structure-index", kWarning,
-     "`glint lint`: the acceleration structure of a ray query is chosen from an array at run time."},
-    {"query-structure-load", kWarning,
-     "`glint lint`: the acceleration structure of a ray query is not loaded beside it."},
-    {"ray-pipeline-shaders", kWarning, "`glint lint`: a ray tracing pipeline has many closest-hit shaders."},
-    {"ray-steps", kError, "`RaySteps` was given no layout, no list, or more rays than it was made for."},
-    {"render-size", kError, "A picture has a size that the device can't render."},
-    {"renderer-options", kError, "The runtime was given renderer options that are out of range."},
-    {"sampler-value", kWarning, "A sampler has an unknown mode."},
-    {"scene-attribute", kError, "The runtime was given attributes of different lengths."},
-    {"scene-choice", kNote, "A file has several scenes and no default; the first is read."},
-    {"scene-edit-case", kError,
-     "The runtime was given a material for which the package has neither a shader nor a fallback."},
-    {"scene-edit-feature", kError,
-     "The runtime was given a material with a feature that no material of the package has."},
-    {"scene-edit-frame", kError, "The runtime was given the frames of edits in another order."},
-    {"scene-edit-handle", kError, "The runtime was given a handle of something that is not in the scene."},
-    {"scene-edit-key", kError,
-     "The runtime was given a material without a key for the attributes of its primitive."},
-    {"scene-edit-moves", kError,
-     "The runtime was asked to edit a scene that moves, or to add a mesh that changes its shape."},
-    {"scene-edit-room", kError, "A scene that is edited has no room for another texture or sampler."},
-    {"scene-edit-share", kError, "The runtime was asked to share the records of a scene that can be edited."},
-    {"scene-edit-used", kError, "The runtime was asked to remove a part of a scene that others use."},
-    {"scene-edit-value", kError, "The runtime was given an edit with a value that is not valid."},
-    {"scene-edited", kError, "The runtime was asked what a pixel sees in a scene that is edited."},
-    {"scene-empty", kError, "The file of the scene is empty."},
-    {"scene-format", kError, "The file of the scene is a picture, or of another kind that is no glTF."},
-    {"scene-geometries", kError, "The scene has more primitives than instances can address."},
-    {"scene-image", kError, "The runtime was given an image that is incomplete or too large."},
-    {"scene-index", kError, "An index of the scene is out of range."},
-    {"scene-light", kError, "The runtime was given an invalid light."},
-    {"scene-material", kError,
-     "The runtime was given values of a material that the package does not have, or that have another form."},
-    {"scene-missing", kError, "There is no scene to compile."},
-    {"scene-motion", kError,
-     "The runtime was given a pose that is not finite, or that does not belong to the uploaded scene."},
-    {"scene-node-child", kWarning,
-     "A scene lists a node that is a child of another node; it is drawn once, where the nodes above it place "
-     "it."},
-    {"scene-node-repeated", kWarning, "A scene lists a node twice."},
-    {"scene-order", kError, "The runtime was given primitives that are not sorted."},
-    {"scene-origin", kError, "The runtime was given an origin of a scene that is not finite."},
-    {"scene-package", kError,
-     "The runtime was given a scene that is not in the package, or can't go on with it when the package is "
-     "replaced."},
-    {"scene-samplers", kError, "The scene has more samplers than the device takes."},
-    {"scene-still", kError, "The runtime was given a pose of a scene that was uploaded without motion."},
-    {"scene-textures", kError, "The scene has more textures than the device takes."},
-    {"scene-unknown", kError, "The file has no such scene."},
-    {"scene-upload", kError, "The runtime was given a pose of a scene whose upload is not complete."},
-    {"setting-idle", kWarning,
-     "An option was given that changes nothing, for instance `--ordering` with a strategy that sorts no "
-     "hits."},
-    {"settings-file", kError,
-     "The file of `--settings` is not a settings file, or has an unknown setting or value."},
-    {"sized-lights", kError,
-     "`--sized-lights` in a package that has no shadow rays, or whose lights are a host's own."},
-    {"skin-attribute", kWarning | kError,
-     "A primitive has joints without weights, or weights without joints; a warning where a skin is on a node "
-     "whose mesh, or a part of it, can't follow it."},
-    {"skin-influences", kWarning, "A primitive has more sets of joints than Glint reads."},
-    {"skin-joint-outside", kWarning, "A joint of a skin is not in the scene; the skin is left out."},
-    {"skin-joint-range", kError, "A vertex follows a joint that its skin does not have."},
-    {"skin-joints", kError, "A skin has no joints, or more than 65536."},
-    {"skin-matrices", kWarning | kError,
-     "The inverse bind matrices of a skin are too few, or not finite; a warning where a last row is not 0 0 "
-     "0 "
-     "1."},
-    {"skin-weights", kWarning,
-     "The weights of a vertex do not sum to 1, are negative, or are several for one joint."},
-    {"sky", kError, "The runtime was given a sky that is negative or not finite."},
-    {"sky-light", kError,
-     "`--sky-light` in a package that has no shadow rays, or whose lights or sky are a host's own."},
-    {"source-conditional", kError,
-     "A conditional of a shader source can't be decided or is unbalanced: a defect of Glint."},
-    {"source-include", kError, "An include of a shader source does not exist: a defect of Glint."},
-    {"source-version", kError, "A shader source has no #version: a defect of Glint."},
-    {"sparse-count", kError, "A sparse accessor replaces more elements than it has."},
-    {"sparse-index", kWarning | kError,
-     "A sparse accessor replaces an element that it does not have; a warning where its indices do not "
-     "increase."},
-    {"spirv-format", kError, "A file is not a SPIR-V module, or is cut short."},
-    {"spirv-invalid", kError, "`glint lint`: a module is not valid SPIR-V."},
-    {"spirv-join", kError, "The parts of a shader do not fit together: a defect of Glint."},
-    {"spirv-linkage", kError,
-     "`--emit linkable`: a function of the library is missing from its SPIR-V; a defect of Glint."},
-    {"spirv-optimize", kError, "A generated shader can't be optimised: a defect of Glint."},
-    {"spirv-validate", kError, "A generated shader is not valid SPIR-V: a defect of Glint."},
-    {"strategy", kError, "The compiler was given an invalid set of strategies."},
-    {"stream-frame", kError, "The runtime was given a frame whose number is below that of an earlier one."},
-    {"tangent-invalid", kWarning, "Tangents are zero or not finite, or their w is neither 1 nor -1."},
-    {"tangent-without-normal", kWarning, "Tangents without normals are ignored."},
-    {"template", kError, "A template of shader sources is missing or malformed: a defect of Glint."},
-    {"texture-basisu", kNote | kError,
-     "A texture is KTX2, which this build does not decode; a note where another image takes its place."},
-    {"texture-compression", kNote,
-     "`--compress-textures` changes nothing: the device reads no BC formats, or this Glint can't pack them."},
-    {"texture-source", kNote | kWarning, "A texture has no image, or no image that Glint reads."},
-    {"texture-trusted", kError,
-     "`SceneEditor` can't replace a texture whose content the package's shaders rely on."},
-    {"texture-unknown", kNote,
-     "An image can't be read, so the compiler does not know [what it "
-     "holds](materials.md#what-textures-hold)."},
-    {"texture-uv-set", kWarning, "A texture uses a UV set above 1."},
-    {"timings-pending", kError, "The runtime was asked for timings before the device was done."},
-    {"timings-unavailable", kError, "The device's queue has no timestamps."},
-    {"tlas-limit", kError, "The scene has more instances than the device takes."},
-    {"trace-from-hit", kWarning, "`glint lint`: a hit shader traces a ray."},
-    {"tracer", kError, "The compiler was given an invalid set of tracers."},
-    {"triangle-incomplete", kWarning, "The last vertices of a primitive make no triangle."},
-    {"uri-unsafe", kError,
-     "A URI, or with `--strict-paths` a symbolic link, leads out of the scene's folder."},
-    {"validation", kWarning | kError, "`--validate`: the validation layers have messages."},
-    {"validation-layer", kError, "The validation layers are not installed."},
-    {"variant-repeated", kWarning, "A primitive has several materials for one variant."},
-    {"variant-unknown", kError, "The scene has no such variant."},
-    {"verify-missing", kError, "`glint check-materials --prove`: the program glint-verify was not built."},
-    {"vertex-limit", kError, "The scene has more vertices than Glint reads."},
-    {"view-layer", kError, "A view reads a layer that the package lacks."},
-    {"view-reference", kError, "`--view difference` has no picture to compare with, or one of another size."},
-    {"view-source", kError, "A view is about rays of an effect that the package lacks."},
-    {"vulkan-call", kError, "A call of Vulkan failed."},
-    {"vulkan-function", kError, "The Vulkan implementation lacks a function."},
-    {"vulkan-loader", kError, "There is no Vulkan loader."},
-    {"werror", kError, "There are warnings that count as errors."},
-    {"window-drop", kError, "`glint view`: the file is neither a scene nor an environment map."},
-    {"window-missing", kError, "`glint view`: this glint was built without its window."},
-    {"window-open", kError, "`glint view`: no window can be opened."},
-    {"window-script", kError, "`glint view`: a step of the script failed."},
-    {"window-shot", kNote,
-     "`glint view`: a screenshot was written; the hint is the command that makes it again."},
-    {"window-surface", kError, "`glint view`: the device can't show pictures in the window."},
+struct DiagnosticList {
+    std::uint8_t severity;
+    std::string_view ids;  // with a blank before and after each
+};
+
+// An id is in several lists where its severity depends on the case. Each list is sorted, for people.
+constexpr DiagnosticList kLists[] = {
+    {kError,
+     " accessor-component-type accessor-count accessor-range accessor-stride accessor-type"
+     " animation-missing animation-unknown asset-version attribute-count attribute-type bench-advice"
+     " bench-folder bindings bounces budget-instructions budget-ray-queries budget-texture-fetches"
+     " buffer-data buffer-external buffer-size buffer-view-range calibration-format calibration-points"
+     " calibration-strategies camera camera-matrix camera-range camera-type camera-unknown check-albedo"
+     " check-density check-energy check-proof check-range check-reciprocity check-samples"
+     " check-unreachable context-handles context-queue data-uri declaration denoise-failed"
+     " denoise-missing depfile-name device-features device-layers device-missing device-tracer"
+     " draco-attribute draco-decode draco-size effect-missing effect-unknown emissive-lights engine-scene"
+     " environment-missing environment-radiance environment-size environment-unread environment-unsampled"
+     " exr-encode extension-unsupported file-open file-read file-size file-write frame-not-recorded"
+     " frame-options glb-chunk glb-length glb-version glsl gltf gpu-table gpu-unknown half-precision"
+     " hit-lobe-unknown host-folder host-unknown image-data image-decode image-extension image-format"
+     " image-mismatch image-size index-range internal json-depth json-missing json-range json-syntax"
+     " json-type layer-effect layer-missing light-type lights lint-path lock-format lock-outdated malioc"
+     " manifest-format material-unknown materials-folder materials-glsl max-error max-shaders"
+     " memory-count memory-size memory-type meshopt-decode meshopt-layout meshopt-size module-features"
+     " module-format module-missing module-stale module-unknown morph-limit ninja-name node-cycle"
+     " node-parents node-transform order-check out-of-memory outdated output output-busy output-folder"
+     " output-not-a-folder output-not-a-package output-not-a-plan output-write package-altered"
+     " package-bounces package-fallback package-file-name package-foreign package-frame package-mismatch"
+     " package-missing package-module-altered package-module-missing package-passes package-read"
+     " package-replaced package-strategy package-tracer package-truncated package-version passes"
+     " pipeline-budget pipeline-budget-file pipeline-cache pipeline-failed pipeline-report"
+     " pipeline-statistics png-encode position-fetch position-missing primitive-mode primitive-restart"
+     " profile-format prove-unsupported query-live-objects query-proceed-conditional query-proceeds"
+     " ray-steps render-size renderer-options scene-attribute scene-edit-case scene-edit-feature"
+     " scene-edit-frame scene-edit-handle scene-edit-key scene-edit-moves scene-edit-room"
+     " scene-edit-share scene-edit-used scene-edit-value scene-edited scene-empty scene-format"
+     " scene-geometries scene-image scene-index scene-light scene-material scene-missing scene-motion"
+     " scene-order scene-origin scene-package scene-samplers scene-still scene-textures scene-unknown"
+     " scene-upload settings-file sized-lights skin-attribute skin-joint-range skin-joints skin-matrices"
+     " sky sky-light source-conditional source-include source-version sparse-count sparse-index"
+     " spirv-format spirv-invalid spirv-join spirv-linkage spirv-optimize spirv-validate strategy"
+     " stream-frame template texture-basisu texture-trusted timings-pending timings-unavailable"
+     " tlas-limit tracer uri-unsafe validation validation-layer variant-unknown verify-missing"
+     " vertex-limit view-layer view-reference view-source vulkan-call vulkan-function vulkan-loader"
+     " werror window-drop window-missing window-open window-script window-surface"
+     " "},
+    {kWarning,
+     " accessor-bounds accessor-form accessor-layout alpha-mode animation-channel animation-keyframes"
+     " animation-pointer asset-version attribute-name attribute-not-finite bench-point bench-reference"
+     " buffer-external calibrate-picture calibrate-point calibration-device camera-range color-normalized"
+     " draco-attribute draco-count effect-unused environment-aspect environment-negative"
+     " extension-ignored extension-unlisted glb-chunk glb-length gpu-device image-type input-missing"
+     " json-padding ktx2-metadata light-range lock-conflict malioc material-conflict material-range"
+     " max-shaders meshopt-layout morph-attribute morph-targets morph-weights node-instances node-matrix"
+     " node-rotation non-finite normal-invalid nothing-drawn nothing-seen payload-bytes"
+     " pipeline-budget-unused pose-degenerate position-not-finite primitive-empty primitive-restart"
+     " primitive-skipped profile-empty profile-keys profile-settings query-flags query-micromap-states"
+     " query-proceed-loop query-proceed-missing query-structure-index query-structure-load"
+     " ray-pipeline-shaders sampler-value scene-node-child scene-node-repeated setting-idle"
+     " skin-attribute skin-influences skin-joint-outside skin-matrices skin-weights sparse-index"
+     " tangent-invalid tangent-without-normal texture-source texture-uv-set trace-from-hit"
+     " triangle-incomplete validation variant-repeated"
+     " "},
+    {kNote,
+     " alpha-blend alpha-stochastic alpha-tested animation-pointer cache-write calibration-points"
+     " effect-absent environment-resampled extension-no-picture gpu-choice lock-moved lock-stale"
+     " node-instances payload-bytes pipeline-cache pipeline-statistics profile-keys profile-stale"
+     " query-flags scene-choice texture-basisu texture-compression texture-source texture-unknown"
+     " window-shot"
+     " "},
 };
 
 }  // namespace
 
-std::span<const DiagnosticInfo> diagnosticTable() {
-    return kTable;
+std::vector<std::string> diagnosticIds(std::uint8_t severities) {
+    std::set<std::string> ids;
+    for (const DiagnosticList& list : kLists) {
+        if ((list.severity & severities) != 0) {
+            std::istringstream words{std::string(list.ids)};
+            for (std::string id; words >> id;) {
+                ids.insert(id);
+            }
+        }
+    }
+    return {ids.begin(), ids.end()};
 }
 
-const DiagnosticInfo* findDiagnostic(std::string_view id) {
-    const auto* const found = std::ranges::lower_bound(kTable, id, {}, &DiagnosticInfo::id);
-    return found != std::end(kTable) && found->id == id ? found : nullptr;
+std::uint8_t severitiesOf(std::string_view id) {
+    std::uint8_t severities = 0;
+    for (const DiagnosticList& list : kLists) {
+        const bool isListed = id.find(' ') == std::string_view::npos &&
+                              list.ids.find(" " + std::string(id) + " ") != std::string_view::npos;
+        severities |= isListed ? list.severity : std::uint8_t{0};
+    }
+    return severities;
 }
 
 }  // namespace glint::cli

@@ -1,27 +1,23 @@
-// Every diagnostic that Glint makes, by id: what -W and --werror take. docs/diagnostics.md is the same for
-// people.
+// Every diagnostic that Glint makes, by id: what -W and --werror take. docs/diagnostics.md says what each
+// means.
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint::cli {
 
 inline constexpr std::uint8_t kNote = 1;
 inline constexpr std::uint8_t kWarning = 2;
 inline constexpr std::uint8_t kError = 4;
+inline constexpr std::uint8_t kAnySeverity = kNote | kWarning | kError;
 
-struct DiagnosticInfo {
-    std::string_view id;
-    std::uint8_t severities = 0;  // those that it comes with: bits of kNote, kWarning, kError
-    std::string_view meaning;     // one sentence
-};
+// Returns the ids of the diagnostics that come with any of the severities (bits), sorted.
+std::vector<std::string> diagnosticIds(std::uint8_t severities = kAnySeverity);
 
-// Returns the table, sorted by id.
-std::span<const DiagnosticInfo> diagnosticTable();
-
-// Returns null if there is no diagnostic with that id.
-const DiagnosticInfo* findDiagnostic(std::string_view id);
+// Returns the severities with which diagnostics of that id come, or 0 if there is none.
+std::uint8_t severitiesOf(std::string_view id);
 
 }  // namespace glint::cli

@@ -1,6 +1,6 @@
 #include "cli/options/motion_options.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "cli/table.h"
 #include "settings/settings.h"
 

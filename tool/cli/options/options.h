@@ -18,8 +18,8 @@ namespace glint::cli {
 // The group of options about how a command works, which change nothing in what it writes.
 inline constexpr const char* kWork = "Work";
 
-// The work of a subcommand once its command line is parsed. Returns the exit code.
-using Action = std::function<int(const Console&)>;
+// The work of a subcommand once its command line is parsed. Returns the exit code; an error is reported.
+using Action = std::function<Result<int>(const Console&)>;
 
 // Adds a subcommand with its short help.
 CLI::App& addCommand(CLI::App& app, const CommandText& text);
@@ -77,9 +77,30 @@ std::string switchFlags(const std::string& flags, const std::string& on, const s
 // Adds --jobs: how many threads work at the same time.
 void addJobs(CLI::App& command, int& jobs);
 // Adds --device and --validate. `checks` is what the latter does besides.
-void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {});
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {},
+                     const std::string& group = "Device");
 
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);
+
+// Options that decide which diagnostics count, by id, and how a command reports: --json, --quiet, --verbose,
+// --color, --werror, -W.
+
+struct ReportArguments {
+    bool json = false;
+    bool quiet = false;
+    bool verbose = false;
+    std::string color = "auto";
+    std::vector<std::string> werror;    // "true" for --werror, else an id
+    std::vector<std::string> warnings;  // of -W: "no-ID", "error", "error=ID"
+
+    ConsoleOptions options() const;
+    // Throws a CLI::ParseError if the options contradict each other.
+    void check() const;
+};
+
+// Adds the options that every command has; `arguments` must outlive the command. If the command has declared
+// --json with its own help text, that stays.
+void addReportOptions(CLI::App& command, ReportArguments& arguments);
 
 }  // namespace glint::cli

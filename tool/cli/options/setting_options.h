@@ -1,16 +1,19 @@
-// Options that the table of settings declares (settings/table.h), and options that belong to them.
+// Options that the table of settings declares (settings/descriptor.h), and options that belong to them.
 #pragma once
 
 #include "base/memo.h"
 #include "gltf/import.h"
 #include "resolve/resolve.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <glint/package.h>
+#include <glint/result.h>
 
 #include <CLI/CLI.hpp>
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,5 +54,25 @@ void addHostOption(CLI::App& command, compiler::Settings& settings);
 // what was found in images; null: nothing is kept. Has the errors of loadMaterialModel().
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
                                           base::Memo* texels, const Package* package = nullptr);
+
+// --- The option --settings: a file of settings, as glint bench writes it, completes a command line ---
+
+// Adds --settings FILE, for commands that have some of settingNames() as options.
+void addSettingsFile(CLI::App& command, std::string& file);
+
+// A command line, with the options that come from a file.
+struct CompletedLine {
+    std::vector<std::string> words;
+    std::string file;                  // empty: it names none
+    std::vector<std::string> options;  // "--spp": those that the file gave
+};
+
+// Returns `arguments`, which lack the program's name, plus the settings from the file of --settings that they
+// do not give. Options that the command does not have are left out, and with --package those that the package
+// has decided. Has the errors of readSettings().
+Result<CompletedLine> completeLine(const CLI::App& app, std::span<const char* const> arguments);
+
+// Returns the error "settings-file" if a complaint of CLI11 is about an option that came from the file.
+std::optional<Diagnostic> blameFile(const CompletedLine& line, const std::string& complaint);
 
 }  // namespace glint::cli

@@ -1,6 +1,6 @@
 #include "cli/options/usage.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <cctype>
@@ -14,26 +14,12 @@ namespace {
 
 using Arguments = std::span<const char* const>;
 
-std::vector<const CLI::App*> commandsOf(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App*) { return true; });
-}
-
 std::vector<std::string> commandNames(const CLI::App& app) {
     std::vector<std::string> names;
-    for (const CLI::App* command : commandsOf(app)) {
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
         names.push_back(command->get_name());
     }
     return names;
-}
-
-// Returns null if there is no command of that name.
-const CLI::App* commandNamed(const CLI::App& app, const std::string& name) {
-    for (const CLI::App* command : commandsOf(app)) {
-        if (command->get_name() == name) {
-            return command;
-        }
-    }
-    return nullptr;
 }
 
 std::vector<std::string> optionNames(const CLI::App& app) {
@@ -124,6 +110,12 @@ std::optional<std::string> findEmptyValue(const CLI::App& app, Arguments argumen
 
 }  // namespace
 
+const CLI::App* findCommand(const CLI::App& app, std::string_view name) {
+    const auto commands =
+        app.get_subcommands([name](const CLI::App* command) { return command->get_name() == name; });
+    return commands.empty() ? nullptr : commands.front();
+}
+
 std::optional<Slip> findSlip(const CLI::App& app, std::span<const char* const> arguments) {
     if (arguments.empty()) {
         return Slip{"", "a command is missing; give one, such as render"};
@@ -134,7 +126,7 @@ std::optional<Slip> findSlip(const CLI::App& app, std::span<const char* const> a
         return app.get_option_no_throw(name) != nullptr ? std::nullopt
                                                         : std::optional<Slip>({"", unknownOption(app, name)});
     }
-    const CLI::App* command = commandNamed(app, first);
+    const CLI::App* command = findCommand(app, first);
     if (command == nullptr) {
         const std::string suggestion = base::suggestion(first, commandNames(app));
         return Slip{"", "unknown command \"" + first + "\"" +

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::cli {
@@ -15,6 +16,9 @@ struct Slip {
     std::string command;  // empty: glint itself
     std::string message;
 };
+
+// Returns null if there is no command of that name.
+const CLI::App* findCommand(const CLI::App& app, std::string_view name);
 
 // Finds misspelt commands and options, and empty values. For the former CLI11 would complain about something
 // that is missing; for the latter it would take the next argument as the value. `arguments` lack the

@@ -1,8 +1,8 @@
 #include "cli/render/arguments.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "cli/options/options.h"
-#include "cli/options/settings_option.h"
+#include "cli/options/setting_options.h"
 #include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
@@ -58,14 +58,16 @@ void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
             "(default: the first of the scene, else auto)")
         .group(group);
     addText(command, "--exposure", arguments.exposure, "auto|EV",
-            "stops, -32 to 32, of PNG files; auto: log-average luminance\nof surfaces to 18 % grey (default: "
-            "auto)")
+            fmt::format("stops, {0:g} to {1:g}, of PNG files; auto: log-average luminance\n"
+                        "of surfaces to 18 % grey (default: auto)",
+                        -kMaxExposure, kMaxExposure))
         .check(CLI::Validator(
             [](const std::string& text) {
                 double stops = 0.0;
                 return text == "auto" || compiler::parseReal(text, -kMaxExposure, kMaxExposure, stops)
                            ? std::string()
-                           : "\"" + text + "\" is neither auto nor a number from -32 to 32; give one";
+                           : fmt::format("\"{}\" is neither auto nor a number from {:g} to {:g}; give one",
+                                         text, -kMaxExposure, kMaxExposure);
             },
             ""))
         ->group(group);

@@ -1,10 +1,11 @@
 // The command line of glint render.
 #pragma once
 
-#include "cli/options/cache_options.h"
+#include "cli/cache.h"
 #include "cli/options/motion_options.h"
 #include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
+#include "image/tone.h"
 
 #include <cstdint>
 #include <functional>
@@ -15,7 +16,7 @@
 
 namespace glint::cli {
 
-constexpr double kMaxExposure = 32.0;  // stops, either way
+using image::kMaxExposure;
 
 struct RenderArguments : compiler::Settings {
     std::string scene;

@@ -1,8 +1,8 @@
 // The pipelines that drivers keep from run to run: --pipeline-cache.
 #pragma once
 
+#include "cli/cache.h"
 #include "cli/console.h"
-#include "cli/options/cache_options.h"
 
 #include <glint/context.h>
 

@@ -4,9 +4,8 @@
 #include "cli/render/device_report.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "cli/traffic.h"
 #include "gltf/import.h"
-#include "plan/strategy_choice.h"
+#include "plan/strategy_cost.h"
 
 #include <glint/environment.h>
 #include <glint/measure/views.h>

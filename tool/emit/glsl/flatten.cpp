@@ -1,6 +1,6 @@
 #include "emit/glsl/flatten.h"
 
-#include "emit/glsl/tokens.h"
+#include "emit/glsl/items.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,56 @@
-// Splits GLSL into the items at its top level.
+// Reads GLSL text: words, comments, lines and directives, and the items at its top level.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 namespace glint::compiler {
+
+// Returns `text` without blanks at both ends.
+std::string_view trim(std::string_view text);
+
+// Returns the lines without their line breaks, which may be of either kind.
+std::vector<std::string_view> splitLines(std::string_view text);
+
+// A directive: "#ifdef X // why" is {"ifdef", "X"}. A line without a directive has an empty word.
+struct Directive {
+    std::string_view word;
+    std::string_view argument;
+};
+Directive parseDirective(std::string_view line);
+
+// Returns whether an identifier may begin with, or contain, the character.
+constexpr bool startsWord(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+constexpr bool continuesWord(char c) {
+    return startsWord(c) || (c >= '0' && c <= '9');
+}
+
+// Returns the length in bytes of a comment at the start of `text`, or 0 if there is none.
+std::size_t commentLength(std::string_view text);
+
+// Calls `visit` with each piece of `text` in order: a comment, a word or number, or one other character.
+template <typename Visit>
+void forEachPiece(std::string_view text, const Visit& visit) {
+    while (!text.empty()) {
+        std::size_t length = commentLength(text);
+        while (length == 0 ||
+               (length < text.size() && continuesWord(text[0]) && continuesWord(text[length]))) {
+            ++length;
+        }
+        visit(text.substr(0, length));
+        text.remove_prefix(length);
+    }
+}
+
+// Returns the identifiers of a line in order, without those in comments.
+std::vector<std::string_view> identifiersOf(std::string_view line);
+
+// --- Splits GLSL into the items at its top level ---
 
 enum class GlslItemKind : std::uint8_t {
     Blank,    // one line

@@ -1,7 +1,7 @@
 #include "emit/glsl/readable.h"
 
+#include "emit/glsl/items.h"
 #include "emit/glsl/prune.h"
-#include "emit/glsl/tokens.h"
 #include "emit/glsl/unit.h"
 
 #include <fmt/format.h>

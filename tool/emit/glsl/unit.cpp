@@ -1,6 +1,6 @@
 #include "emit/glsl/unit.h"
 
-#include "emit/glsl/tokens.h"
+#include "emit/glsl/items.h"
 
 #include <fmt/format.h>
 

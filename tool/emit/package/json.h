@@ -3,7 +3,7 @@
 
 #include "gltf/import.h"
 #include "plan/effects.h"
-#include "plan/strategy_choice.h"
+#include "plan/strategy_cost.h"
 
 #include <glint/package_modules.h>
 

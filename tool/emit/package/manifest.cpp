@@ -5,7 +5,7 @@
 #include "emit/package/json.h"
 #include "resolve/host.h"
 #include "resolve/resolve.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

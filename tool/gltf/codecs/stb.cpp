@@ -1,5 +1,5 @@
 // Decodes PNG and JPEG images.
-#include "base/png_bounds.h"
+#include "base/image_limits.h"
 #include "gltf/codecs/codecs.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // Imports cameras and lights where a node places them.
 #include "gltf/motion/nodes.h"
 
-#include "base/suggest.h"
+#include "base/text.h"
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
 #include "gltf/planning_inputs.h"

@@ -1,4 +1,4 @@
-#include "materials/packs.h"
+#include "materials/declarations.h"
 #include "measure/features/checks.h"
 
 #include <glint/measure/check_materials.h>

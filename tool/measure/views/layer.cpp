@@ -1,5 +1,5 @@
 // Pictures of layers.
-#include "image/palette.h"
+#include "image/text.h"
 #include "image/tone.h"
 
 #include <glint/measure/layer_view.h>

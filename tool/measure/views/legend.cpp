@@ -1,5 +1,4 @@
 // Draws the legend of a view.
-#include "image/palette.h"
 #include "image/text.h"
 
 #include <glint/measure/views.h>

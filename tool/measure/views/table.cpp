@@ -1,5 +1,5 @@
 // The table of views, and the function by which each shows its layers.
-#include "image/palette.h"
+#include "image/text.h"
 #include "plan/cost.h"
 
 #include <glint/measure/views.h>

@@ -1,7 +1,7 @@
 // Makes views of a renderer's frames.
 #include "base/json.h"
-#include "image/palette.h"
-#include "settings/layer_words.h"
+#include "image/text.h"
+#include "settings/compile_settings.h"
 
 #include <glint/measure/views.h>
 

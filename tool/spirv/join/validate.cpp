@@ -1,6 +1,5 @@
-#include "spirv/join/validate.h"
-
 #include "base/parallel.h"
+#include "spirv/join/join.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 

@@ -1,5 +1,5 @@
 // Keys, mouse and files, and the changes that they make.
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "view/window/window.h"
 
 #define GLFW_INCLUDE_NONE

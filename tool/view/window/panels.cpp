@@ -1,5 +1,5 @@
 // The panels and marks that the window draws over and beside the picture.
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "view/look_panel.h"
 #include "view/window/window.h"
 

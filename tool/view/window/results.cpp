@@ -6,7 +6,7 @@
 #include "image/flip.h"
 #include "image/image_file.h"
 #include "image/tone.h"
-#include "settings/table.h"
+#include "settings/descriptor.h"
 #include "view/shot_command.h"
 #include "view/window/window.h"
 

@@ -1,7 +1,8 @@
 // The window's start, loop and end.
 #include "view/window/window.h"
 
-#include "settings/table.h"
+#include "image/tone.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/observer.h>
 #include <glint/measure/render_settings.h>
@@ -142,7 +143,7 @@ Status Window::open() {
     autoExposure_ = request_.exposure == "auto";
     if (!autoExposure_) {
         double stops = 0.0;
-        compiler::parseReal(request_.exposure, -32.0, 32.0, stops);
+        compiler::parseReal(request_.exposure, -image::kMaxExposure, image::kMaxExposure, stops);
         exposure_ = static_cast<float>(stops);
     }
     if (!request_.time.empty()) {

@@ -1,7 +1,7 @@
 // A configuration of a bench, and its measurements.
 #pragma once
 
-#include "image/error.h"
+#include "image/compare.h"
 
 #include <glint/measure/hit_times.h>
 #include <glint/measure/settings.h>

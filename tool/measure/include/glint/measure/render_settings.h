@@ -3,7 +3,7 @@
 
 #include "gltf/scene.h"
 #include "resolve/build.h"
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <glint/context.h>
 #include <glint/package.h>

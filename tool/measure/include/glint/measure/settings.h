@@ -1,7 +1,7 @@
 // The values of settings that are worth trying on a scene and a device.
 #pragma once
 
-#include "settings/table.h"
+#include "settings/descriptor.h"
 
 #include <string>
 #include <string_view>

@@ -1,7 +1,7 @@
 // Files of settings: docs/schemas/settings.json.
 #pragma once
 
-#include "settings/configuration.h"
+#include "settings/descriptor.h"
 
 #include <glint/result.h>
 

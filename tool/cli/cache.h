@@ -1,21 +1,46 @@
-// Keeps data of `compile` from run to run: modules, and whole runs that need not be repeated.
+// The folder that keeps modules, and whole runs that need not be repeated: its options and its contents.
 #pragma once
 
 #include "cache/action.h"
 #include "cache/module_cache.h"
 #include "cli/console.h"
-#include "cli/options/cache_options.h"
 #include "emit/compile.h"
 #include "gltf/scene.h"
 
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::cli {
+
+// The value that means no folder.
+inline constexpr std::string_view kNoCache = "none";
+
+struct CacheArguments {
+    std::string folder;  // empty: as the environment says
+    std::int64_t mebibytes = 512;
+};
+void addCacheOptions(CLI::App& command, CacheArguments& arguments);
+
+// Returns the folder of --cache, else of GLINT_CACHE, else glint in XDG_CACHE_HOME, else glint in ~/.cache.
+// Returns nothing if it is "none", or if there is no home folder.
+std::optional<std::filesystem::path> cacheFolder(const CacheArguments& arguments);
+
+// Returns whether the option may change what a command writes.
+bool hasEffect(const CLI::Option& option);
+
+// Returns the given options that can change what a command does or prints: all but those about the cache, the
+// number of jobs, and reporting.
+std::string describeOptions(const CLI::App& command);
+
+// --- Keeps data of `compile` from run to run: modules, and whole runs that need not be repeated ---
 
 // Without a folder nothing is found and nothing is kept.
 class CompileCache {
