@@ -11,7 +11,6 @@
 #include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
 #include "cli/report.h"
-#include "gltf/import.h"
 #include "measure/device_report.h"
 #include "measure/report_json.h"
 
@@ -19,6 +18,7 @@
 #include <glint/measure/calibration.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/report.h>
+#include <glint/scene_view/session.h>
 
 #include <fmt/format.h>
 
@@ -116,11 +116,11 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
 }
 
 Status bench(const Console& console, const BenchArguments& arguments, const gltf::Scene& scene,
-             const measure::SceneReader& reader, measure::BenchReport& report) {
+             measure::BenchReport& report) {
     const base::Clock::time_point start = base::Clock::now();
     CompileCache cache(arguments.render.cache, "");
-    GLINT_TRY(const auto bed, measure::BenchBed::create(console, arguments.render, scene, reader,
-                                                        cache.modules(), cache.store()));
+    GLINT_TRY(const auto bed,
+              measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store()));
     console.report(idleSettings(bed->build()));
     if (console.refused()) {
         return okStatus();
@@ -144,24 +144,15 @@ int run(const Console& console, const BenchArguments& arguments) {
     }
     console.progress("reading " + arguments.render.scene);
     CompileCache known(arguments.render.cache, "");
-    const Result<gltf::ImportOptions> import =
-        importOptions(arguments.render, ImageReading::Files, known.store());
-    if (!import) {
-        return fail(import.error());
+    const Result<scene_view::Opened> opened =
+        scene_view::open(arguments.render.scene, arguments.render, known.store());
+    if (!opened) {
+        return fail(opened.error());
     }
-    const Result<gltf::Scene> scene = importScene(arguments.render.scene, *import);
-    if (!scene) {
-        return fail(scene.error());
-    }
-    console.report(scene->warnings);
+    console.report(opened->scene.warnings);
     if (console.refused()) {
         return kExitFailed;
     }
-    const measure::SceneReader reader = [&](bool trustsTextures) {
-        gltf::ImportOptions other = *import;
-        other.trustTextures = trustsTextures;
-        return importScene(arguments.render.scene, other);
-    };
     measure::BenchReport report;
     report.command = arguments.command;
     report.date = measure::utcNow();
@@ -172,7 +163,7 @@ int run(const Console& console, const BenchArguments& arguments) {
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = measure::metricNamed(arguments.metric);
-    if (Status done = bench(console, arguments, *scene, reader, report); !done) {
+    if (Status done = bench(console, arguments, opened->scene, report); !done) {
         return fail(done.error());
     }
     if (console.refused()) {
@@ -205,17 +196,13 @@ int reportDevice(const Console& console, const BenchArguments& arguments) {
     CompileCache cache(arguments.render.cache, "");
     std::optional<gltf::Scene> scene;
     if (!arguments.render.scene.empty()) {
-        const Result<gltf::ImportOptions> import =
-            importOptions(arguments.render, ImageReading::Files, cache.store());
-        if (!import) {
-            return fail(console, import.error());
+        Result<scene_view::Opened> opened =
+            scene_view::open(arguments.render.scene, arguments.render, cache.store());
+        if (!opened) {
+            return fail(console, opened.error());
         }
-        Result<gltf::Scene> read = importScene(arguments.render.scene, *import);
-        if (!read) {
-            return fail(console, read.error());
-        }
-        console.report(read->warnings);
-        scene = std::move(*read);
+        console.report(opened->scene.warnings);
+        scene = std::move(opened->scene);
     }
     const measure::DeviceReportSettings settings{arguments.render,
                                                  static_cast<std::uint32_t>(arguments.rounds),
