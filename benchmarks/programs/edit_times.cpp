@@ -2,14 +2,10 @@
 // lights.
 #include "base/clock.h"
 #include "context/commands.h"
-#include "emit/compile.h"
 #include "gltf/scene.h"
 
-#include <glint/context.h>
-#include <glint/renderer.h>
 #include <glint/scene_edit.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -21,7 +17,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,30 +86,18 @@ std::array<float, 12> placeOf(int round) {
 // Prints the milliseconds of SceneEditor::record() after an edit: the median, the least and the most.
 Status measureEdit(Context& context, SceneEditor& editor, const std::string& name, int rounds,
                    std::uint64_t& frame, const std::function<Status(int)>& edit) {
-    Result<CommandRunner> runner = CommandRunner::create(context.state());
-    if (!runner) {
-        return runner.error();
-    }
+    GLINT_TRY(auto runner, CommandRunner::create(context.state()));
     std::vector<double> times;
     for (int round = -1; round < rounds; ++round) {
-        if (Status edited = edit(round); !edited) {
-            return edited;
-        }
-        const Result<VkCommandBuffer> commands = runner->begin();
-        if (!commands) {
-            return commands.error();
-        }
+        GLINT_TRY_DO(edit(round));
+        GLINT_TRY(const auto commands, runner.begin());
         const auto begin = base::Clock::now();
-        if (Status recorded = editor.record(*commands, ++frame); !recorded) {
-            return recorded;
-        }
+        GLINT_TRY_DO(editor.record(commands, ++frame));
         const double ms = base::millisecondsSince(begin);
         if (round >= 0) {
             times.push_back(ms);
         }
-        if (Status waited = runner->submitAndWait(); !waited) {
-            return waited;
-        }
+        GLINT_TRY_DO(runner.submitAndWait());
         editor.complete(frame);
     }
     std::ranges::sort(times);
@@ -123,38 +107,26 @@ Status measureEdit(Context& context, SceneEditor& editor, const std::string& nam
 }
 
 Status measureEdits(const Arguments& arguments) {
-    Result<std::unique_ptr<Context>> context = Context::createHeadless({});
-    if (!context) {
-        return context.error();
-    }
+    GLINT_TRY(const auto context, Context::createHeadless({}));
     const gltf::Scene scene = makeScene(arguments);
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    settings.tracers = (*context)->handles().tracers;
+    settings.tracers = context->handles().tracers;
     settings.emissiveLights = compiler::EmissiveLights::On;
     settings.lightSamples = 4;
-    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, settings);
-    if (!compiled) {
-        return compiled.error();
-    }
-    const Result<Package> package = scene_view::loadPackage(*compiled);
-    if (!package) {
-        return package.error();
-    }
+    GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
+    GLINT_TRY(const auto package, scene_view::compileAndLoad(build));
     const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     SceneView view = data.view();
     view.editable = true;
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(**context, *package, view);
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    SceneEditor& editor = *(*uploaded)->editor();
-    fmt::print("{}: {} lamps of {} triangles, {} other objects; ms of record()\n\n", (*context)->deviceName(),
+    GLINT_TRY(const auto uploaded, GpuScene::upload(*context, *package, view));
+    SceneEditor& editor = *uploaded->editor();
+    fmt::print("{}: {} lamps of {} triangles, {} other objects; ms of record()\n\n", context->deviceName(),
                arguments.lamps, arguments.triangles, kObjects);
     fmt::print("| edit | median | least to most |\n|---|--:|--:|\n");
     std::uint64_t frame = 0;
     const auto measured = [&](const std::string& name, const std::function<Status(int)>& edit) {
-        return measureEdit(**context, editor, name, arguments.rounds, frame, edit);
+        return measureEdit(*context, editor, name, arguments.rounds, frame, edit);
     };
     const std::uint32_t other = arguments.lamps;
     const auto move = [&](std::uint32_t instance) {
@@ -168,9 +140,7 @@ Status measureEdits(const Arguments& arguments) {
              {"another object moved", move(other)},
              {"a lamp shown or hidden",
               [&](int round) { return editor.showInstance(editor.instance(0), round % 2 == 0); }}}) {
-        if (Status status = measured(name, edit); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(measured(name, edit));
     }
     return okStatus();
 }

@@ -6,11 +6,9 @@
 #include "gltf/import.h"
 #include "materials/declarations.h"
 
-#include <glint/context.h>
 #include <glint/package_watch.h>
-#include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -187,9 +185,7 @@ public:
     Result<Edit> follow(const fs::path& file, const std::string& text, std::size_t run,
                         PackageReplacement& replaced) {
         const fs::path temporary = file.string() + ".edited";
-        if (Status status = base::writeFile(temporary, text); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(base::writeFile(temporary, text));
         start_ = base::Clock::now();
         compilerStart_ = compiler_.processorMs();
         rendererStart_ = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID);
@@ -197,12 +193,9 @@ public:
         Edit edit;
         for (bool whole = false; !whole;) {
             std::shared_ptr<const Package> package;
-            Result<Times> times = showNext(package, replaced);
-            if (!times) {
-                return times.error();
-            }
+            GLINT_TRY(const auto times, showNext(package, replaced));
             whole = !package->shape().early;
-            (whole ? edit.whole : edit.early.emplace()) = *times;
+            (whole ? edit.whole : edit.early.emplace()) = times;
         }
         const auto [line, earlyLine] = compiler_.lines(run);
         if (edit.early) {
@@ -220,11 +213,7 @@ private:
         base::Clock::time_point begin;
         while (!package) {
             begin = base::Clock::now();
-            Result<std::shared_ptr<const Package>> polled = packages_.poll();
-            if (!polled) {
-                return polled.error();
-            }
-            package = *polled;
+            GLINT_TRY(package, packages_.poll());
             if (!package) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
             }
@@ -239,11 +228,7 @@ private:
             return base::millisecondsBetween(std::exchange(last, now), now);
         };
         const std::uint64_t before = renderer_.replacementProgress().inUse;
-        Result<PackageReplacement> result = renderer_.replacePackage(package);
-        if (!result) {
-            return result.error();
-        }
-        replaced = *result;
+        GLINT_TRY(replaced, renderer_.replacePackage(package));
         times[kReplace] = lap();
         // A program would draw all the time; here the compiler and the driver have the processor.
         while (!renderer_.replacementProgress().ready) {
@@ -253,20 +238,15 @@ private:
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
         times[kPipelines] = lap();
-        if (Status status = renderer_.renderSamples(frame_, 1); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(renderer_.renderSamples(frame_, 1));
         times[kFrame] = lap();
         times[kSum] = base::millisecondsBetween(start_, last);
         times[kRenderer] = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID) - rendererStart_;
         if (renderer_.replacementProgress().inUse == before) {
             return makeError("live-edit", "", "the frame does not use the package that was ready");
         }
-        const Result<std::vector<PassTiming>> passes = renderer_.timings();
-        if (!passes) {
-            return passes.error();
-        }
-        for (const PassTiming& pass : *passes) {
+        GLINT_TRY(const auto passes, renderer_.timings());
+        for (const PassTiming& pass : passes) {
             times[kLighting] += pass.pass == Pass::Lighting ? pass.milliseconds : 0.0;
             times[kCases] += pass.pass == Pass::ShadeCase ? pass.milliseconds : 0.0;
         }
@@ -347,65 +327,41 @@ Status report(const Arguments& arguments, const std::string& device, const std::
 }
 
 Status measure(const Arguments& arguments) {
-    Result<std::unique_ptr<Context>> context = Context::createHeadless();
-    if (!context) {
-        return context.error();
-    }
-    const fs::path package = fs::path(arguments.folder) / "package";
-    const Result<const materials::MaterialModel*> model =
-        materials::loadMaterialModel(std::vector<std::string>{arguments.pack});
-    if (!model) {
-        return model.error();
-    }
+    GLINT_TRY(const auto context, Context::createHeadless());
+    compiler::Settings settings;
+    settings.package = (fs::path(arguments.folder) / "package").string();
+    GLINT_TRY(const auto model, materials::loadMaterialModel(std::vector<std::string>{arguments.pack}));
     gltf::ImportOptions import;
     import.decodeImages = true;
-    import.materialModel = *model;
-    const Result<gltf::Scene> scene = gltf::importScene(arguments.scene, import);
-    if (!scene) {
-        return scene.error();
-    }
+    import.materialModel = model;
+    GLINT_TRY(const auto scene, gltf::importScene(arguments.scene, import));
     RendererOptions options;
     options.strategy = package::findStrategy(arguments.strategy)->strategy;
     options.width = arguments.width;
     options.height = arguments.height;
     options.backgroundPipelines = !arguments.noFallback;
-    const bool queries = ((*context)->handles().tracers & package::kTracerRayQuery) != 0;
-    const Compiler compiler(arguments, package, queries ? "ray-query" : "ray-pipeline");
+    const bool queries = (context->handles().tracers & package::kTracerRayQuery) != 0;
+    const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
     fmt::print("<!-- {} -->\n", compiler.lines(1).first);
-    PackageWatch packages(package);
-    Result<Package> first = Package::load(package);
-    if (!first) {
-        return first.error();
-    }
-    Result<std::unique_ptr<GpuScene>> uploaded =
-        GpuScene::upload(**context, *first, scene_view::makeSceneView(*scene).view());
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(**context, *first, **uploaded, options);
-    if (!renderer) {
-        return renderer.error();
-    }
-    (*renderer)->waitForPipelines();
+    PackageWatch packages(settings.package);
+    GLINT_TRY(auto first, scene_view::givenPackage(settings));
+    GLINT_TRY(const auto uploaded,
+              scene_view::DeviceScene::upload(*context, std::move(first), scene_view::makeSceneView(scene)));
+    GLINT_TRY(const auto renderer, uploaded.makeRenderer(*context, options));
+    renderer->waitForPipelines();
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
-    const scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
     FrameOptions frame;
-    frame.camera = scene_view::framingCamera(scene_view::worldBounds(data), aspect);
-    if (Status status = (*renderer)->renderSamples(frame, 1); !status) {
-        return status;
-    }
-    const Result<base::Bytes> bytes = base::readFile(arguments.file);
-    if (!bytes) {
-        return bytes.error();
-    }
-    const std::string original(base::asText(*bytes));
+    frame.camera = scene_view::framingCamera(scene_view::worldBounds(uploaded.data), aspect);
+    GLINT_TRY_DO(renderer->renderSamples(frame, 1));
+    GLINT_TRY(const auto bytes, base::readFile(arguments.file));
+    const std::string original(base::asText(bytes));
     const std::size_t place = original.find(arguments.from);
     if (place == std::string::npos) {
         return makeError("live-edit", arguments.file, "the file lacks the text of --from");
     }
     std::vector<Edit> edits;
     PackageReplacement replaced;
-    Follower follower(compiler, packages, **renderer, frame);
+    Follower follower(compiler, packages, *renderer, frame);
     Status result = okStatus();
     for (int round = 0; round < arguments.rounds && result; ++round) {
         std::string text = original;
@@ -422,13 +378,11 @@ Status measure(const Arguments& arguments) {
         }
     }
     static_cast<void>(base::writeFile(arguments.file, original));
-    if (!result) {
-        return result;
-    }
-    fmt::print("\n{} cases; pipelines: {} made, {} kept; {} x {}, {} edits\n\n", (*first).caseCount(),
-               replaced.pipelinesMade, replaced.pipelinesKept, arguments.width, arguments.height,
-               arguments.rounds);
-    return report(arguments, (*context)->deviceName(), edits);
+    GLINT_TRY_DO(result);
+    fmt::print("\n{} cases; pipelines: {} made, {} kept; {} x {}, {} edits\n\n",
+               uploaded.package->caseCount(), replaced.pipelinesMade, replaced.pipelinesKept, arguments.width,
+               arguments.height, arguments.rounds);
+    return report(arguments, context->deviceName(), edits);
 }
 
 }  // namespace

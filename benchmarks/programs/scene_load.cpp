@@ -3,17 +3,10 @@
 // recorded into the first frame's command buffer, and with one that begins with coarse levels.
 #include "base/clock.h"
 #include "context/commands.h"
-#include "emit/compile.h"
 #include "gltf/import.h"
-#include "settings/descriptor.h"
 
-#include <glint/context.h>
-#include <glint/measure/render_settings.h>
-#include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/sky.h>
+#include <glint/scene_view/session.h>
 #include <glint/scene_view/textures.h>
 #include <glint/texture_stream.h>
 
@@ -25,7 +18,7 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,8 +40,7 @@ struct Arguments {
 struct Ready {
     std::unique_ptr<Context> context;
     gltf::Scene scene;
-    std::unique_ptr<Package> package;
-    std::shared_ptr<const scene_view::TextureSet> textures;
+    std::shared_ptr<const Package> package;
     scene_view::SceneViewData data;
     FrameOptions frame;
 };
@@ -62,64 +54,32 @@ struct Times {
 
 Result<std::unique_ptr<Ready>> prepare(const Arguments& arguments, const compiler::Settings& settings) {
     auto ready = std::make_unique<Ready>();
-    Result<std::unique_ptr<Context>> context = Context::createHeadless(measure::deviceOptions(settings));
-    if (!context) {
-        return context.error();
-    }
-    ready->context = std::move(*context);
-    Result<gltf::Scene> scene = gltf::importScene(arguments.scene, {.keepImageFiles = true});
-    if (!scene) {
-        return scene.error();
-    }
-    ready->scene = std::move(*scene);
+    GLINT_TRY(ready->context, Context::createHeadless(scene_view::deviceOptions(settings)));
+    GLINT_TRY(ready->scene, gltf::importScene(arguments.scene, {.keepImageFiles = true}));
     compiler::CompileSettings compile;
     compile.strategies = package::kStrategyUber;
     compile.tracers = ready->context->handles().tracers;
-    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(ready->scene, compile);
-    if (!compiled) {
-        return compiled.error();
-    }
-    Result<Package> package = scene_view::loadPackage(*compiled);
-    if (!package) {
-        return package.error();
-    }
-    ready->package = std::make_unique<Package>(std::move(*package));
+    GLINT_TRY(const auto build, compiler::resolve(std::span(&ready->scene, 1), compile));
+    GLINT_TRY(ready->package, scene_view::compileAndLoad(build));
     scene_view::TextureOptions options =
-        measure::textureOptions(settings, *ready->context, *ready->package, nullptr);
+        scene_view::textureOptions(settings, *ready->context, *ready->package, nullptr);
     options.fit.allLevels = true;
-    auto textures = scene_view::loadTextures(ready->scene, options);
-    if (!textures) {
-        return textures.error();
-    }
-    ready->textures = std::move(*textures);
-    ready->data = measure::sceneView(settings, ready->scene);
-    scene_view::useTextures(ready->textures, ready->data);
+    GLINT_TRY(auto textures, scene_view::loadTextures(ready->scene, options));
+    ready->data = scene_view::sceneView(settings, ready->scene);
+    scene_view::usePackage(*ready->package, ready->scene, std::move(textures), ready->data);
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
-    const Result<scene_view::CameraChoice> camera =
-        scene_view::chooseCamera(ready->scene, ready->data, "", aspect);
-    if (!camera) {
-        return camera.error();
-    }
-    ready->frame.camera = camera->view;
+    GLINT_TRY(const auto camera, scene_view::chooseCamera(ready->scene, ready->data, "", aspect));
+    ready->frame.camera = camera.view;
     return ready;
 }
 
 // Brings the finer levels, 8 MiB a frame, each of which is waited for.
 Status bringLevels(GpuScene& scene, Renderer& renderer, const FrameOptions& frame, CommandRunner& runner) {
     for (std::uint64_t number = 2; scene.textureStream()->progress().textures > 0; ++number) {
-        const Result<VkCommandBuffer> commands = runner.begin();
-        if (!commands) {
-            return commands.error();
-        }
-        if (const auto levels = scene.textureStream()->record(*commands, number); !levels) {
-            return levels.error();
-        }
-        if (Status recorded = renderer.record(*commands, frame); !recorded) {
-            return recorded;
-        }
-        if (Status waited = runner.submitAndWait(); !waited) {
-            return waited;
-        }
+        GLINT_TRY(const auto commands, runner.begin());
+        GLINT_TRY([[maybe_unused]] const auto levels, scene.textureStream()->record(commands, number));
+        GLINT_TRY_DO(renderer.record(commands, frame));
+        GLINT_TRY_DO(runner.submitAndWait());
         scene.complete(number);
     }
     return okStatus();
@@ -132,40 +92,21 @@ Result<Times> measureOnce(const Ready& ready, Way way, const Arguments& argument
     options.height = arguments.height;
     SceneView view = ready.data.view();
     view.streamsTextures = way == Way::Streamed;
-    Result<CommandRunner> runner = CommandRunner::create(ready.context->state());
-    if (!runner) {
-        return runner.error();
-    }
-    const Result<VkCommandBuffer> commands = runner->begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(auto runner, CommandRunner::create(ready.context->state()));
+    GLINT_TRY(const auto commands, runner.begin());
     Times times;
     const base::Clock::time_point start = base::Clock::now();
-    Result<std::unique_ptr<GpuScene>> scene =
-        way == Way::Blocking ? GpuScene::upload(*ready.context, *ready.package, view)
-                             : GpuScene::record(*ready.context, *ready.package, view, *commands, 1);
-    if (!scene) {
-        return scene.error();
-    }
+    GLINT_TRY(const auto scene, way == Way::Blocking
+                                    ? GpuScene::upload(*ready.context, *ready.package, view)
+                                    : GpuScene::record(*ready.context, *ready.package, view, commands, 1));
     times.returned = base::millisecondsSince(start);
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(*ready.context, *ready.package, **scene, options);
-    if (!renderer) {
-        return renderer.error();
-    }
-    if (Status recorded = (*renderer)->record(*commands, ready.frame); !recorded) {
-        return recorded.error();
-    }
-    if (Status waited = runner->submitAndWait(); !waited) {
-        return waited.error();
-    }
+    GLINT_TRY(const auto renderer, Renderer::create(*ready.context, *ready.package, *scene, options));
+    GLINT_TRY_DO(renderer->record(commands, ready.frame));
+    GLINT_TRY_DO(runner.submitAndWait());
     times.firstFrame = base::millisecondsSince(start);
-    (*scene)->complete(1);
+    scene->complete(1);
     if (way == Way::Streamed) {
-        if (Status brought = bringLevels(**scene, **renderer, ready.frame, *runner); !brought) {
-            return brought.error();
-        }
+        GLINT_TRY_DO(bringLevels(*scene, *renderer, ready.frame, runner));
     }
     times.allLevels = base::millisecondsSince(start);
     return times;

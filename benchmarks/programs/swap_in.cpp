@@ -6,11 +6,8 @@
 #include "emit/package/write.h"
 #include "synthetic/cases_scene.h"
 
-#include <glint/context.h>
-#include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -47,34 +44,25 @@ constexpr std::uint32_t kMostFrames = 1'000'000;
 
 struct Bed {
     std::unique_ptr<Context> context;
-    std::unique_ptr<Package> package;
     std::shared_ptr<const Package> other;  // the same scene, with other code in every shader that shades
-    std::unique_ptr<GpuScene> scene;
+    scene_view::DeviceScene scene;
     FrameOptions frame;
 };
 
 // Writes the package to `folder`, too, unless that is empty.
-Result<Package> compiledPackage(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                                const std::string& folder) {
-    const Result<compiler::CompiledPackage> compiled = compiler::compilePackage(scene, settings);
-    if (!compiled) {
-        return compiled.error();
-    }
+Result<std::shared_ptr<const Package>> compiledPackage(const gltf::Scene& scene,
+                                                       const compiler::CompileSettings& settings,
+                                                       const std::string& folder) {
+    GLINT_TRY(const auto compiled, compiler::compilePackage(scene, settings));
     if (!folder.empty()) {
-        if (Status written = compiler::writePackage(*compiled, folder); !written) {
-            return written.error();
-        }
+        GLINT_TRY_DO(compiler::writePackage(compiled, folder));
     }
-    return scene_view::loadPackage(*compiled);
+    return scene_view::loadPackage(compiled);
 }
 
 Result<Bed> makeBed(const Arguments& arguments) {
     Bed bed;
-    Result<std::unique_ptr<Context>> context = Context::createHeadless();
-    if (!context) {
-        return context.error();
-    }
-    bed.context = std::move(*context);
+    GLINT_TRY(bed.context, Context::createHeadless());
     synthetic::CasesOptions options;
     options.cases = arguments.cases;
     options.cost = arguments.cheap ? synthetic::Cost::Cheap : synthetic::Cost::Expensive;
@@ -99,30 +87,14 @@ Result<Bed> makeBed(const Arguments& arguments) {
     const bool coherent = options.coherence == synthetic::Coherence::Coherent;
     settings.effects = {false,
                         compiler::builtinEffects({"shadow", coherent ? "reflection" : "indirect-diffuse"})};
-    Result<Package> package = compiledPackage(scene, settings, arguments.packageFolder);
-    if (!package) {
-        return package.error();
-    }
-    bed.package = std::make_unique<Package>(std::move(*package));
+    GLINT_TRY(auto package, compiledPackage(scene, settings, arguments.packageFolder));
     if (arguments.replaces) {
         settings.energyCompensation = false;
-        Result<Package> other = compiledPackage(scene, settings, "");
-        if (!other) {
-            return other.error();
-        }
-        bed.other = std::make_shared<const Package>(std::move(*other));
+        GLINT_TRY(bed.other, compiledPackage(scene, settings, ""));
     }
-    Result<std::unique_ptr<GpuScene>> uploaded =
-        GpuScene::upload(*bed.context, *bed.package, scene_view::makeSceneView(scene).view());
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    bed.scene = std::move(*uploaded);
-    const Result<CameraView> camera = scene_view::sceneCamera(scene, 0, options.aspect);
-    if (!camera) {
-        return camera.error();
-    }
-    bed.frame.camera = *camera;
+    GLINT_TRY(bed.scene, scene_view::DeviceScene::upload(*bed.context, std::move(package),
+                                                         scene_view::makeSceneView(scene)));
+    GLINT_TRY(bed.frame.camera, scene_view::sceneCamera(scene, 0, options.aspect));
     return bed;
 }
 
@@ -147,9 +119,7 @@ struct Course {
 // Draws a frame and appends its milliseconds, those since `begin`.
 Status drawFrame(Renderer& renderer, const Bed& bed, base::Clock::time_point begin,
                  std::vector<double>& frames) {
-    if (Status status = renderer.renderSamples(bed.frame, 1); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(renderer.renderSamples(bed.frame, 1));
     frames.push_back(base::millisecondsSince(begin));
     return okStatus();
 }
@@ -157,15 +127,11 @@ Status drawFrame(Renderer& renderer, const Bed& bed, base::Clock::time_point beg
 // Lets the other package replace the first, and draws until a frame has used it.
 Status replace(Renderer& renderer, const Bed& bed, Course& course) {
     const base::Clock::time_point start = base::Clock::now();
-    if (const Result<PackageReplacement> replaced = renderer.replacePackage(bed.other); !replaced) {
-        return replaced.error();
-    }
+    GLINT_TRY([[maybe_unused]] const auto replaced, renderer.replacePackage(bed.other));
     course.replaceCallMs = base::millisecondsSince(start);
     base::Clock::time_point begin = start;
     while (course.replacing.size() < kMostFrames) {
-        if (Status status = drawFrame(renderer, bed, begin, course.replacing); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(drawFrame(renderer, bed, begin, course.replacing));
         const ReplacementProgress progress = renderer.replacementProgress();
         if (progress.error) {
             return *progress.error;
@@ -182,22 +148,16 @@ Status replace(Renderer& renderer, const Bed& bed, Course& course) {
 Result<Course> follow(const Bed& bed, const RendererOptions& options, std::uint32_t framesAfter) {
     Course course;
     const base::Clock::time_point start = base::Clock::now();
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(*bed.context, *bed.package, *bed.scene, options);
-    if (!renderer) {
-        return renderer.error();
-    }
+    GLINT_TRY(const auto renderer, bed.scene.makeRenderer(*bed.context, options));
     course.createMs = base::millisecondsSince(start);
     std::uint32_t frames = 0;
     bool complete = false;
     while (!complete && frames < kMostFrames) {
-        if (Status status = drawFrame(**renderer, bed, base::Clock::now(), course.before); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(drawFrame(*renderer, bed, base::Clock::now(), course.before));
         if (frames++ == 0) {
             course.firstFrameMs = base::millisecondsSince(start);
         }
-        const PipelineProgress progress = (*renderer)->pipelineProgress();
+        const PipelineProgress progress = renderer->pipelineProgress();
         if (progress.error) {
             return *progress.error;
         }
@@ -208,14 +168,10 @@ Result<Course> follow(const Bed& bed, const RendererOptions& options, std::uint3
     }
     course.completeMs = base::millisecondsSince(start);
     for (std::uint32_t i = 0; i < framesAfter; ++i) {
-        if (Status status = drawFrame(**renderer, bed, base::Clock::now(), course.after); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(drawFrame(*renderer, bed, base::Clock::now(), course.after));
     }
     if (bed.other) {
-        if (Status status = replace(**renderer, bed, course); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(replace(*renderer, bed, course));
     }
     return course;
 }
@@ -271,7 +227,7 @@ int run(const Arguments& arguments) {
         fmt::print(stderr, "{}\n", toString(bed.error()));
         return 1;
     }
-    fmt::print("{} cases, {} x {}\n\n", bed->package->caseCount(), arguments.width, arguments.height);
+    fmt::print("{} cases, {} x {}\n\n", bed->scene.package->caseCount(), arguments.width, arguments.height);
     fmt::print(
         "| strategy | pipelines | created, ms | first frame, ms | no draft, ms | all used, ms | frames until "
         "then | median, "

@@ -65,20 +65,14 @@ struct Round {
 
 Result<Round> load(const std::string& file, const Arguments& arguments) {
     const double begin = processorMilliseconds();
-    const Result<gltf::Scene> scene = gltf::importScene(file, {.keepImageFiles = true});
-    if (!scene) {
-        return scene.error();
-    }
+    GLINT_TRY(const auto scene, gltf::importScene(file, {.keepImageFiles = true}));
     scene_view::TextureOptions options;
     options.fit.formats = desktopFormats(!arguments.unpack);
     options.fit.compress = arguments.compress;
-    const auto textures = scene_view::loadTextures(*scene, options);
-    if (!textures) {
-        return textures.error();
-    }
+    GLINT_TRY(const auto textures, scene_view::loadTextures(scene, options));
     Round round;
     round.processorMs = processorMilliseconds() - begin;
-    for (const gltf::FittedImage& image : (*textures)->images) {
+    for (const gltf::FittedImage& image : textures->images) {
         const auto width = static_cast<std::uint32_t>(image.width);
         const auto height = static_cast<std::uint32_t>(image.height);
         ++round.formats[infoOf(image.format).name];
@@ -93,20 +87,15 @@ Result<Round> load(const std::string& file, const Arguments& arguments) {
 
 // Writes red, green and blue of the images of a scene.
 Status writePngs(const std::string& file, const std::filesystem::path& folder) {
-    const Result<gltf::Scene> scene = gltf::importScene(file, {.decodeImages = true});
-    if (!scene) {
-        return scene.error();
-    }
-    for (const gltf::Image& image : scene->images) {
+    GLINT_TRY(const auto scene, gltf::importScene(file, {.decodeImages = true}));
+    for (const gltf::Image& image : scene.images) {
         image::DisplayImage picture{
             static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), {}};
         for (std::size_t i = 0; i < pixelCount(image, 0); ++i) {
             picture.pixels.push_back({image.pixels[4 * i], image.pixels[4 * i + 1], image.pixels[4 * i + 2]});
         }
         const std::string name = std::filesystem::path(image.name).stem().string() + ".png";
-        if (Status written = image::writeImage(folder / name, picture); !written) {
-            return written;
-        }
+        GLINT_TRY_DO(image::writeImage(folder / name, picture));
     }
     return okStatus();
 }

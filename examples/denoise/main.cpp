@@ -1,19 +1,13 @@
 // Draws a scene at few samples, filters it by its layers, and compares it with many samples without the
 // filter.
 #include "denoiser.h"
-#include "gltf/import.h"
 #include "image/compare.h"
 #include "image/image_file.h"
-#include "resolve/resolve.h"
 #include "settings/descriptor.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/target.h>
-#include <glint/package.h>
-#include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 #include <glint/scene_view/textures.h>
 
 #include <array>
@@ -66,7 +60,6 @@ struct Options {
     double turn = 0.0;
     denoise::FilterSettings filter;
     double exposure = 0.0;
-    bool validation = false;
 };
 
 bool setOption(Options& options, std::string_view name, const std::string& value) {
@@ -101,7 +94,7 @@ bool setOption(Options& options, std::string_view name, const std::string& value
         return valid;
     }
     if (name == "--validation") {
-        options.validation = value == "on";
+        options.settings.validate = value == "on";
         return value == "on" || value == "off";
     }
     for (const glint::compiler::Descriptor& row : glint::compiler::settingsTable()) {
@@ -172,51 +165,47 @@ void printRow(const std::string& what, const glint::LinearImage& image, const gl
 }
 
 void run(Options& options) {
+    namespace scene_view = glint::scene_view;
     glint::compiler::Settings& settings = options.settings;
-    glint::gltf::ImportOptions import;
-    import.keepImageFiles = true;
-    import.trustTextures = settings.compile.trustTextures;
-    glint::gltf::Scene scene = valueOf(glint::gltf::importScene(options.scene, import));
-    glint::scene_view::SceneViewData data = glint::measure::sceneView(settings, scene);
+    const scene_view::Opened opened = valueOf(scene_view::open(options.scene, settings, nullptr));
+    const glint::gltf::Scene& scene = opened.scene;
+    scene_view::SceneViewData data = scene_view::sceneView(settings, scene);
     const std::uint32_t width = settings.renderer.width;
     const std::uint32_t height = settings.renderer.height;
-    const auto camera = valueOf(
-        glint::scene_view::chooseCamera(scene, data, settings.camera, static_cast<double>(width) / height));
-
-    glint::HeadlessOptions headless = glint::measure::deviceOptions(settings);
-    headless.validation = options.validation ? glint::Validation::Synchronization : glint::Validation::Off;
-    const auto context = valueOf(glint::Context::createHeadless(headless));
-    const auto compile = [&](const std::vector<std::string>& layers) -> glint::Result<glint::Package> {
+    const auto camera =
+        valueOf(scene_view::chooseCamera(scene, data, settings.camera, static_cast<double>(width) / height));
+    const auto context = valueOf(glint::Context::createHeadless(scene_view::deviceOptions(settings)));
+    const auto compile =
+        [&](const std::vector<std::string>& layers) -> glint::Result<std::shared_ptr<const glint::Package>> {
         settings.compile.layers = layers;
         GLINT_TRY(const auto target, glint::measure::targetOf(settings, *context, nullptr, scene));
         GLINT_TRY(const auto build, glint::compiler::resolve(std::span(&scene, 1), settings, target));
-        return glint::scene_view::compileAndLoad(build);
+        return scene_view::compileAndLoad(build);
     };
     std::vector<std::string> layers = denoise::wantedLayers();
     for (const std::string& layer : denoise::imageLayers()) {
         layers.push_back(layer);
     }
-    glint::Result<glint::Package> compiled = compile(layers);
+    auto compiled = compile(layers);
     if (!compiled && compiled.error().id == "layer-effect") {
         compiled = compile(denoise::wantedLayers());  // no effect shows points
     }
-    const glint::Package package = valueOf(std::move(compiled));
-    glint::scene_view::useLayoutOf(package, scene, data);
-    glint::scene_view::useTextures(
-        valueOf(glint::scene_view::loadTextures(
-            scene, glint::measure::textureOptions(settings, *context, package, nullptr))),
-        data);
-    const auto sky = glint::measure::chooseSky(settings, scene, data);
-    const auto uploaded = valueOf(glint::GpuScene::upload(*context, package, data.view()));
+    const auto package = valueOf(std::move(compiled));
+    scene_view::usePackage(*package, scene,
+                           valueOf(scene_view::loadTextures(
+                               scene, scene_view::textureOptions(settings, *context, *package, nullptr))),
+                           data);
+    const auto sky = scene_view::chooseSky(settings, scene, data);
+    const auto uploaded = valueOf(scene_view::DeviceScene::upload(*context, package, std::move(data)));
 
     // Each frame is a picture of its own. Its layers are means over its samples.
-    glint::RendererOptions rendererOptions = glint::measure::rendererOptions(settings);
+    glint::RendererOptions rendererOptions = scene_view::rendererOptions(settings);
     rendererOptions.accumulate = options.samples > 1;
-    const auto renderer = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
+    const auto renderer = valueOf(uploaded.makeRenderer(*context, rendererOptions));
     options.filter.samples = options.samples;
     const auto denoiser =
         valueOf(denoise::Denoiser::create(*context, *renderer, width, height, options.filter));
-    glint::FrameOptions frame = glint::measure::frameOptions(settings, camera.view, sky, nullptr);
+    glint::FrameOptions frame = scene_view::frameOptions(settings, camera.view, sky, nullptr);
     glint::LinearImage filtered;
     double samplesMs = 0.0;  // of the last frame
     for (std::uint32_t i = 0; i < options.frames; ++i) {
@@ -233,9 +222,9 @@ void run(Options& options) {
                 static_cast<double>(denoiser->bytes()) / (1024.0 * 1024.0));
     if (options.reference > 0) {
         rendererOptions.accumulate = true;
-        const auto means = valueOf(glint::Renderer::create(*context, package, *uploaded, rendererOptions));
+        const auto means = valueOf(uploaded.makeRenderer(*context, rendererOptions));
         const auto mean = [&](std::uint32_t samples, std::uint32_t seed, double& milliseconds) {
-            glint::FrameOptions many = glint::measure::frameOptions(settings, camera.view, sky, nullptr);
+            glint::FrameOptions many = scene_view::frameOptions(settings, camera.view, sky, nullptr);
             many.seed = seed;
             const auto begin = std::chrono::steady_clock::now();
             glint::LinearImage image = valueOf(means->render(many, samples));

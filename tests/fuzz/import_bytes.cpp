@@ -8,7 +8,7 @@
 #include "scene/deformed.h"
 #include "support/temporary_folder.h"
 
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <cstddef>
 #include <filesystem>

@@ -131,28 +131,28 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
         RendererOptions options = optionsOf(setup_, strategy, tracer);
         const LinearImage reference = loaded_->render(options, setup_);
         options.backgroundPipelines = true;
-        auto renderer = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
-        ASSERT_TRUE(renderer) << name << ": " << toString(renderer.error());
-        std::size_t& adoptedAtOnce = (*renderer)->state().pipelines.adoptedAtOnce;
+        const auto renderer = loaded_->makeRenderer(options);
+        ASSERT_NE(renderer, nullptr);
+        std::size_t& adoptedAtOnce = renderer->state().pipelines.adoptedAtOnce;
         adoptedAtOnce = 0;
-        const LinearImage draft = renderedBy(**renderer, setup_);
-        expectDraft(**renderer, setup_.samples, name);
+        const LinearImage draft = renderedBy(*renderer, setup_);
+        expectDraft(*renderer, setup_.samples, name);
         expectLikeness(draft, reference, name + ", draft");
-        (*renderer)->waitForPipelines();
+        renderer->waitForPipelines();
         adoptedAtOnce = 1;
-        expectSameImage(renderedBy(**renderer, setup_), reference, name + ", fallback alone");
-        PipelineProgress progress = (*renderer)->pipelineProgress();
+        expectSameImage(renderedBy(*renderer, setup_), reference, name + ", fallback alone");
+        PipelineProgress progress = renderer->pipelineProgress();
         EXPECT_FALSE(progress.draft) << name;
         EXPECT_EQ(progress.drafts, setup_.samples) << name;
         for (std::uint32_t state = 0; progress.adopted < progress.wanted && state < progress.wanted;
              ++state) {
-            expectSameImage(renderedBy(**renderer, setup_), reference,
+            expectSameImage(renderedBy(*renderer, setup_), reference,
                             name + ", " + std::to_string(progress.adopted) + " pipelines");
-            progress = (*renderer)->pipelineProgress();
+            progress = renderer->pipelineProgress();
             EXPECT_FALSE(progress.error) << name;
         }
         EXPECT_EQ(progress.adopted, progress.wanted) << name;
-        const Result<FrameCounters> counters = (*renderer)->counters();
+        const Result<FrameCounters> counters = renderer->counters();
         ASSERT_TRUE(counters);
         EXPECT_EQ(counters->unknownShader, 0U) << name;
         EXPECT_FALSE(counters->draft) << name;
@@ -167,11 +167,11 @@ TEST_F(Background, AHostMayAskForNoDraft) {
     const LinearImage reference = loaded_->render(options, setup_);
     options.backgroundPipelines = true;
     options.draft = false;
-    auto renderer = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
-    (*renderer)->state().pipelines.adoptedAtOnce = 0;
-    expectSameImage(renderedBy(**renderer, setup_), reference, "fallback alone");
-    const PipelineProgress progress = (*renderer)->pipelineProgress();
+    const auto renderer = loaded_->makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
+    renderer->state().pipelines.adoptedAtOnce = 0;
+    expectSameImage(renderedBy(*renderer, setup_), reference, "fallback alone");
+    const PipelineProgress progress = renderer->pipelineProgress();
     EXPECT_FALSE(progress.draft);
     EXPECT_EQ(progress.drafts, 0U);
     EXPECT_EQ(progress.wanted, loaded_->package().caseCount());
@@ -184,25 +184,25 @@ TEST_F(Background, DraftsAreInNoMean) {
     RendererOptions options = optionsOf(setup_, package::kStrategyUber,
                                         queries ? package::kTracerRayQuery : package::kTracerRayPipeline);
     options.backgroundPipelines = true;
-    auto drafting = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
+    const auto drafting = loaded_->makeRenderer(options);
     options.draft = false;
-    auto other = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
+    const auto other = loaded_->makeRenderer(options);
     ASSERT_TRUE(drafting && other);
-    std::size_t& adoptedAtOnce = (*drafting)->state().pipelines.adoptedAtOnce;
+    std::size_t& adoptedAtOnce = drafting->state().pipelines.adoptedAtOnce;
     adoptedAtOnce = 0;
-    (*other)->state().pipelines.adoptedAtOnce = 0;
-    (*drafting)->waitForPipelines();
+    other->state().pipelines.adoptedAtOnce = 0;
+    drafting->waitForPipelines();
     // The drafts end with the third sample; the picture is the mean of the third and the fourth.
     std::uint32_t sample = 0;
-    const Result<LinearImage> image = (*drafting)->render(setup_.frame, 4, [&] {
+    const Result<LinearImage> image = drafting->render(setup_.frame, 4, [&] {
         adoptedAtOnce = ++sample == 2 ? 1 : 0;
         return okStatus();
     });
     ASSERT_TRUE(image);
-    EXPECT_EQ((*drafting)->pipelineProgress().drafts, 2U);
+    EXPECT_EQ(drafting->pipelineProgress().drafts, 2U);
     // The third and the fourth sample are what four samples have beyond two.
-    const Result<LinearImage> two = (*other)->render(withCones(setup_.frame, 4), 2);
-    const Result<LinearImage> four = (*other)->render(setup_.frame, 4);
+    const Result<LinearImage> two = other->render(withCones(setup_.frame, 4), 2);
+    const Result<LinearImage> four = other->render(setup_.frame, 4);
     ASSERT_TRUE(two && four);
     LinearImage wanted = *four;
     for (std::size_t i = 0; i < wanted.pixels.size(); ++i) {
@@ -232,16 +232,16 @@ TEST_F(Background, PathsInBandsBeginWithADraft) {
     setup.frame.recordAllBounces = true;
     const LinearImage reference = loaded.render(options, setup);
     options.backgroundPipelines = true;
-    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
-    std::size_t& adoptedAtOnce = (*renderer)->state().pipelines.adoptedAtOnce;
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
+    std::size_t& adoptedAtOnce = renderer->state().pipelines.adoptedAtOnce;
     adoptedAtOnce = 0;
-    const LinearImage draft = renderedBy(**renderer, setup);
-    expectDraft(**renderer, setup.samples, "paths");
+    const LinearImage draft = renderedBy(*renderer, setup);
+    expectDraft(*renderer, setup.samples, "paths");
     expectLikeness(draft, reference, "paths");
-    (*renderer)->waitForPipelines();
+    renderer->waitForPipelines();
     adoptedAtOnce = 1;
-    expectSameImage(renderedBy(**renderer, setup), reference, "without a draft");
+    expectSameImage(renderedBy(*renderer, setup), reference, "without a draft");
     expectNoValidationMessages();
 }
 
@@ -254,23 +254,21 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     const LinearImage reference = loaded_->render(options, setup_);
     options.backgroundPipelines = true;
     options.pipelineThreads = 2;
-    auto renderer = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
-    PipelineProgress progress = (*renderer)->pipelineProgress();
+    const auto renderer = loaded_->makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
+    PipelineProgress progress = renderer->pipelineProgress();
     for (int frame = 0; frame < 1000 && progress.adopted < progress.wanted; ++frame) {
-        const LinearImage image = renderedBy(**renderer, setup_);
-        const Result<FrameCounters> counters = (*renderer)->counters();
+        const LinearImage image = renderedBy(*renderer, setup_);
+        const Result<FrameCounters> counters = renderer->counters();
         ASSERT_TRUE(counters);
         if (!counters->draft) {
             expectSameImage(image, reference, "frame " + std::to_string(frame));
         }
-        progress = (*renderer)->pipelineProgress();
+        progress = renderer->pipelineProgress();
     }
     EXPECT_EQ(progress.adopted, progress.wanted);
     // A renderer may go while its threads work.
-    renderer = Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
-    renderer->reset();
+    EXPECT_NE(loaded_->makeRenderer(options), nullptr);
     expectNoValidationMessages();
 }
 

@@ -32,10 +32,8 @@ protected:
         options.width = kFilteredWidth;
         options.height = kFilteredHeight;
         options.accumulate = true;
-        Result<std::unique_ptr<Renderer>> made =
-            Renderer::create(sharedContext(), loaded_->package(), loaded_->gpuScene(), options);
-        ASSERT_TRUE(made.ok()) << toString(made.error());
-        renderer_ = std::move(*made);
+        renderer_ = loaded_->makeRenderer(options);
+        ASSERT_NE(renderer_, nullptr);
         frame_ = defaultSetup(hallScene(), kFilteredWidth, kFilteredHeight).frame;
     }
 
@@ -48,9 +46,7 @@ protected:
 
     LinearImage picture(std::uint32_t seed, std::uint32_t samples) {
         frame_.seed = seed;
-        const Result<LinearImage> image = renderer_->render(frame_, samples);
-        EXPECT_TRUE(image.ok()) << toString(image.error());
-        return image ? *image : LinearImage{};
+        return drawn(*renderer_, frame_, samples);
     }
 
     std::optional<LoadedScene> loaded_;

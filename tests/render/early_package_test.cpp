@@ -10,8 +10,8 @@
 #include "support/shared_modules.h"
 #include "support/temporary_folder.h"
 
-#include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <gtest/gtest.h>
 
@@ -109,9 +109,9 @@ struct Version {
 };
 
 std::shared_ptr<const Package> load(const compiler::CompiledPackage& compiled) {
-    Result<Package> package = scene_view::loadPackage(compiled);
+    const auto package = scene_view::loadPackage(compiled);
     EXPECT_TRUE(package) << toString(package.error());
-    return package ? std::make_shared<const Package>(std::move(*package)) : nullptr;
+    return package ? *package : nullptr;
 }
 
 // Compiles a version after `before`, which may be null.
@@ -169,14 +169,14 @@ protected:
     }
 
     static std::unique_ptr<GpuScene> upload(const Version& version) {
-        return ReplacementTest::upload(*version.scene, *version.whole);
+        return uploadScene(*version.whole, *version.scene);
     }
     // Makes the test's renderer anew, with all its pipelines. It shows a package of the first version's
     // scene. Returns null if that fails.
     Renderer* start(const Package& package, const RendererOptions& options) {
         renderer_.reset();
         scene_ = upload(version(0));
-        renderer_ = scene_ ? make(package, *scene_, options) : nullptr;
+        renderer_ = scene_ ? makeRenderer(package, *scene_, options) : nullptr;
         if (renderer_) {
             renderer_->waitForPipelines();
         }
@@ -187,7 +187,7 @@ protected:
         const std::unique_ptr<GpuScene> scene = upload(of);
         RendererOptions options = options_;
         options.backgroundPipelines = draft;
-        const std::unique_ptr<Renderer> renderer = scene ? make(*of.whole, *scene, options) : nullptr;
+        const std::unique_ptr<Renderer> renderer = scene ? makeRenderer(*of.whole, *scene, options) : nullptr;
         if (!renderer) {
             return {};
         }
@@ -286,7 +286,7 @@ TEST_F(EarlyPackage, HasLessCodeWithoutAFallback) {
     const package::ModuleKey edit{package::ModuleRole::LightingEdit};
     EXPECT_LT(after.early->spirv(edit).size(), version(1).early->spirv(edit).size());
     const std::unique_ptr<GpuScene> scene = upload(before);
-    const std::unique_ptr<Renderer> renderer = make(*after.early, *scene, options_);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*after.early, *scene, options_);
     ASSERT_NE(renderer, nullptr);
     const LinearImage shown = draw(*renderer);
     expectSameImage(shown, compose(*renderer, fresh(version(0)), fresh(version(1), true)), "the draft");

@@ -243,12 +243,10 @@ EditedScene::EditedScene(EditedSceneOptions options)
     view.instances = views;
     view.editable = true;
     view.vertices = VertexForm::Quantized;  // meshes get a buffer for their builds alone, too
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package(), view);
-    if (!uploaded) {
-        ADD_FAILURE() << toString(uploaded.error());
+    gpuScene_ = uploadScene(package(), view);
+    if (!gpuScene_) {
         return;
     }
-    gpuScene_ = std::move(*uploaded);
     for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
         materials.push_back({editor().material(kind), kind, true});
     }
@@ -274,13 +272,8 @@ EditedScene::EditedScene(EditedSceneOptions options)
     RendererOptions& renderer = options_.renderer;
     renderer.width = options_.width;
     renderer.height = options_.height;
-    auto made = Renderer::create(sharedContext(), package(), *gpuScene_, renderer);
-    if (!made) {
-        ADD_FAILURE() << toString(made.error());
-        return;
-    }
     frames_ = std::make_unique<TwoFrames>(sharedContext());
-    renderer_ = std::move(*made);
+    renderer_ = makeRenderer(package(), *gpuScene_, renderer);
 }
 
 PrimitiveView EditedScene::primitive(std::uint32_t shape, std::size_t index) const {
@@ -326,9 +319,7 @@ void EditedScene::drain() {
 LinearImage EditedScene::picture() {
     frame();
     drain();
-    Result<LinearImage> image = renderer_->render(frameOptions_);
-    EXPECT_TRUE(image) << (image ? "" : toString(image.error()));
-    return image ? std::move(*image) : LinearImage{};
+    return drawn(*renderer_, frameOptions_);
 }
 
 LinearImage EditedScene::fresh() const {
@@ -374,19 +365,9 @@ LinearImage EditedScene::fresh() const {
     view.lights = lightViews;
     view.materials = values;
     view.vertices = VertexForm::Quantized;
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package(), view);
-    if (!uploaded) {
-        ADD_FAILURE() << toString(uploaded.error());
-        return {};
-    }
-    auto renderer = Renderer::create(sharedContext(), package(), **uploaded, options_.renderer);
-    if (!renderer) {
-        ADD_FAILURE() << toString(renderer.error());
-        return {};
-    }
-    Result<LinearImage> image = (*renderer)->render(frameOptions_);
-    EXPECT_TRUE(image) << (image ? "" : toString(image.error()));
-    return image ? std::move(*image) : LinearImage{};
+    const auto uploaded = uploadScene(package(), view);
+    const auto renderer = uploaded ? makeRenderer(package(), *uploaded, options_.renderer) : nullptr;
+    return renderer ? drawn(*renderer, frameOptions_) : LinearImage{};
 }
 
 void EditedScene::expectSameAsFresh(const std::string& what) {

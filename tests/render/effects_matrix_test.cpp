@@ -142,10 +142,9 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     options.width = 16;
     options.height = 9;
     options.screenMarch = true;
-    const Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
-    const Renderer::Footprint footprint = (*renderer)->footprint();
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
+    const Renderer::Footprint footprint = renderer->footprint();
     // G-buffer, lighting, compose; and the list's passes: dispatch, trace, count, offset, copy, misses,
     // cases.
     const std::uint32_t cases =
@@ -164,7 +163,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
     frame.timing = Timing::Passes;
-    ASSERT_TRUE((*renderer)->render(frame));
+    ASSERT_TRUE(renderer->render(frame));
     std::vector<std::string> passes{"gbuffer", "lighting"};
     for (const char* const effect : {"reflection", "refraction"}) {
         const bool walks = effect == std::string("refraction");
@@ -178,7 +177,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
         }
     }
     passes.emplace_back("compose");
-    EXPECT_EQ(passesOf(**renderer), passes);
+    EXPECT_EQ(passesOf(*renderer), passes);
     expectNoValidationMessages();
 }
 

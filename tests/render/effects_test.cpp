@@ -135,17 +135,17 @@ TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
     options.height = setup.height;
     options.accumulate = false;
     options.bands = 2;
-    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
     const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
-    EXPECT_EQ(idOf((*renderer)->render(setup.frame, 2)), "frame-options");
-    EXPECT_TRUE((*renderer)->render(setup.frame, 1));
-    EXPECT_EQ(idOf((*renderer)->readCoverage(package::kEffectReflection)), "frame-options");
-    EXPECT_TRUE((*renderer)->readSurfaces());
+    EXPECT_EQ(idOf(renderer->render(setup.frame, 2)), "frame-options");
+    EXPECT_TRUE(renderer->render(setup.frame, 1));
+    EXPECT_EQ(idOf(renderer->readCoverage(package::kEffectReflection)), "frame-options");
+    EXPECT_TRUE(renderer->readSurfaces());
     FrameOptions marching = setup.frame;
     marching.screenSteps = 8;
-    EXPECT_EQ(idOf((*renderer)->render(marching, 1)), "frame-options");
-    for (const MemoryItem& item : (*renderer)->memory()) {
+    EXPECT_EQ(idOf(renderer->render(marching, 1)), "frame-options");
+    for (const MemoryItem& item : renderer->memory()) {
         EXPECT_TRUE(item.name != "radiance" && item.name != "residual" && item.name != "position")
             << item.name;
     }

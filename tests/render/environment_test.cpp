@@ -281,11 +281,8 @@ TEST_F(EnvironmentMap, PackageAndFrameMustAgree) {
     });
     ASSERT_TRUE(forMap.ok() && forGradient.ok() && environment);
     const auto errorOf = [](const LoadedScene& loaded, const RenderSetup& setup) {
-        Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(),
-                             {package::kStrategyUber, setup.width, setup.height});
-        EXPECT_TRUE(renderer);
-        const Result<LinearImage> image = (*renderer)->render(setup.frame);
+        const auto renderer = loaded.makeRenderer({package::kStrategyUber, setup.width, setup.height});
+        const Result<LinearImage> image = renderer->render(setup.frame);
         return image ? std::string() : image.error().id;
     };
     EXPECT_EQ(errorOf(forMap, setupWith(scene, nullptr)), "environment-missing");
@@ -301,14 +298,13 @@ TEST_F(EnvironmentMap, ChangesBetweenFrames) {
     const gltf::Scene scene = emptySceneWithCamera();
     const LoadedScene loaded = loadForMap(scene);
     ASSERT_TRUE(loaded.ok());
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(
-        sharedContext(), loaded.package(), loaded.gpuScene(), {package::kStrategyVisibility, 33, 33});
-    ASSERT_TRUE(renderer);
+    const auto renderer = loaded.makeRenderer({package::kStrategyVisibility, 33, 33});
+    ASSERT_NE(renderer, nullptr);
     for (const gltf::Float3& color : {kRed, kGreen, kBlue}) {
         const std::unique_ptr<Environment> environment =
             makeEnvironment(8, 4, [&](gltf::Float3) { return color; });
         ASSERT_TRUE(environment);
-        const Result<LinearImage> image = (*renderer)->render(setupWith(scene, environment.get()).frame);
+        const Result<LinearImage> image = renderer->render(setupWith(scene, environment.get()).frame);
         ASSERT_TRUE(image);
         expectColor(at(*image, 16, 16), color, 1e-5F, "centre");
     }

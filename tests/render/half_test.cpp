@@ -174,19 +174,13 @@ TEST(Half, ExtremesStayFinite) {
 // A device that was made without the feature is refused, and the error names the feature.
 TEST(Half, NeedsTheFeature) {
     const gltf::Scene scene = roomWithFence();
-    const auto compiled =
-        compilePackage(scene, settingsOf(package::kStrategyUber, package::ShadingPrecision::Half));
-    ASSERT_TRUE(compiled) << toString(compiled.error());
-    std::vector<package::EmbeddedFile> files;
-    for (const compiler::PackageFile& file : compiled->files) {
-        files.push_back({file.name, file.bytes});
-    }
-    const Result<Package> package = Package::load(files);
-    ASSERT_TRUE(package) << toString(package.error());
-    EXPECT_EQ(package->precision(), package::ShadingPrecision::Half);
+    const LoadedScene loaded(scene, settingsOf(package::kStrategyUber, package::ShadingPrecision::Half));
+    ASSERT_TRUE(loaded.ok());
+    EXPECT_EQ(loaded.package().precision(), package::ShadingPrecision::Half);
     const Result<std::unique_ptr<Context>> context = Context::createHeadless({});
     ASSERT_TRUE(context) << toString(context.error());
-    const auto uploaded = GpuScene::upload(**context, *package, scene_view::makeSceneView(scene).view());
+    const auto uploaded =
+        GpuScene::upload(**context, loaded.package(), scene_view::makeSceneView(scene).view());
     ASSERT_FALSE(uploaded);
     EXPECT_EQ(uploaded.error().id, "half-precision");
     EXPECT_NE(uploaded.error().hint.find("--precision 32"), std::string::npos);

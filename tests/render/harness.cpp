@@ -4,11 +4,12 @@
 #include "support/shared_modules.h"
 
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace glint::testing {
 
@@ -37,6 +38,43 @@ void expectNoValidationMessages() {
     }
 }
 
+namespace {
+
+template <typename Value>
+Value valueOrFailure(Result<Value> made) {
+    if (!made) {
+        ADD_FAILURE() << toString(made.error());
+        return {};
+    }
+    return std::move(*made);
+}
+
+}  // namespace
+
+std::unique_ptr<GpuScene> uploadScene(const Package& package, const SceneView& scene) {
+    return valueOrFailure(GpuScene::upload(sharedContext(), package, scene));
+}
+
+std::unique_ptr<GpuScene> uploadScene(const Package& package, const gltf::Scene& scene,
+                                      const std::function<void(SceneView&)>& change) {
+    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    scene_view::useLayoutOf(package, scene, data);
+    SceneView view = data.view();
+    if (change) {
+        change(view);
+    }
+    return uploadScene(package, view);
+}
+
+std::unique_ptr<Renderer> makeRenderer(const Package& package, GpuScene& scene,
+                                       const RendererOptions& options) {
+    return valueOrFailure(Renderer::create(sharedContext(), package, scene, options));
+}
+
+LinearImage drawn(Renderer& renderer, const FrameOptions& frame, std::uint32_t samples) {
+    return valueOrFailure(renderer.render(frame, samples));
+}
+
 LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& plan)
     : LoadedScene(scene, compiler::CompileSettings{.plan = plan}) {}
 
@@ -50,17 +88,8 @@ LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettin
 
 Status LoadedScene::load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                          const std::function<void(scene_view::SceneViewData&)>& change) {
-    Result<compiler::CompiledPackage> compiled = compilePackage(scene, settings, &sharedModules());
-    if (!compiled) {
-        return compiled.error();
-    }
-    compiled_ = std::move(*compiled);
-    Result<Package> package = scene_view::loadPackage(compiled_);
-    if (!package) {
-        return package.error();
-    }
-    package_ = std::make_unique<Package>(std::move(*package));
-
+    GLINT_TRY(compiled_, compilePackage(scene, settings, &sharedModules()));
+    GLINT_TRY(auto package, scene_view::loadPackage(compiled_));
     scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     data.vertices = VertexForm::Full;  // pictures are compared with exact ones
     if (scene.lights.empty()) {
@@ -69,16 +98,10 @@ Status LoadedScene::load(const gltf::Scene& scene, const compiler::CompileSettin
     if (change) {
         change(data);
     }
-    scene_view::useLayoutOf(*package_, scene, data);
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), *package_, data.view());
-    if (!uploaded) {
-        return uploaded.error();
-    }
-    gpuScene_ = std::move(*uploaded);
+    scene_view::useLayoutOf(*package, scene, data);
+    GLINT_TRY(device_, scene_view::DeviceScene::upload(sharedContext(), std::move(package), std::move(data)));
     return okStatus();
 }
-
-LoadedScene::~LoadedScene() = default;
 
 LinearImage LoadedScene::render(package::Strategy strategy, const RenderSetup& setup,
                                 FrameCounters* counters) const {
@@ -90,28 +113,42 @@ LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setu
     options.width = setup.width;
     options.height = setup.height;
     options.countsLight = options.countsLight || setup.countsLight;
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(sharedContext(), *package_, *gpuScene_, options);
-    if (!renderer) {
-        ADD_FAILURE() << toString(renderer.error());
-        return {};
-    }
-    Result<LinearImage> image = (*renderer)->render(setup.frame, setup.samples);
-    if (!image) {
-        ADD_FAILURE() << toString(image.error());
-        return {};
-    }
-    if (counters != nullptr) {
-        Result<FrameCounters> counted = (*renderer)->counters();
+    const std::unique_ptr<Renderer> renderer = makeRenderer(options);
+    LinearImage image = renderer ? drawn(*renderer, setup.frame, setup.samples) : LinearImage{};
+    if (counters != nullptr && !image.pixels.empty()) {
+        Result<FrameCounters> counted = renderer->counters();
         if (!counted) {
             ADD_FAILURE() << toString(counted.error());
             return {};
         }
-        *counters = *counted;
+        *counters = std::move(*counted);
         EXPECT_EQ(counters->unknownShader, 0U);
     }
     expectNoValidationMessages();
-    return std::move(*image);
+    return image;
+}
+
+PosedScene::PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loaded,
+                       const std::function<void(scene_view::SceneViewData&)>& change)
+    : scene(std::move(posed)), compiled(std::move(loaded)), data(scene_view::makeSceneView(scene)) {
+    data.moves = true;
+    if (change) {
+        change(data);
+    }
+    if (compiled->ok()) {
+        scene_view::useLayoutOf(package(), scene, data);
+        gpuScene = uploadScene(package(), data.view());
+    }
+}
+
+MotionStatistics PosedScene::update(MotionView::Builds builds) {
+    scene_view::poseSceneView(scene, data);
+    MotionView motion = data.motion();
+    motion.builds = builds;
+    const Status updated = gpuScene->updateAndWait(motion);
+    EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
+    const Result<MotionStatistics> statistics = gpuScene->motion();
+    return statistics ? *statistics : MotionStatistics{};
 }
 
 RenderSetup defaultSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height) {

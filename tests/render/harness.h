@@ -4,9 +4,7 @@
 #include "emit/compile.h"
 #include "gltf/scene.h"
 
-#include <glint/context.h>
-#include <glint/renderer.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <gtest/gtest.h>
 
@@ -22,6 +20,16 @@ Context& sharedContext();
 
 // Fails the test for each message of the validation layers that no earlier call has reported.
 void expectNoValidationMessages();
+
+// These make something of a scene. If that fails, the test fails, and the result is null or an image without
+// a size.
+std::unique_ptr<GpuScene> uploadScene(const Package& package, const SceneView& scene);
+// `change`, if there is one, is called with what is uploaded.
+std::unique_ptr<GpuScene> uploadScene(const Package& package, const gltf::Scene& scene,
+                                      const std::function<void(SceneView&)>& change = {});
+std::unique_ptr<Renderer> makeRenderer(const Package& package, GpuScene& scene,
+                                       const RendererOptions& options);
+LinearImage drawn(Renderer& renderer, const FrameOptions& frame, std::uint32_t samples = 1);
 
 struct RenderSetup {
     std::uint32_t width = 64;
@@ -39,20 +47,22 @@ public:
     // `change`, if there is one, is called with the data before they are uploaded.
     LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                 const std::function<void(scene_view::SceneViewData&)>& change = {});
-    ~LoadedScene();
 
     bool ok() const {
-        return gpuScene_ != nullptr;
+        return device_.gpu != nullptr;
     }
     const compiler::CompiledPackage& compiled() const {
         return compiled_;
     }
     // Requires ok().
     const Package& package() const {
-        return *package_;
+        return *device_.package;
     }
     GpuScene& gpuScene() const {
-        return *gpuScene_;
+        return *device_.gpu;
+    }
+    std::unique_ptr<Renderer> makeRenderer(const RendererOptions& options) const {
+        return testing::makeRenderer(package(), gpuScene(), options);
     }
     // Renders an image. If that fails, the test fails and the image has no size. `counters` may be null.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
@@ -66,8 +76,34 @@ private:
                 const std::function<void(scene_view::SceneViewData&)>& change);
 
     compiler::CompiledPackage compiled_;
-    std::unique_ptr<Package> package_;
-    std::unique_ptr<GpuScene> gpuScene_;
+    scene_view::DeviceScene device_;
+};
+
+// A scene on the device that moves.
+struct PosedScene {
+    // Uploads it with the package of `loaded`. `change`, if there is one, is called with the data before
+    // that.
+    PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loaded,
+               const std::function<void(scene_view::SceneViewData&)>& change = {});
+
+    // Otherwise the test has failed.
+    bool ok() const {
+        return gpuScene != nullptr;
+    }
+    // These require ok().
+    const Package& package() const {
+        return compiled->package();
+    }
+    std::unique_ptr<Renderer> makeRenderer(const RendererOptions& options) const {
+        return testing::makeRenderer(package(), *gpuScene, options);
+    }
+    // Moves the uploaded scene to the current pose of `scene`.
+    MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule);
+
+    gltf::Scene scene;
+    std::shared_ptr<const LoadedScene> compiled;
+    scene_view::SceneViewData data;
+    std::unique_ptr<GpuScene> gpuScene;
 };
 
 // Returns the scene's first camera or a framing one, and a sun if the scene has no light, as `glint render`

@@ -14,22 +14,13 @@ namespace {
 Result<std::vector<std::uint32_t>> compileKernel(const gltf::Scene& scene, const LoadedScene& loaded,
                                                  const std::string& shader,
                                                  const compiler::CompileSettings& settings) {
-    const Result<base::Bytes> text =
-        base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests" / "render" / "shaders" / shader);
-    if (!text) {
-        return text.error();
-    }
-    const Result<compiler::SourceSet> sources =
-        makeSourceSet(gltf::SceneList({&scene, 1}), loaded.compiled().plan, settings);
-    if (!sources) {
-        return sources.error();
-    }
-    const Result<compiler::GlslUnit> glsl = flatten(shader, std::string(text->begin(), text->end()),
-                                                    sources->lookup(), compiler::FlattenSide::Glsl);
-    if (!glsl) {
-        return glsl.error();
-    }
-    return compileComputeOnce(shader, glsl->withPlaces());
+    GLINT_TRY(const auto text, base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests" / "render" /
+                                              "shaders" / shader));
+    GLINT_TRY(const auto sources,
+              makeSourceSet(gltf::SceneList({&scene, 1}), loaded.compiled().plan, settings));
+    GLINT_TRY(const auto glsl, flatten(shader, std::string(text.begin(), text.end()), sources.lookup(),
+                                       compiler::FlattenSide::Glsl));
+    return compileComputeOnce(shader, glsl.withPlaces());
 }
 
 }  // namespace
@@ -45,11 +36,8 @@ Result<std::unique_ptr<HitKernel>> HitKernel::create(const gltf::Scene& scene, c
 
 Result<std::unique_ptr<HitKernel>> HitKernel::create(const LoadedScene& loaded,
                                                      const std::vector<std::uint32_t>& words) {
-    Result<std::unique_ptr<SceneKernel>> kernel = SceneKernel::create(loaded.gpuScene(), words);
-    if (!kernel) {
-        return kernel.error();
-    }
-    return std::unique_ptr<HitKernel>(new HitKernel(std::move(*kernel)));
+    GLINT_TRY(auto kernel, SceneKernel::create(loaded.gpuScene(), words));
+    return std::unique_ptr<HitKernel>(new HitKernel(std::move(kernel)));
 }
 
 Result<std::vector<std::uint32_t>> HitKernel::run(const gpu::FrameConstants& constants,

@@ -299,7 +299,7 @@ TEST(LayerMotion, OfAPaneIsThatOfWhatIsBehind) {
     compiler::CompileSettings settings = withMotion();
     settings.effects = {false, compiler::builtinEffects({"refraction"})};
     settings.layers.insert(settings.layers.end(), {"refraction.virtual-motion", "refraction.distance"});
-    LayeredScene scene(std::move(posed), settings, kWidth, kHeight);
+    LayeredScene scene(posed, settings, kWidth, kHeight);
     ASSERT_TRUE(scene.ok());
     draw(scene);
     const Point step{0.15, -0.1, 0.2};

@@ -1,7 +1,7 @@
 #include "render/layered_scene.h"
 
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <utility>
 
@@ -49,46 +49,27 @@ double LayerSet::sum(const std::string& layer) const {
     return sum;
 }
 
-LayeredScene::LayeredScene(gltf::Scene posed, const compiler::CompileSettings& settings, std::uint32_t width,
-                           std::uint32_t height)
-    : scene(std::move(posed)), package_(scene, settings), aspect_(static_cast<double>(width) / height) {
-    data_ = scene_view::makeSceneView(scene);
-    data_.moves = true;
-    if (!package_.ok()) {
-        return;
-    }
-    scene_view::useLayoutOf(package_.package(), scene, data_);
-    Result<std::unique_ptr<GpuScene>> uploaded =
-        GpuScene::upload(sharedContext(), package_.package(), data_.view());
-    if (!uploaded) {
-        ADD_FAILURE() << toString(uploaded.error());
-        return;
-    }
-    gpuScene_ = std::move(*uploaded);
+LayeredScene::LayeredScene(const gltf::Scene& posed, const compiler::CompileSettings& settings,
+                           std::uint32_t width, std::uint32_t height)
+    : PosedScene(posed, std::make_shared<const LoadedScene>(posed, settings)),
+      aspect_(static_cast<double>(width) / height) {
     RendererOptions options;
     options.width = width;
     options.height = height;
     options.accumulate = false;
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(sharedContext(), package_.package(), *gpuScene_, options);
-    if (!renderer) {
-        ADD_FAILURE() << toString(renderer.error());
-        return;
+    if (PosedScene::ok()) {
+        renderer_ = makeRenderer(options);
     }
-    renderer_ = std::move(*renderer);
 }
 
 LinearImage LayeredScene::render() {
-    scene_view::poseSceneView(scene, data_);
-    const Status updated = gpuScene_->updateAndWait(data_.motion());
-    EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
+    update();
     const Result<CameraView> camera = scene_view::sceneCamera(scene, 0, aspect_);
     EXPECT_TRUE(camera.ok());
     frame.camera = *camera;
-    Result<LinearImage> image = renderer_->render(frame, 1);
-    EXPECT_TRUE(image.ok()) << (image ? "" : toString(image.error()));
+    LinearImage image = drawn(*renderer_, frame);
     expectNoValidationMessages();
-    return image ? std::move(*image) : LinearImage{};
+    return image;
 }
 
 }  // namespace glint::testing

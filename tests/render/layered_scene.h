@@ -30,9 +30,9 @@ private:
 };
 
 // Keeps its renderer, so that each frame has the one before.
-class LayeredScene {
+class LayeredScene : public PosedScene {
 public:
-    LayeredScene(gltf::Scene posed, const compiler::CompileSettings& settings, std::uint32_t width,
+    LayeredScene(const gltf::Scene& posed, const compiler::CompileSettings& settings, std::uint32_t width,
                  std::uint32_t height);
 
     bool ok() const {
@@ -42,20 +42,13 @@ public:
     Renderer& renderer() {
         return *renderer_;
     }
-    const Package& package() const {
-        return package_.package();
-    }
     // Draws a frame of one sample with the first camera, after the device has taken over the current pose of
     // `scene`.
     LinearImage render();
 
-    gltf::Scene scene;
     FrameOptions frame;  // the camera of the last frame
 
 private:
-    LoadedScene package_;
-    scene_view::SceneViewData data_;
-    std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
     double aspect_ = 1.0;
 };

@@ -44,15 +44,14 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
         options.height = 28;
         for (const std::uint32_t samples : {1U, 3U}) {
             options.accumulate = samples > 1;
-            const Result<std::unique_ptr<Renderer>> renderer =
-                Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-            ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
+            const auto renderer = loaded.makeRenderer(options);
+            ASSERT_NE(renderer, nullptr);
             FrameOptions frame = defaultSetup(hallBehindGlass(), options.width, options.height).frame;
             frame.maxReflectionRoughness = 1.0F;
-            const Result<LinearImage> image = (*renderer)->render(frame, samples);
+            const Result<LinearImage> image = renderer->render(frame, samples);
             ASSERT_TRUE(image.ok()) << toString(image.error());
             LinearImage sum = *image;
-            const LayerSet layers(**renderer);
+            const LayerSet layers(*renderer);
             const std::pair<const char*, const char*> sources[] = {{"direct", "albedo"},
                                                                    {"reflection", "albedo-specular"},
                                                                    {"refraction", "albedo-transmission"},
@@ -89,12 +88,12 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
         options.width = 24;
         options.height = 14;
         options.bounces = 6;
-        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-        ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
+        const auto renderer = loaded.makeRenderer(options);
+        ASSERT_NE(renderer, nullptr);
         FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
         frame.maxReflectionRoughness = 1.0F;
-        ASSERT_TRUE((*renderer)->render(frame, 2).ok());
-        const LayerSet layers(**renderer);
+        ASSERT_TRUE(renderer->render(frame, 2).ok());
+        const LayerSet layers(*renderer);
         for (const std::string source : {"reflection", "refraction", "indirect-diffuse"}) {
             const std::string albedo = source == "reflection"   ? "albedo-specular"
                                        : source == "refraction" ? "albedo-transmission"
@@ -152,15 +151,15 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
     options.strategy = package::kStrategyUber;
     options.width = options.height = 16;
     options.bounces = 2;
-    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
     FrameOptions frame = defaultSetup(scene, 16, 16).frame;
     frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (const bool refracts : {true, false}) {
         frame.effects = refracts ? package::kAllEffects : ~compiler::builtinEffects({"refraction"});
-        const Result<LinearImage> image = (*renderer)->render(frame, 3);
+        const Result<LinearImage> image = renderer->render(frame, 3);
         ASSERT_TRUE(image.ok()) << toString(image.error());
-        const LayerSet layers(**renderer);
+        const LayerSet layers(*renderer);
         LinearImage sum = *image;
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
@@ -192,8 +191,8 @@ TEST(Layers, LeaveThePictureAsItIs) {
     expectSameImage(with.render(package::kDefaultStrategy, setup),
                     without.render(package::kDefaultStrategy, setup), "with layers");
     const auto imagesOf = [&](const LoadedScene& loaded) {
-        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), {});
-        return renderer ? (*renderer)->footprint().images : 0;
+        const auto renderer = loaded.makeRenderer({});
+        return renderer ? renderer->footprint().images : 0;
     };
     EXPECT_EQ(imagesOf(with), imagesOf(without) + with.package().layers().size());
 }
@@ -210,9 +209,8 @@ TEST(Layers, LeaveNoBufferOrPassWhereTheyAreOff) {
         RendererOptions options;
         options.width = 16;
         options.height = 16;
-        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-        EXPECT_TRUE(renderer.ok());
-        return renderer ? (*renderer)->footprint() : Renderer::Footprint{};
+        const auto renderer = loaded.makeRenderer(options);
+        return renderer ? renderer->footprint() : Renderer::Footprint{};
     };
     const Renderer::Footprint none = footprintWith({});
     const Renderer::Footprint depth = footprintWith({"depth"});
@@ -293,8 +291,8 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
     RendererOptions options;
     options.width = 24;
     options.height = 14;
-    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer.ok());
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
     constexpr std::uint32_t kSamples = 5;
     const auto luminance = [](const LayerSet& layers, const std::string& name, std::size_t i) {
         return 0.2126 * layers.at(name, i, 0) + 0.7152 * layers.at(name, i, 1) +
@@ -302,7 +300,7 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
     };
     std::vector<std::vector<double>> means;  // of the first 1, 2, … samples
     const auto keep = [&] {
-        const LayerSet layers(**renderer);
+        const LayerSet layers(*renderer);
         std::vector<double>& mean = means.emplace_back();
         for (std::size_t i = 0; i < 24 * 14; ++i) {
             mean.push_back(luminance(layers, "indirect-diffuse.radiance", i));
@@ -310,8 +308,8 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
         return okStatus();
     };
     const FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
-    ASSERT_TRUE((*renderer)->render(frame, kSamples, keep).ok());
-    const LayerSet layers(**renderer);
+    ASSERT_TRUE(renderer->render(frame, kSamples, keep).ok());
+    const LayerSet layers(*renderer);
     std::size_t noisy = 0;
     for (std::size_t i = 0; i < 24 * 14; ++i) {
         // The samples follow from the means.

@@ -262,10 +262,10 @@ TEST(LiveEditUpload, RefusesScenesThatMove) {
     expectError(GpuScene::upload(sharedContext(), loaded.package(), view), "scene-edit-moves");
     EXPECT_EQ(loaded.gpuScene().editor(), nullptr);
     view.moves = false;
-    const auto editable = GpuScene::upload(sharedContext(), loaded.package(), view);
-    ASSERT_TRUE(editable) << toString(editable.error());
-    expectError(EngineScene::share(sharedContext(), **editable), "scene-edit-share");
-    expectError((*editable)->updateAndWait({}), "scene-still");
+    const auto editable = uploadScene(loaded.package(), view);
+    ASSERT_NE(editable, nullptr);
+    expectError(EngineScene::share(sharedContext(), *editable), "scene-edit-share");
+    expectError(editable->updateAndWait({}), "scene-still");
 }
 
 TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
@@ -300,10 +300,10 @@ TEST(LiveEditFallback, ASceneWithoutContentOfThePackage) {
     SceneView view;
     view.editable = true;
     view.packageScene = kNoPackageScene;
-    const auto empty = GpuScene::upload(sharedContext(), loaded.package(), view);
-    ASSERT_TRUE(empty) << toString(empty.error());
-    EXPECT_EQ((*empty)->statistics().instances, 0U);
-    EXPECT_EQ((*empty)->editor()->material(0).generation, 0U);
+    const auto empty = uploadScene(loaded.package(), view);
+    ASSERT_NE(empty, nullptr);
+    EXPECT_EQ(empty->statistics().instances, 0U);
+    EXPECT_EQ(empty->editor()->material(0).generation, 0U);
 }
 
 // Adds many of everything in one frame, so that every buffer grows, and removes them again.

@@ -9,7 +9,6 @@
 #include "support/halved_tree.h"
 
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/pose.h>
 #include <glint/scene_view/scene_view.h>
 
 #include <array>
@@ -23,60 +22,27 @@ constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 36;
 
 // An uploaded scene that moves.
-struct Moving {
-    explicit Moving(gltf::Scene posed, bool moves = true)
-        : scene(std::move(posed)), package(scene, compiler::PlanOptions{}) {
-        data = scene_view::makeSceneView(scene);
-        data.moves = moves;
-        if (!package.ok()) {
-            return;
-        }
-        scene_view::useLayoutOf(package.package(), scene, data);
-        Result<std::unique_ptr<GpuScene>> uploaded =
-            GpuScene::upload(sharedContext(), package.package(), data.view());
-        EXPECT_TRUE(uploaded.ok()) << (uploaded ? "" : toString(uploaded.error()));
-        gpuScene = uploaded ? std::move(*uploaded) : nullptr;
-    }
-
-    bool ok() const {
-        return gpuScene != nullptr;
-    }
-
-    // Moves the uploaded scene to the current pose of `scene`.
-    MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule) {
-        scene_view::poseSceneView(scene, data);
-        MotionView motion = data.motion();
-        motion.builds = builds;
-        const Status updated = gpuScene->updateAndWait(motion);
-        EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
-        const Result<MotionStatistics> statistics = gpuScene->motion();
-        return statistics ? *statistics : MotionStatistics{};
-    }
+struct Moving : PosedScene {
+    explicit Moving(const gltf::Scene& posed, bool isMoved = true)
+        : PosedScene(posed, std::make_shared<const LoadedScene>(posed, compiler::PlanOptions{}),
+                     [isMoved](scene_view::SceneViewData& given) { given.moves = isMoved; }) {}
 
     LinearImage render() const {
         RendererOptions options;
         options.width = kWidth;
         options.height = kHeight;
-        Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(sharedContext(), package.package(), *gpuScene, options);
+        const auto renderer = makeRenderer(options);
         if (!renderer) {
-            ADD_FAILURE() << toString(renderer.error());
             return {};
         }
         FrameOptions frame;
         const Result<CameraView> camera =
             scene_view::sceneCamera(scene, 0, static_cast<double>(kWidth) / static_cast<double>(kHeight));
         frame.camera = *camera;
-        Result<LinearImage> image = (*renderer)->render(frame, 2);
-        EXPECT_TRUE(image.ok()) << (image ? "" : toString(image.error()));
+        LinearImage image = drawn(*renderer, frame, 2);
         expectNoValidationMessages();
-        return image ? std::move(*image) : LinearImage{};
+        return image;
     }
-
-    gltf::Scene scene;
-    LoadedScene package;
-    scene_view::SceneViewData data;
-    std::unique_ptr<GpuScene> gpuScene;
 };
 
 LinearImage renderStill(const gltf::Scene& scene) {
@@ -154,7 +120,7 @@ TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
         addInstance(scene, mesh, placed(place % 8, place / 8, -20));
     }
     addCamera(scene);
-    Moving moving(std::move(scene));
+    Moving moving(scene);
     ASSERT_TRUE(moving.ok());
     const auto order = [&] {
         std::vector<std::uint32_t> instances;
@@ -456,20 +422,20 @@ bool hasDeformModule(const Package& package) {
 TEST(Motion, NothingOfItIsThereInScenesThatStay) {
     const Moving still(rigidScene(), false);
     ASSERT_TRUE(still.ok());
-    EXPECT_FALSE(hasDeformModule(still.package.package()));
+    EXPECT_FALSE(hasDeformModule(still.package()));
     EXPECT_EQ(still.gpuScene->state().motion, nullptr);
     EXPECT_TRUE(still.gpuScene->state().deformed.buffers.empty());
     // Nodes that move need no deforming pass.
     const Moving rigid(rigidScene());
     ASSERT_TRUE(rigid.ok());
-    EXPECT_FALSE(hasDeformModule(rigid.package.package()));
+    EXPECT_FALSE(hasDeformModule(rigid.package()));
     EXPECT_EQ(rigid.gpuScene->state().motion->deformer, nullptr);
     EXPECT_EQ(rigid.gpuScene->state().motion->blases, nullptr);
     EXPECT_EQ(rigid.gpuScene->statistics().blasBytes, still.gpuScene->statistics().blasBytes);
     // A picture of a single pose is deformed once, and built as if it had no other pose.
     const Moving posed(skinnedScene(0.3), false);
     ASSERT_TRUE(posed.ok());
-    EXPECT_TRUE(hasDeformModule(posed.package.package()));
+    EXPECT_TRUE(hasDeformModule(posed.package()));
     EXPECT_EQ(posed.gpuScene->state().motion, nullptr);
     EXPECT_EQ(posed.gpuScene->state().blases.size(), 2U);
 }

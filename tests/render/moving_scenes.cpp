@@ -3,7 +3,7 @@
 #include "render/scene_builder.h"
 #include "scene/deformed.h"
 
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <cmath>
 #include <cstddef>

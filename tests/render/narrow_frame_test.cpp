@@ -137,10 +137,10 @@ TEST(PackedSamples, SayHowPixelsFoundLight) {
         settings.sampleRecord = record;
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
-        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-        ASSERT_TRUE(renderer) << toString(renderer.error());
-        ASSERT_TRUE((*renderer)->render(narrowSetup(scene, 1).frame, 1));
-        const auto paths = (*renderer)->readCoverage(package::kEffectReflection);
+        const auto renderer = loaded.makeRenderer(options);
+        ASSERT_NE(renderer, nullptr);
+        ASSERT_TRUE(renderer->render(narrowSetup(scene, 1).frame, 1));
+        const auto paths = renderer->readCoverage(package::kEffectReflection);
         ASSERT_TRUE(paths);
         found.push_back(*paths);
     }

@@ -206,43 +206,32 @@ gltf::Scene swayingFoliage(int frame) {
 }
 
 // An uploaded scene that moves, whose alpha tests are decided or not.
-struct Swaying {
-    Swaying(const Package& package, OpacityUse use) : data(scene_view::makeSceneView(scene)) {
-        data.moves = true;
-        data.opacity = use;
-        scene_view::useLayoutOf(package, scene, data);
-        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package, data.view());
-        EXPECT_TRUE(uploaded) << (uploaded ? "" : toString(uploaded.error()));
-        gpuScene = uploaded ? std::move(*uploaded) : nullptr;
-    }
+struct Swaying : PosedScene {
+    Swaying(std::shared_ptr<const LoadedScene> loaded, OpacityUse use)
+        : PosedScene(swayingFoliage(0), std::move(loaded),
+                     [use](scene_view::SceneViewData& given) { given.opacity = use; }) {}
     void moveTo(int frame) {
-        const gltf::Scene posed = swayingFoliage(frame);
-        scene.nodes = posed.nodes;
-        scene_view::poseSceneView(scene, data);
-        const Status moved = gpuScene->updateAndWait(data.motion());
-        EXPECT_TRUE(moved) << (moved ? "" : toString(moved.error()));
+        scene.nodes = swayingFoliage(frame).nodes;
+        update();
     }
-
-    gltf::Scene scene = swayingFoliage(0);
-    scene_view::SceneViewData data;
-    std::unique_ptr<GpuScene> gpuScene;
 };
 
 // States depend on UVs, so that triangles which were decided at rest stay decided wherever skins and morph
 // targets take them.
 TEST(Opacity, PicturesOfDeformedMeshesDoNotShowWhatWasDecided) {
     const gltf::Scene still = swayingFoliage(0);
-    const LoadedScene compiled(still, settingsOf(package::kStrategyUber | package::kStrategyHitShaders));
-    ASSERT_TRUE(compiled.ok());
+    const auto compiled = std::make_shared<const LoadedScene>(
+        still, settingsOf(package::kStrategyUber | package::kStrategyHitShaders));
+    ASSERT_TRUE(compiled->ok());
     std::vector<RendererOptions> choices{
         {.strategy = package::kStrategyUber, .tracer = package::kTracerRayQuery}};
     if ((sharedContext().handles().tracers & package::kTracerRayPipeline) != 0) {
         choices.push_back({.strategy = package::kStrategyHitShaders, .tracer = package::kTracerRayPipeline});
     }
     RenderSetup setup = defaultSetup(still, 64, 36);
-    Swaying proved(compiled.package(), OpacityUse::Proved);
-    Swaying tested(compiled.package(), OpacityUse::Tested);
-    ASSERT_TRUE(proved.gpuScene != nullptr && tested.gpuScene != nullptr);
+    Swaying proved(compiled, OpacityUse::Proved);
+    Swaying tested(compiled, OpacityUse::Tested);
+    ASSERT_TRUE(proved.ok() && tested.ok());
     EXPECT_EQ(proved.gpuScene->statistics().maskedTriangles, 400U);
     EXPECT_GT(proved.gpuScene->statistics().provedOpaque, 80U);
     EXPECT_GT(proved.gpuScene->statistics().provedTransparent, 80U);
@@ -251,14 +240,8 @@ TEST(Opacity, PicturesOfDeformedMeshesDoNotShowWhatWasDecided) {
         options.countsLight = true;
         options.width = setup.width;
         options.height = setup.height;
-        const auto make = [&](Swaying& swaying) {
-            Result<std::unique_ptr<Renderer>> made =
-                Renderer::create(sharedContext(), compiled.package(), *swaying.gpuScene, options);
-            EXPECT_TRUE(made) << (made ? "" : toString(made.error()));
-            return made ? std::move(*made) : nullptr;
-        };
-        const std::unique_ptr<Renderer> few = make(proved);
-        const std::unique_ptr<Renderer> many = make(tested);
+        const auto few = proved.makeRenderer(options);
+        const auto many = tested.makeRenderer(options);
         ASSERT_TRUE(few != nullptr && many != nullptr);
         LinearImage before;
         for (int frame = 0; frame < kFrames; ++frame) {

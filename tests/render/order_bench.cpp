@@ -82,11 +82,8 @@ Status check(OrderKernel& kernel, const OrderProblem& problem, std::uint32_t buc
     if (const Result<std::vector<OrderTime>> times = kernel.times(ordering); !times) {
         return times.error();
     }
-    const Result<OrderResult> result = kernel.result();
-    if (!result) {
-        return result.error();
-    }
-    if (!isOrdered(problem, buckets, *result)) {
+    GLINT_TRY(const auto result, kernel.result());
+    if (!isOrdered(problem, buckets, result)) {
         return makeError("ordering", std::string(nameOf(ordering)), "a hit is not in its bucket",
                          "run test_ordering");
     }
@@ -96,13 +93,9 @@ Status check(OrderKernel& kernel, const OrderProblem& problem, std::uint32_t buc
 Status measure(OrderKernel& kernel, const Arguments& arguments, const OrderProblem& problem, Row& row,
                const std::vector<Ordering>& orderings) {
     const auto copies = static_cast<std::uint32_t>(kWordsOfCopies / row.hits + 2);
-    if (Status status = kernel.loadForTimes(problem, copies); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(kernel.loadForTimes(problem, copies));
     for (const Ordering ordering : orderings) {
-        if (Status status = check(kernel, problem, row.buckets, ordering); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(check(kernel, problem, row.buckets, ordering));
     }
     // Clocks rise under load.
     const Clock::time_point start = Clock::now();
@@ -112,18 +105,12 @@ Status measure(OrderKernel& kernel, const Arguments& arguments, const OrderProbl
         }
     }
     for (std::uint32_t round = 0; round < arguments.rounds; ++round) {
-        const Result<std::vector<double>> copy = kernel.copyTimes();
-        if (!copy) {
-            return copy.error();
-        }
-        row.plainCopy.insert(row.plainCopy.end(), copy->begin(), copy->end());
+        GLINT_TRY(const auto copy, kernel.copyTimes());
+        row.plainCopy.insert(row.plainCopy.end(), copy.begin(), copy.end());
         for (const Ordering ordering : orderings) {
-            const Result<std::vector<OrderTime>> times = kernel.times(ordering);
-            if (!times) {
-                return times.error();
-            }
+            GLINT_TRY(const auto times, kernel.times(ordering));
             Times& kept = row.orderings[ordering];
-            for (const OrderTime& time : *times) {
+            for (const OrderTime& time : times) {
                 kept.count.push_back(time.count);
                 kept.offset.push_back(time.offset);
                 kept.copy.push_back(time.copy);
@@ -208,23 +195,17 @@ std::vector<Ordering> chosen(const Arguments& arguments) {
 }
 
 Status measureAll(const Arguments& arguments) {
-    const Result<std::unique_ptr<Context>> context = Context::createHeadless();
-    if (!context) {
-        return context.error();
-    }
+    GLINT_TRY(const auto context, Context::createHeadless());
     const std::vector<Ordering> orderings = chosen(arguments);
-    nlohmann::json report = {{"device", (*context)->deviceName()},
-                             {"driver", (*context)->driverName()},
+    nlohmann::json report = {{"device", context->deviceName()},
+                             {"driver", context->driverName()},
                              {"rounds", arguments.rounds},
                              {"unit", "µs"},
                              {"rows", nlohmann::json::array()}};
-    printHead(**context, orderings, arguments);
+    printHead(*context, orderings, arguments);
     for (const std::uint32_t buckets : arguments.buckets) {
-        const Result<std::unique_ptr<OrderKernel>> kernel =
-            OrderKernel::create(**context, buckets - 1, package::HitRecordFormat::Full);
-        if (!kernel) {
-            return kernel.error();
-        }
+        GLINT_TRY(const auto kernel,
+                  OrderKernel::create(*context, buckets - 1, package::HitRecordFormat::Full));
         std::vector<Ordering> held;
         std::ranges::copy_if(orderings, std::back_inserter(held),
                              [&](Ordering ordering) { return holds(ordering, buckets); });
@@ -232,7 +213,7 @@ Status measureAll(const Arguments& arguments) {
             for (const Spread spread : kSpreads) {
                 Row row{hits, buckets, spread, {}, {}};
                 if (Status status =
-                        measure(**kernel, arguments, makeProblem(spread, buckets, hits), row, held);
+                        measure(*kernel, arguments, makeProblem(spread, buckets, hits), row, held);
                     !status) {
                     return status;
                 }

@@ -123,11 +123,7 @@ Result<std::unique_ptr<OrderBuffers>> createOrderBuffers(Context::State& context
         if (entry.bytes == 0) {
             continue;
         }
-        Result<Buffer> buffer = createBuffer(context, buffers.pool, entry.bytes, entry.usage, entry.use);
-        if (!buffer) {
-            return buffer.error();
-        }
-        entry.target = std::move(*buffer);
+        GLINT_TRY(entry.target, createBuffer(context, buffers.pool, entry.bytes, entry.usage, entry.use));
     }
     std::uint8_t* staged = std::copy(keys.begin(), keys.end(), buffers.staged.mapped);
     staged = std::copy(hits.begin(), hits.end(), staged);

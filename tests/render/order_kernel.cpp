@@ -64,18 +64,12 @@ Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t case
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategySortedUber;
     settings.hitRecord = hitRecord;
-    const Result<compiler::SourceSet> sources = makeSourceSet(scenes, plan, settings);
-    if (!sources) {
-        return sources.error();
-    }
-    Result<std::vector<compiler::ModuleSource>> modules = makeModuleSources(scenes, plan, *sources, settings);
-    if (!modules) {
-        return modules.error();
-    }
-    std::erase_if(*modules, [](const compiler::ModuleSource& module) {
+    GLINT_TRY(const auto sources, makeSourceSet(scenes, plan, settings));
+    GLINT_TRY(auto modules, makeModuleSources(scenes, plan, sources, settings));
+    std::erase_if(modules, [](const compiler::ModuleSource& module) {
         return std::ranges::find(kRoles, module.key.role) == std::end(kRoles);
     });
-    return compileModules(std::move(*modules), 0, false, &sharedModules());
+    return compileModules(std::move(modules), 0, false, &sharedModules());
 }
 
 }  // namespace
@@ -83,19 +77,9 @@ Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t case
 Result<std::unique_ptr<OrderKernel>> OrderKernel::create(Context& context, std::uint32_t caseCount,
                                                          package::HitRecordFormat hitRecord) {
     std::unique_ptr<OrderKernel> kernel(new OrderKernel(context.state(), caseCount, hitRecord));
-    if (Status status = kernel->createPipelines(); !status) {
-        return status.error();
-    }
-    Result<Timer> timer = Timer::create(context.state(), kTimesOfRun * kMaxCopies);
-    if (!timer) {
-        return timer.error();
-    }
-    kernel->timer_ = std::move(*timer);
-    Result<CommandRunner> runner = CommandRunner::create(context.state());
-    if (!runner) {
-        return runner.error();
-    }
-    kernel->runner_ = std::move(*runner);
+    GLINT_TRY_DO(kernel->createPipelines());
+    GLINT_TRY(kernel->timer_, Timer::create(context.state(), kTimesOfRun * kMaxCopies));
+    GLINT_TRY(kernel->runner_, CommandRunner::create(context.state()));
     return kernel;
 }
 
@@ -112,29 +96,15 @@ Status OrderKernel::createPipelines() {
         return vulkanError("vkCreatePipelineLayout", result);
     }
     layout_ = UniquePipelineLayout(context_, layout);
-    Result<std::vector<compiler::CompiledModule>> modules = compileOrdering(caseCount_, hitRecord_);
-    if (!modules) {
-        return modules.error();
-    }
-    for (const compiler::CompiledModule& module : *modules) {
+    GLINT_TRY(const auto modules, compileOrdering(caseCount_, hitRecord_));
+    for (const compiler::CompiledModule& module : modules) {
         PipelineCreation creation;
         creation.constants.threads = chosenThreads(context_.limits, module.key, caseCount_ + 1);
-        Result<UniquePipeline> pipeline =
-            createComputePipeline(context_, module.spirv, layout_.get(), creation);
-        if (!pipeline) {
-            return pipeline.error();
-        }
-        pipelines_.emplace(module.key, std::move(*pipeline));
+        GLINT_TRY(auto pipeline, createComputePipeline(context_, module.spirv, layout_.get(), creation));
+        pipelines_.emplace(module.key, std::move(pipeline));
     }
-    const Result<std::vector<std::uint32_t>> copy = compileComputeOnce("plain copy", kPlainCopy);
-    if (!copy) {
-        return copy.error();
-    }
-    Result<UniquePipeline> pipeline = createComputePipeline(context_, *copy, layout_.get());
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    plainCopy_ = std::move(*pipeline);
+    GLINT_TRY(const auto copy, compileComputeOnce("plain copy", kPlainCopy));
+    GLINT_TRY(plainCopy_, createComputePipeline(context_, copy, layout_.get()));
     return okStatus();
 }
 

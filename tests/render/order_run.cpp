@@ -103,47 +103,31 @@ OrderKernel::~OrderKernel() = default;
 
 Status OrderKernel::load(const OrderProblem& problem) {
     buffers_.clear();
-    Result<std::unique_ptr<OrderBuffers>> buffers =
-        createOrderBuffers(context_, problem, caseCount_ + 1, hitRecord_, true);
-    if (!buffers) {
-        return buffers.error();
-    }
-    buffers_.push_back(std::move(*buffers));
+    GLINT_TRY(auto buffers, createOrderBuffers(context_, problem, caseCount_ + 1, hitRecord_, true));
+    buffers_.push_back(std::move(buffers));
     return okStatus();
 }
 
 Result<OrderResult> OrderKernel::run(Ordering ordering, std::span<const OrderFault> faults) {
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(const auto commands, runner_->begin());
     const OrderBuffers& buffers = *buffers_.front();
-    recordInput(context_, *commands, buffers);
-    recordStart(*commands, buffers);
-    recordPasses(*commands, ordering, buffers, [](std::uint32_t) {});
-    wait(*commands);
-    recordCheck(*commands, buffers, faults);
-    recordOutput(context_, *commands, buffers);
-    if (Status status = runner_->submitAndWait(); !status) {
-        return status.error();
-    }
+    recordInput(context_, commands, buffers);
+    recordStart(commands, buffers);
+    recordPasses(commands, ordering, buffers, [](std::uint32_t) {});
+    wait(commands);
+    recordCheck(commands, buffers, faults);
+    recordOutput(context_, commands, buffers);
+    GLINT_TRY_DO(runner_->submitAndWait());
     return readResult(buffers);
 }
 
 Status OrderKernel::loadForTimes(const OrderProblem& problem, std::uint32_t copies) {
     buffers_.clear();
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(const auto commands, runner_->begin());
     for (std::uint32_t i = 0; i < std::clamp(copies, 1U, kMaxCopies); ++i) {
-        Result<std::unique_ptr<OrderBuffers>> buffers =
-            createOrderBuffers(context_, problem, caseCount_ + 1, hitRecord_, false);
-        if (!buffers) {
-            return buffers.error();
-        }
-        recordInput(context_, *commands, **buffers);
-        buffers_.push_back(std::move(*buffers));
+        GLINT_TRY(auto buffers, createOrderBuffers(context_, problem, caseCount_ + 1, hitRecord_, false));
+        recordInput(context_, commands, *buffers);
+        buffers_.push_back(std::move(buffers));
     }
     return runner_->submitAndWait();
 }
@@ -153,46 +137,38 @@ Result<std::vector<double>> OrderKernel::readTimes(std::uint32_t count) const {
 }
 
 Result<std::vector<OrderTime>> OrderKernel::times(Ordering ordering) {
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    timer_->recordReset(*commands);
+    GLINT_TRY(const auto commands, runner_->begin());
+    timer_->recordReset(commands);
     for (const bool whole : {false, true}) {
         std::uint32_t stretch = 0;
         for (const std::unique_ptr<OrderBuffers>& buffers : buffers_) {
-            recordStart(*commands, *buffers);
-            recordPasses(*commands, ordering, *buffers, [&](std::uint32_t pass) {
+            recordStart(commands, *buffers);
+            recordPasses(commands, ordering, *buffers, [&](std::uint32_t pass) {
                 if (whole) {
                     if (pass == 0) {
-                        timer_->recordBegin(*commands, stretch + kPasses);
+                        timer_->recordBegin(commands, stretch + kPasses);
                     } else if (pass == kPasses) {
-                        timer_->recordEnd(*commands, stretch + kPasses);
+                        timer_->recordEnd(commands, stretch + kPasses);
                     }
                     return;
                 }
                 if (pass > 0) {
-                    timer_->recordEnd(*commands, stretch + pass - 1);
+                    timer_->recordEnd(commands, stretch + pass - 1);
                 }
                 if (pass < kPasses) {
-                    timer_->recordBegin(*commands, stretch + pass);
+                    timer_->recordBegin(commands, stretch + pass);
                 }
             });
-            wait(*commands);
+            wait(commands);
             stretch += kTimesOfRun;
         }
     }
-    if (Status status = runner_->submitAndWait(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(runner_->submitAndWait());
     const auto runs = static_cast<std::uint32_t>(buffers_.size());
-    Result<std::vector<double>> read = readTimes(runs * kTimesOfRun);
-    if (!read) {
-        return read.error();
-    }
+    GLINT_TRY(const auto read, readTimes(runs * kTimesOfRun));
     std::vector<OrderTime> times;
     for (std::uint32_t i = 0; i < runs; ++i) {
-        const double* const values = &(*read)[std::size_t{i} * kTimesOfRun];
+        const double* const values = &read[std::size_t{i} * kTimesOfRun];
         const bool hasOffset = ordering != Ordering::TileSort;
         times.push_back(
             {values[kCountPass], hasOffset ? values[kOffsetPass] : 0.0, values[kCopyPass], values[kPasses]});
@@ -201,14 +177,11 @@ Result<std::vector<OrderTime>> OrderKernel::times(Ordering ordering) {
 }
 
 Result<std::vector<double>> OrderKernel::copyTimes() {
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    timer_->recordReset(*commands);
+    GLINT_TRY(const auto commands, runner_->begin());
+    timer_->recordReset(commands);
     const auto runs = static_cast<std::uint32_t>(buffers_.size());
     const PassDependencies dependencies(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
-    context_.vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, plainCopy_.get());
+    context_.vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, plainCopy_.get());
     for (std::uint32_t i = 0; i < runs; ++i) {
         const OrderBuffers& from = *buffers_[i];
         // The remainder after the last whole vector is ignored.
@@ -218,31 +191,24 @@ Result<std::vector<double>> OrderKernel::copyTimes() {
             std::uint32_t vectors;
         } pushed{from.slots.address, buffers_[(i + 1) % runs]->slots.address, from.rays / 4};
         static_assert(sizeof(pushed) <= sizeof(gpu::PushConstants));
-        context_.vk.CmdPushConstants(*commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed),
+        context_.vk.CmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed),
                                      &pushed);
-        wait(*commands);
-        timer_->recordBegin(*commands, i);
+        wait(commands);
+        timer_->recordBegin(commands, i);
         const std::uint32_t groups = (pushed.vectors + 255) / 256;
         const std::uint32_t rows = groups / gpu::kMaxRayGroupsX + 1;
-        context_.vk.CmdDispatch(*commands, (groups + rows - 1) / rows, rows, 1);
-        recordDependency(context_, *commands, dependencies.passToPass);
-        timer_->recordEnd(*commands, i);
+        context_.vk.CmdDispatch(commands, (groups + rows - 1) / rows, rows, 1);
+        recordDependency(context_, commands, dependencies.passToPass);
+        timer_->recordEnd(commands, i);
     }
-    if (Status status = runner_->submitAndWait(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(runner_->submitAndWait());
     return readTimes(runs);
 }
 
 Result<OrderResult> OrderKernel::result() {
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    recordOutput(context_, *commands, *buffers_.back());
-    if (Status status = runner_->submitAndWait(); !status) {
-        return status.error();
-    }
+    GLINT_TRY(const auto commands, runner_->begin());
+    recordOutput(context_, commands, *buffers_.back());
+    GLINT_TRY_DO(runner_->submitAndWait());
     return readResult(*buffers_.back());
 }
 

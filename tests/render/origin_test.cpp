@@ -183,12 +183,7 @@ public:
         options.height = kHeight;
         options.bounces = 2;
         options.screenMarch = true;
-        Result<std::unique_ptr<Renderer>> made =
-            Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-        EXPECT_TRUE(made.ok()) << toString(made.error());
-        if (made) {
-            renderer_ = std::move(*made);
-        }
+        renderer_ = loaded.makeRenderer(options);
     }
 
     LinearImage at(const Place& place) {
@@ -197,10 +192,9 @@ public:
         sizeRoomLamps(place.scale, data_);
         const Status updated = loaded_->gpuScene().updateAndWait(data_.motion());
         EXPECT_TRUE(updated.ok()) << toString(updated.error());
-        Result<LinearImage> image = renderer_->render(frameOf(moved), kSamples);
-        EXPECT_TRUE(image.ok()) << toString(image.error());
+        LinearImage image = drawn(*renderer_, frameOf(moved), kSamples);
         expectNoValidationMessages();
-        return image ? std::move(*image) : LinearImage{};
+        return image;
     }
 
     bool ok() const {

@@ -7,7 +7,7 @@
 #include "support/temporary_folder.h"
 
 #include <glint/package_modules.h>
-#include <glint/scene_view/package.h>
+#include <glint/scene_view/session.h>
 
 #include <gtest/gtest.h>
 
@@ -148,15 +148,13 @@ TEST(PackStages, AttributesThatDoNotFitAreErrors) {
     addCamera(scene);
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
-    const Result<compiler::CompiledPackage> compiled = compilePackage(scene, separateCases());
-    ASSERT_TRUE(compiled) << toString(compiled.error());
-    const Result<Package> package = scene_view::loadPackage(*compiled);
-    ASSERT_TRUE(package) << toString(package.error());
+    const LoadedScene loaded(scene, separateCases());
+    ASSERT_TRUE(loaded.ok());
     const auto upload = [&](std::vector<gltf::VertexValues> attributes) {
         scene.meshes[0].primitives[0].attributes = std::move(attributes);
         const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
         const Result<std::unique_ptr<GpuScene>> uploaded =
-            GpuScene::upload(sharedContext(), *package, data.view());
+            GpuScene::upload(sharedContext(), loaded.package(), data.view());
         return uploaded ? std::string() : uploaded.error().id;
     };
     EXPECT_EQ(upload({{"_TINT", 3, std::vector<float>(12)}}), "");

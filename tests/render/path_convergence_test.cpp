@@ -151,9 +151,7 @@ public:
             options.bounces = kBounces;
             options.width = setup_.width;
             options.height = setup_.height;
-            auto renderer = Renderer::create(sharedContext(), loaded_.package(), loaded_.gpuScene(), options);
-            EXPECT_TRUE(renderer.ok());
-            renderer_ = renderer.ok() ? std::move(*renderer) : nullptr;
+            renderer_ = loaded_.makeRenderer(options);
         }
     }
 

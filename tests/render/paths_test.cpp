@@ -266,9 +266,7 @@ std::unique_ptr<Renderer> rendererOf(const LoadedScene& loaded, const RenderSetu
     RendererOptions options = pathOptions(package::kMaxBounces);
     options.width = setup.width;
     options.height = setup.height;
-    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    EXPECT_TRUE(renderer.ok());
-    return renderer.ok() ? std::move(*renderer) : nullptr;
+    return loaded.makeRenderer(options);
 }
 
 // A frame has passes for the bounces that paths of the frames before reached.

@@ -68,12 +68,10 @@ public:
         SceneView view = data_.view();
         view.editable = true;
         view.vertices = VertexForm::Full;
-        Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package(), view);
-        if (!uploaded) {
-            ADD_FAILURE() << toString(uploaded.error());
+        gpuScene_ = uploadScene(package(), view);
+        if (!gpuScene_) {
             return;
         }
-        gpuScene_ = std::move(*uploaded);
         textures_ = scene_view::uploadedTextures(editor(), package().scene(0), scene_);
         for (std::uint32_t i = 0; i < data_.instances.size(); ++i) {
             instances_.push_back(editor().instance(i));
@@ -85,13 +83,10 @@ public:
             RendererOptions options;
             options.strategy = strategy;
             options.width = options.height = kSide;
-            Result<std::unique_ptr<Renderer>> made =
-                Renderer::create(sharedContext(), package(), *gpuScene_, options);
-            if (!made) {
-                ADD_FAILURE() << toString(made.error());
+            renderers_.push_back(makeRenderer(package(), *gpuScene_, options));
+            if (!renderers_.back()) {
                 return;
             }
-            renderers_.push_back(std::move(*made));
         }
         ok_ = true;
     }

@@ -153,12 +153,12 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     RendererOptions options = optionsOf({package::kStrategyHitShaders, package::kTracerRayPipeline});
     options.width = setup.width;
     options.height = setup.height;
-    auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer) << toString(renderer.error());
-    const Result<LinearImage> image = (*renderer)->render(setup.frame);
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
+    const Result<LinearImage> image = renderer->render(setup.frame);
     ASSERT_TRUE(image) << toString(image.error());
     expectColor(at(*image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
-    const Result<FrameCounters> counters = (*renderer)->counters();
+    const Result<FrameCounters> counters = renderer->counters();
     ASSERT_TRUE(counters) << toString(counters.error());
     EXPECT_EQ(counters->unknownShader, 32U * 32U);
     expectNoValidationMessages();

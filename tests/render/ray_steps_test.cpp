@@ -58,14 +58,13 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     options.strategy = package::kStrategyUber;
     options.width = setup.width;
     options.height = setup.height;
-    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    EXPECT_TRUE(renderer) << toString(renderer.error());
-    if (!renderer || !(*renderer)->render(setup.frame)) {
+    const auto renderer = loaded.makeRenderer(options);
+    if (!renderer || !renderer->render(setup.frame)) {
         return known;
     }
-    Renderer::State& state = (*renderer)->state();
+    Renderer::State& state = renderer->state();
     Result<CommandRunner> runner = CommandRunner::create(state.context);
-    const auto rays = readRays(**renderer, (*renderer)->counters()->rays);
+    const auto rays = readRays(*renderer, renderer->counters()->rays);
     const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
     EXPECT_TRUE(rays && radiance);
     for (const gpu::RayRecord& ray : *rays) {

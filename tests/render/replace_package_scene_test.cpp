@@ -35,9 +35,9 @@ protected:
 TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
     const std::shared_ptr<const Package> original = packageOf(before_, uber);
-    const std::unique_ptr<GpuScene> scene = upload(before_, *original);
+    const std::unique_ptr<GpuScene> scene = uploadScene(*original, before_);
     const RendererOptions options = optionsOf(package::kStrategyUber);
-    const std::unique_ptr<Renderer> renderer = make(*original, *scene, options);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
     const auto expectError = [&](const std::shared_ptr<const Package>& package, const char* id) {
@@ -78,9 +78,9 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
     const std::shared_ptr<const Package> extended = packageOf(lamps, settings);
     ASSERT_NE(original->emission(), nullptr);
     EXPECT_NE(original->emission()->sometimes, extended->emission()->sometimes);
-    const std::unique_ptr<GpuScene> scene = upload(lamps, *original);
+    const std::unique_ptr<GpuScene> scene = uploadScene(*original, lamps);
     const std::unique_ptr<Renderer> renderer =
-        make(*original, *scene, optionsOf(package::kStrategyVisibility));
+        makeRenderer(*original, *scene, optionsOf(package::kStrategyVisibility));
     ASSERT_NE(renderer, nullptr);
     const Result<PackageReplacement> replaced = renderer->replacePackage(extended);
     EXPECT_TRUE(replaced) << toString(replaced.error());
@@ -134,20 +134,16 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
     };
     const gltf::Scene still = maskedRoom();
     for (const OpacityUse use : {OpacityUse::Proved, OpacityUse::Tested}) {
-        scene_view::SceneViewData data = scene_view::makeSceneView(still);
-        data.opacity = use;
-        scene_view::useLayoutOf(*original, still, data);
-        const Result<std::unique_ptr<GpuScene>> scene =
-            GpuScene::upload(sharedContext(), *original, data.view());
-        ASSERT_TRUE(scene) << toString(scene.error());
+        const auto scene = uploadScene(*original, still, [use](SceneView& view) { view.opacity = use; });
+        ASSERT_NE(scene, nullptr);
         const bool isDecided = use == OpacityUse::Proved;
-        EXPECT_EQ((*scene)->statistics().provedOpaque, isDecided ? 2U : 0U);
-        EXPECT_EQ((*scene)->statistics().provedTransparent, isDecided ? 2U : 0U);
+        EXPECT_EQ(scene->statistics().provedOpaque, isDecided ? 2U : 0U);
+        EXPECT_EQ(scene->statistics().provedTransparent, isDecided ? 2U : 0U);
         for (const Edit& edit : edits) {
             gltf::Scene edited = maskedRoom();
             edit.change(edited.materials[0]);
             const std::shared_ptr<const Package> package = packageOf(edited, uber);
-            const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+            const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
             ASSERT_TRUE(package != nullptr && renderer != nullptr);
             const Result<PackageReplacement> replaced = renderer->replacePackage(package);
             if (!isDecided || !edit.isRefused) {
@@ -165,14 +161,10 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
 
 TEST_F(ReplacePackageScene, AnEditableSceneKeepsItsPackage) {
     const std::shared_ptr<const Package> original = packageOf(before_, roomSettings(package::kStrategyUber));
-    scene_view::SceneViewData data = scene_view::makeSceneView(before_);
-    scene_view::useLayoutOf(*original, before_, data);
-    SceneView view = data.view();
-    view.editable = true;
-    const Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(sharedContext(), *original, view);
-    ASSERT_TRUE(scene) << toString(scene.error());
+    const auto scene = uploadScene(*original, before_, [](SceneView& view) { view.editable = true; });
+    ASSERT_NE(scene, nullptr);
     const RendererOptions options = optionsOf(package::kStrategyUber);
-    const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
     const Result<PackageReplacement> replaced = renderer->replacePackage(original);
@@ -188,10 +180,10 @@ TEST_F(ReplacePackageScene, AnotherRendererOfTheSceneSaysThatItIsStale) {
     // Its records of materials have another size, so that they move to another buffer.
     const std::shared_ptr<const Package> extended = packageOf(extendedRoom(), uber);
     ASSERT_GT(extended->scene(0).materials.recordBytes, original->scene(0).materials.recordBytes);
-    const std::unique_ptr<GpuScene> scene = upload(before_, *original);
+    const std::unique_ptr<GpuScene> scene = uploadScene(*original, before_);
     const RendererOptions options = optionsOf(package::kStrategyUber);
-    const std::unique_ptr<Renderer> renderer = make(*original, *scene, options);
-    const std::unique_ptr<Renderer> other = make(*original, *scene, options);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
+    const std::unique_ptr<Renderer> other = makeRenderer(*original, *scene, options);
     ASSERT_TRUE(renderer->replacePackage(extended));
     draw(*other);
     const LinearImage image = draw(*renderer);
@@ -199,7 +191,7 @@ TEST_F(ReplacePackageScene, AnotherRendererOfTheSceneSaysThatItIsStale) {
     const Result<LinearImage> stale = other->render(setup_.frame);
     ASSERT_FALSE(stale);
     EXPECT_EQ(stale.error().id, "package-replaced");
-    const std::unique_ptr<Renderer> anew = make(*extended, *scene, options);
+    const std::unique_ptr<Renderer> anew = makeRenderer(*extended, *scene, options);
     ASSERT_NE(anew, nullptr);
     expectEqualImage(draw(*anew), image, "made anew");
     expectNoValidationMessages();
@@ -215,14 +207,10 @@ TEST_F(ReplacePackageScene, ValuesOfTheHostStay) {
     const MaterialTable table = original->scene(0).materials;
     const std::vector<std::uint8_t> kept(table.part(2, 1).bytes.begin(), table.part(2, 1).bytes.end());
     const MaterialView views[] = {{2, kept}};
-    scene_view::SceneViewData data = scene_view::makeSceneView(before_);
-    scene_view::useLayoutOf(*original, before_, data);
-    SceneView view = data.view();
-    view.materials = views;
-    Result<std::unique_ptr<GpuScene>> scene = GpuScene::upload(sharedContext(), *original, view);
-    ASSERT_TRUE(scene) << toString(scene.error());
+    const auto scene = uploadScene(*original, before_, [&](SceneView& view) { view.materials = views; });
+    ASSERT_NE(scene, nullptr);
     const RendererOptions options = optionsOf(package::kStrategyUber);
-    const std::unique_ptr<Renderer> renderer = make(*original, **scene, options);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_TRUE(renderer->replacePackage(repainted));
     const std::shared_ptr<const Package> wanted = packageOf(repaintedRoom(), uber);
     expectEqualImage(draw(*renderer), fresh(repaintedRoom(), *wanted, options), "the host's colour");

@@ -79,9 +79,9 @@ TEST_F(ReplacePackage, ThePictureIsThatOfTheOldPackageAndThenOfTheNewOne) {
         const LinearImage wanted = fresh(*after_, **edited_, options);
         ASSERT_TRUE(differ(old, wanted)) << name;
         options.backgroundPipelines = true;
-        const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
+        const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
         ASSERT_NE(scene, nullptr);
-        const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+        const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
         ASSERT_NE(renderer, nullptr);
         renderer->waitForPipelines();
         expectEqualImage(draw(*renderer), old, name + ", before");
@@ -119,8 +119,8 @@ TEST_F(ReplacePackage, NoFrameMixesTwoPackages) {
     options.backgroundPipelines = true;
     options.draft = false;
     options.pipelineThreads = 2;
-    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
-    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
     ASSERT_NE(renderer, nullptr);
     // Not all pipelines of the first package are made yet.
     ASSERT_TRUE(renderer->replacePackage(*edited_));
@@ -148,8 +148,8 @@ TEST_F(ReplacePackage, ADraftEndsWhileAPackageWaits) {
     RendererOptions options = optionsOf(package::kStrategyVisibility, tracerOfDevice());
     const LinearImage wanted = fresh(*after_, **edited_, options);
     options.backgroundPipelines = true;
-    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
-    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
     ASSERT_NE(renderer, nullptr);
     renderer->state().pipelines.adoptedAtOnce = 0;
     draw(*renderer);
@@ -178,8 +178,8 @@ TEST_F(ReplacePackage, FramesInFlightKeepWhatTheyUse) {
     const RendererOptions options = optionsOf(package::kStrategyVisibility, tracerOfDevice());
     const LinearImage old = fresh(*before_, **original_, options);
     const LinearImage wanted = fresh(*after_, **edited_, options);
-    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
-    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
     ASSERT_NE(renderer, nullptr);
     TwoFrames frames(sharedContext());
     // Returns the number of the recording.
@@ -228,9 +228,9 @@ TEST_F(ReplacePackage, OnlyPipelinesThatChangedAreMade) {
     const std::shared_ptr<const Package> original = packageOf(*before_, settings);
     const std::shared_ptr<const Package> repainted = packageOf(repaintedRoom(), settings);
     const std::shared_ptr<const Package> edited = packageOf(*after_, settings);
-    const std::unique_ptr<GpuScene> scene = upload(*before_, *original);
+    const std::unique_ptr<GpuScene> scene = uploadScene(*original, *before_);
     const RendererOptions options = optionsOf(strategy);
-    const std::unique_ptr<Renderer> renderer = make(*original, *scene, options);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_NE(renderer, nullptr);
     const std::uint32_t pipelines = renderer->footprint().pipelines;
 
@@ -271,8 +271,8 @@ TEST_F(ReplacePackage, ALaterPackageTakesThePlaceOfOneThatWaits) {
         GTEST_SKIP() << "the device has no ray tracing pipelines";
     }
     options.backgroundPipelines = true;
-    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
-    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
     ASSERT_NE(renderer, nullptr);
     renderer->waitForPipelines();
     const LinearImage old = draw(*renderer);
@@ -298,8 +298,8 @@ TEST_F(ReplacePackage, APackageThatIsGivenUpIsLeftToAThread) {
         GTEST_SKIP() << "the device has no ray tracing pipelines";
     }
     options.backgroundPipelines = true;
-    const std::unique_ptr<GpuScene> scene = upload(*before_, **original_);
-    const std::unique_ptr<Renderer> renderer = make(**original_, *scene, options);
+    const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
     ASSERT_NE(renderer, nullptr);
     ASSERT_TRUE(renderer->replacePackage(*edited_));
     ASSERT_TRUE(renderer->replacePackage(*original_));

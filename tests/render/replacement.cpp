@@ -5,8 +5,8 @@
 #include "resolve/resolve.h"
 #include "support/shared_modules.h"
 
-#include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <utility>
 
@@ -82,13 +82,13 @@ void expectEqualImage(const LinearImage& image, const LinearImage& reference, co
 
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
                                          const compiler::CompileSettings& settings) {
-    Result<Package> package =
+    auto package =
         scene_view::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules());
     if (!package) {
         ADD_FAILURE() << toString(package.error());
         return nullptr;
     }
-    return std::make_shared<const Package>(std::move(*package));
+    return *package;
 }
 
 RendererOptions ReplacementTest::optionsOf(package::Strategy strategy,
@@ -101,31 +101,14 @@ RendererOptions ReplacementTest::optionsOf(package::Strategy strategy,
     return options;
 }
 
-std::unique_ptr<GpuScene> ReplacementTest::upload(const gltf::Scene& scene, const Package& package) {
-    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
-    scene_view::useLayoutOf(package, scene, data);
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(sharedContext(), package, data.view());
-    EXPECT_TRUE(uploaded) << toString(uploaded.error());
-    return uploaded ? std::move(*uploaded) : nullptr;
-}
-
-std::unique_ptr<Renderer> ReplacementTest::make(const Package& package, GpuScene& scene,
-                                                const RendererOptions& options) {
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(sharedContext(), package, scene, options);
-    EXPECT_TRUE(renderer) << toString(renderer.error());
-    return renderer ? std::move(*renderer) : nullptr;
-}
-
 LinearImage ReplacementTest::draw(Renderer& renderer) const {
-    const Result<LinearImage> image = renderer.render(setup_.frame, setup_.samples);
-    EXPECT_TRUE(image) << toString(image.error());
-    return image ? *image : LinearImage{};
+    return drawn(renderer, setup_.frame, setup_.samples);
 }
 
 LinearImage ReplacementTest::fresh(const gltf::Scene& scene, const Package& package,
                                    const RendererOptions& options) const {
-    const std::unique_ptr<GpuScene> uploaded = upload(scene, package);
-    const std::unique_ptr<Renderer> renderer = uploaded ? make(package, *uploaded, options) : nullptr;
+    const std::unique_ptr<GpuScene> uploaded = uploadScene(package, scene);
+    const auto renderer = uploaded ? makeRenderer(package, *uploaded, options) : nullptr;
     return renderer ? draw(*renderer) : LinearImage{};
 }
 

@@ -40,10 +40,6 @@ class ReplacementTest : public ::testing::Test {
 protected:
     RendererOptions optionsOf(package::Strategy strategy,
                               std::optional<package::Tracer> tracer = std::nullopt) const;
-    // Uploads the scene for the package.
-    static std::unique_ptr<GpuScene> upload(const gltf::Scene& scene, const Package& package);
-    static std::unique_ptr<Renderer> make(const Package& package, GpuScene& scene,
-                                          const RendererOptions& options);
     LinearImage draw(Renderer& renderer) const;
     // Returns the picture of an upload and a renderer of its own.
     LinearImage fresh(const gltf::Scene& scene, const Package& package, const RendererOptions& options) const;

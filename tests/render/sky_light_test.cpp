@@ -339,11 +339,10 @@ TEST(SkyLight, AMapHasToBeSampled) {
     RendererOptions options;
     options.strategy = package::kStrategyUber;
     options.width = options.height = 8;
-    const Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer.ok());
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
     FrameOptions frame = setupOf(scene, map->get(), 1, 1).frame;
-    const Status refused = (*renderer)->record(VK_NULL_HANDLE, frame);
+    const Status refused = renderer->record(VK_NULL_HANDLE, frame);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().id, "environment-unsampled");
 }

@@ -9,7 +9,7 @@
 #include "scene/texture_stream.h"
 #include "unit/gltf/block_files.h"
 
-#include <glint/scene_view/package.h>
+#include <glint/scene_view/session.h>
 #include <glint/texture_stream.h>
 
 #include <gtest/gtest.h>
@@ -213,17 +213,15 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
 TEST(TextureFormats, WhatADeviceCantReadIsRefused) {
     const gltf::Scene scene = squares(1);
     Context& context = sharedContext();
-    const auto compiled = compilePackage(scene, settingsForDevice());
-    ASSERT_TRUE(compiled.ok());
-    const auto package = scene_view::loadPackage(*compiled);
-    ASSERT_TRUE(package.ok());
+    const LoadedScene loaded(scene, settingsForDevice());
+    ASSERT_TRUE(loaded.ok());
     scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     const auto errorOf = [&](TexelFormat format, std::uint32_t levels, std::size_t bytes) {
         const std::vector<std::uint8_t> blocks(bytes);
         data.images[0].format = format;
         data.images[0].levels = levels;
         data.images[0].pixels = blocks;
-        const auto uploaded = GpuScene::upload(context, *package, data.view());
+        const auto uploaded = GpuScene::upload(context, loaded.package(), data.view());
         return uploaded ? std::string() : uploaded.error().id + ": " + uploaded.error().message;
     };
     // BC4 has no sRGB, which a base colour is in.
@@ -408,19 +406,17 @@ public:
         settings.plan.fallback = editable;
         settings.strategies = package::kStrategyUber;
         settings.tracers = tracerOfDevice();
-        auto compiled = compilePackage(scene_, settings);
-        EXPECT_TRUE(compiled.ok());
-        package_ = std::make_unique<Package>(std::move(*scene_view::loadPackage(*compiled)));
+        loaded_.emplace(scene_, settings);
         data_ = scene_view::makeSceneView(scene_);
         SceneView view = data_.view();
-        whole_ = upload(view);
+        whole_ = uploadScene(loaded_->package(), view);
         view.editable = editable;
         view.streamsTextures = true;
         view.firstTexels = firstTexels;
-        streamed_ = upload(view);
+        streamed_ = uploadScene(loaded_->package(), view);
         setup_ = defaultSetup(scene_, 32, 32);
         setup_.frame.averagedSamples = 1;
-        renderer_ = makeRenderer(*streamed_);
+        renderer_ = rendererOf(*streamed_);
     }
     ~Streaming() {
         frames_.drain();
@@ -461,27 +457,20 @@ public:
         return *renderer_->render(setup_.frame);
     }
     LinearImage wholePicture() {
-        return *makeRenderer(*whole_)->render(setup_.frame);
+        return *rendererOf(*whole_)->render(setup_.frame);
     }
 
 private:
-    std::unique_ptr<GpuScene> upload(const SceneView& view) {
-        auto uploaded = GpuScene::upload(sharedContext(), *package_, view);
-        EXPECT_TRUE(uploaded.ok()) << (uploaded ? "" : toString(uploaded.error()));
-        return std::move(*uploaded);
-    }
-    std::unique_ptr<Renderer> makeRenderer(GpuScene& scene) {
+    std::unique_ptr<Renderer> rendererOf(GpuScene& scene) {
         RendererOptions options;
         options.strategy = package::kStrategyUber;
         options.width = 32;
         options.height = 32;
-        auto renderer = Renderer::create(sharedContext(), *package_, scene, options);
-        EXPECT_TRUE(renderer.ok()) << (renderer ? "" : toString(renderer.error()));
-        return std::move(*renderer);
+        return makeRenderer(loaded_->package(), scene, options);
     }
 
     gltf::Scene scene_;
-    std::unique_ptr<Package> package_;
+    std::optional<LoadedScene> loaded_;
     scene_view::SceneViewData data_;
     std::unique_ptr<GpuScene> whole_;
     std::unique_ptr<GpuScene> streamed_;

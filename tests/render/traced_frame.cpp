@@ -12,19 +12,11 @@
 namespace glint::testing {
 namespace {
 
-template <typename Value>
-Status statusOf(const Result<Value>& result) {
-    return result ? okStatus() : Status(result.error());
-}
-
 template <typename Record>
 Result<std::vector<Record>> readRecords(Renderer::State& state, CommandRunner& runner, const Buffer& buffer) {
-    const Result<std::vector<std::uint8_t>> bytes = readFrameBuffer(state, runner, buffer);
-    if (!bytes) {
-        return bytes.error();
-    }
-    std::vector<Record> records(bytes->size() / sizeof(Record));
-    std::memcpy(records.data(), bytes->data(), records.size() * sizeof(Record));
+    GLINT_TRY(const auto bytes, readFrameBuffer(state, runner, buffer));
+    std::vector<Record> records(bytes.size() / sizeof(Record));
+    std::memcpy(records.data(), bytes.data(), records.size() * sizeof(Record));
     return records;
 }
 
@@ -32,25 +24,17 @@ Result<std::vector<Record>> readRecords(Renderer::State& state, CommandRunner& r
 
 Result<std::vector<gpu::RayRecord>> readRays(Renderer& renderer, std::uint32_t count) {
     Renderer::State& state = renderer.state();
-    Result<CommandRunner> runner = CommandRunner::create(state.context);
-    if (!runner) {
-        return runner.error();
-    }
+    GLINT_TRY(auto runner, CommandRunner::create(state.context));
     const FrameResources& frame = state.frame;
-    const auto listed = readRecords<std::uint32_t>(state, *runner, frame.listed);
-    const auto starts = readRecords<gpu::SampleStart>(state, *runner, frame.sampleStarts);
-    const auto aims = readRecords<gpu::SampleAim>(state, *runner, frame.sampleAims);
-    const auto weights = readRecords<gpu::SampleWeight>(state, *runner, frame.sampleWeights);
-    for (const Status& status : {statusOf(listed), statusOf(starts), statusOf(aims), statusOf(weights)}) {
-        if (!status) {
-            return status.error();
-        }
-    }
+    GLINT_TRY(const auto listed, readRecords<std::uint32_t>(state, runner, frame.listed));
+    GLINT_TRY(const auto starts, readRecords<gpu::SampleStart>(state, runner, frame.sampleStarts));
+    GLINT_TRY(const auto aims, readRecords<gpu::SampleAim>(state, runner, frame.sampleAims));
+    GLINT_TRY(const auto weights, readRecords<gpu::SampleWeight>(state, runner, frame.sampleWeights));
     std::vector<gpu::RayRecord> rays;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const std::uint32_t target = (*listed)[i];
-        rays.push_back({(*starts)[target].origin_orRadiance, target, (*aims)[target].direction,
-                        (*aims)[target].coneWidth, (*weights)[target].coneSpread});
+        const std::uint32_t target = listed[i];
+        rays.push_back({starts[target].origin_orRadiance, target, aims[target].direction,
+                        aims[target].coneWidth, weights[target].coneSpread});
     }
     return rays;
 }
@@ -59,26 +43,10 @@ namespace {
 
 // Renders and reads back. The image has no size if that fails.
 Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
-    Result<LinearImage> image = renderer.render(setup.frame, setup.samples);
-    if (!image) {
-        return image.error();
-    }
-    const Result<FrameCounters> counters = renderer.counters();
-    if (!counters) {
-        return counters.error();
-    }
-    frame.counters = *counters;
-    Result<std::vector<PixelPath>> paths = renderer.readCoverage(package::kEffectReflection);
-    if (!paths) {
-        return paths.error();
-    }
-    frame.paths = std::move(*paths);
-    Result<std::vector<gpu::RayRecord>> rays = readRays(renderer, frame.counters.rays);
-    if (!rays) {
-        return rays.error();
-    }
-    frame.rays = std::move(*rays);
-    frame.image = std::move(*image);
+    GLINT_TRY(frame.image, renderer.render(setup.frame, setup.samples));
+    GLINT_TRY(frame.counters, renderer.counters());
+    GLINT_TRY(frame.paths, renderer.readCoverage(package::kEffectReflection));
+    GLINT_TRY(frame.rays, readRays(renderer, frame.counters.rays));
     return okStatus();
 }
 
@@ -108,12 +76,11 @@ TracedFrame traceFrame(const LoadedScene& scene, package::Strategy strategy, con
     options.width = setup.width;
     options.height = setup.height;
     options.screenMarch = setup.frame.screenSteps > 0;
-    const Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(sharedContext(), scene.package(), scene.gpuScene(), options);
     TracedFrame frame;
-    const Status filled = renderer ? fill(**renderer, setup, frame) : Status(renderer.error());
-    if (!filled) {
-        ADD_FAILURE() << toString(filled.error());
+    const auto renderer = scene.makeRenderer(options);
+    const Status filled = renderer ? fill(*renderer, setup, frame) : okStatus();
+    if (!renderer || !filled) {
+        ADD_FAILURE() << (filled ? "there is no renderer" : toString(filled.error()));
         return frame;
     }
     expectOnePathEach(frame, setup);

@@ -9,7 +9,7 @@
 
 #include <glint/engine_scene.h>
 #include <glint/environment.h>
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 #include <glint/texture_stream.h>
 
 #include <gtest/gtest.h>
@@ -141,9 +141,7 @@ std::unique_ptr<Renderer> makeRenderer(const Source& source, GpuScene& scene) {
     options.tracer = tracerOfDevice();
     options.width = kSide;
     options.height = kSide;
-    auto made = Renderer::create(sharedContext(), source.loaded->package(), scene, options);
-    EXPECT_TRUE(made.ok()) << (made ? "" : toString(made.error()));
-    return made ? std::move(*made) : nullptr;
+    return makeRenderer(source.loaded->package(), scene, options);
 }
 
 void expectSameBits(const Result<LinearImage>& image, const Result<LinearImage>& reference,
@@ -173,10 +171,10 @@ protected:
 };
 
 TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
-    auto whole = GpuScene::upload(sharedContext(), source_->loaded->package(), source_->view(GetParam()));
-    ASSERT_TRUE(whole.ok());
-    EXPECT_TRUE((*whole)->isUploaded());
-    const std::unique_ptr<Renderer> reference = makeRenderer(*source_, **whole);
+    const auto whole = uploadScene(source_->loaded->package(), source_->view(GetParam()));
+    ASSERT_NE(whole, nullptr);
+    EXPECT_TRUE(whole->isUploaded());
+    const std::unique_ptr<Renderer> reference = makeRenderer(*source_, *whole);
     const Result<LinearImage> expected = reference->render(frame_);
 
     DeviceWatch watch;
@@ -230,8 +228,8 @@ TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
     EXPECT_TRUE(scene->isUploaded());
     expectSameBits(renderer->readOutput(), expected, "after the compaction");
     const GpuScene::Statistics& statistics = scene->statistics();
-    EXPECT_EQ(statistics.blasBytes, (*whole)->statistics().blasBytes);
-    EXPECT_EQ(statistics.blasUncompactedBytes, (*whole)->statistics().blasUncompactedBytes);
+    EXPECT_EQ(statistics.blasBytes, whole->statistics().blasBytes);
+    EXPECT_EQ(statistics.blasUncompactedBytes, whole->statistics().blasUncompactedBytes);
     const auto total = [](const GpuScene& one) {
         std::uint64_t bytes = 0;
         for (const MemoryItem& item : one.memory()) {
@@ -239,7 +237,7 @@ TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
         }
         return bytes;
     };
-    EXPECT_EQ(total(*scene), total(**whole));
+    EXPECT_EQ(total(*scene), total(*whole));
 
     if (GetParam() == Kind::Moving) {
         // The top level of later poses has the compacted structures, too.

@@ -98,11 +98,11 @@ TEST(Views, SumsAreOverAllSamples) {
     RendererOptions options;
     options.width = 16;
     options.height = 16;
-    const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-    ASSERT_TRUE(renderer.ok());
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_NE(renderer, nullptr);
     for (int picture = 0; picture < 2; ++picture) {
-        ASSERT_TRUE((*renderer)->render(defaultSetup(scene, 16, 16).frame, 3).ok());
-        EXPECT_EQ(LayerSet(**renderer).integer("rays", 8 * 16 + 4), 3U) << "and each picture begins anew";
+        ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 3).ok());
+        EXPECT_EQ(LayerSet(*renderer).integer("rays", 8 * 16 + 4), 3U) << "and each picture begins anew";
     }
 }
 
@@ -187,12 +187,12 @@ void expectRightHalf(const gltf::Scene& scene, const LoadedScene& loaded, GpuSce
     RendererOptions options;
     options.width = 16;
     options.height = 16;
-    const auto renderer = Renderer::create(sharedContext(), loaded.package(), gpuScene, options);
-    ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
-    ASSERT_TRUE((*renderer)->render(defaultSetup(scene, 16, 16).frame, 1).ok());
+    const auto renderer = makeRenderer(loaded.package(), gpuScene, options);
+    ASSERT_NE(renderer, nullptr);
+    ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 1).ok());
     measure::ViewInput input;
     input.package = &loaded.package();
-    const Result<measure::View> view = measure::makeView(*measure::parseView("fallback"), **renderer, input);
+    const Result<measure::View> view = measure::makeView(*measure::parseView("fallback"), *renderer, input);
     ASSERT_TRUE(view.ok()) << toString(view.error());
     EXPECT_EQ(pixelsOf(*view, category), 128U);
     EXPECT_EQ(pixelsOf(*view, "has a case"), 128U);
@@ -214,12 +214,9 @@ TEST(Views, FindHitsOfTheFallback) {
     const gltf::Scene scene = mirroredWalls();
     const LoadedScene loaded(scene, settingsOfHits(true));
     ASSERT_TRUE(loaded.ok());
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
-    SceneView uploaded = data.view();
-    uploaded.editable = true;
-    const auto gpuScene = GpuScene::upload(sharedContext(), loaded.package(), uploaded);
-    ASSERT_TRUE(gpuScene.ok()) << toString(gpuScene.error());
-    SceneEditor& editor = *(*gpuScene)->editor();
+    const auto gpuScene = uploadScene(loaded.package(), scene, [](SceneView& view) { view.editable = true; });
+    ASSERT_NE(gpuScene, nullptr);
+    SceneEditor& editor = *gpuScene->editor();
     materials::Material both = scene.materials[1];
     both.texture("baseColorTexture").texture = 0;
     const scene_view::MaterialSourceData source = scene_view::makeMaterialSource(
@@ -234,7 +231,7 @@ TEST(Views, FindHitsOfTheFallback) {
     ASSERT_TRUE(editor.record(frames.begin(), frames.frame()).ok());
     frames.submit();
     frames.drain();
-    expectRightHalf(scene, loaded, **gpuScene, "fallback");
+    expectRightHalf(scene, loaded, *gpuScene, "fallback");
 }
 
 // A defect is planted, because an editor without a fallback takes no material without a case.
@@ -288,10 +285,10 @@ TEST(Views, EveryStrategyGivesTheSame) {
         RendererOptions options = optionsOf(way);
         options.width = 48;
         options.height = 28;
-        const auto renderer = Renderer::create(sharedContext(), loaded.package(), loaded.gpuScene(), options);
-        ASSERT_TRUE(renderer.ok()) << toString(renderer.error());
-        ASSERT_TRUE((*renderer)->render(defaultSetup(scene, 48, 28).frame, 1).ok());
-        const LayerSet layers(**renderer);
+        const auto renderer = loaded.makeRenderer(options);
+        ASSERT_NE(renderer, nullptr);
+        ASSERT_TRUE(renderer->render(defaultSetup(scene, 48, 28).frame, 1).ok());
+        const LayerSet layers(*renderer);
         std::size_t hits = 0;
         std::uint32_t mostCases = 0;
         for (std::size_t i = 0; i < 48 * 28; ++i) {

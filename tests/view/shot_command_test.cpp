@@ -13,7 +13,6 @@
 namespace {
 
 namespace compiler = glint::compiler;
-using compiler::Change;
 using glint::view::PassHistory;
 using glint::view::shotWords;
 using Words = std::vector<std::string>;
@@ -73,17 +72,17 @@ TEST(ShotCommand, LeavesToAPackageWhatItHasDecided) {
 
 TEST(Change, FollowsFromTheTable) {
     const compiler::Settings usual;
-    EXPECT_EQ(changeBetween(usual, usual), Change::None);
-    EXPECT_EQ(changeBetween(usual, with("clamp", "2")), Change::Frame);
-    EXPECT_EQ(changeBetween(usual, with("batch-effects", "on")), Change::Renderer);
-    EXPECT_EQ(changeBetween(usual, with("size", "64x36")), Change::Renderer);
-    EXPECT_EQ(changeBetween(usual, with("sun-angle", "1")), Change::Build);  // lights are uploaded
-    EXPECT_EQ(changeBetween(usual, with("merge", "none")), Change::Build);
+    EXPECT_EQ(changeBetween(usual, usual), 0U);
+    EXPECT_EQ(changeBetween(usual, with("clamp", "2")), compiler::kChangesFrame);
+    EXPECT_EQ(changeBetween(usual, with("batch-effects", "on")), compiler::kChangesRenderer);
+    EXPECT_EQ(changeBetween(usual, with("size", "64x36")), compiler::kChangesRenderer);
+    EXPECT_EQ(changeBetween(usual, with("sun-angle", "1")), compiler::kChangesUpload);  // lights
+    EXPECT_EQ(changeBetween(usual, with("merge", "none")), compiler::kChangesPackage);
     // Which effects a package has depends on it.
-    EXPECT_EQ(changeBetween(usual, with("max-roughness", "0.5")), Change::Build);
+    EXPECT_EQ(changeBetween(usual, with("max-roughness", "0.5")), compiler::kChangesPackage);
     compiler::Settings lit;
     lit.environment = "sky.hdr";
-    EXPECT_EQ(changeBetween(usual, lit), Change::Build);
+    EXPECT_EQ(changeBetween(usual, lit), compiler::kChangesPackage);
 }
 
 TEST(PassHistory, KeepsFramesWithDifferentPasses) {

@@ -11,7 +11,6 @@
 #include "cli/options/setting_options.h"
 #include "cli/render/pipeline_cache.h"
 #include "cli/report.h"
-#include "gltf/import.h"
 #include "measure/device_report.h"
 #include "measure/report_json.h"
 
@@ -19,6 +18,7 @@
 #include <glint/measure/calibration.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/report.h>
+#include <glint/scene_view/session.h>
 
 #include <fmt/format.h>
 
@@ -110,11 +110,11 @@ Result<int> calibrate(const Console& console, const BenchArguments& arguments) {
 }
 
 Status bench(const Console& console, const BenchArguments& arguments, const gltf::Scene& scene,
-             const measure::SceneReader& reader, measure::BenchReport& report) {
+             measure::BenchReport& report) {
     const base::Clock::time_point start = base::Clock::now();
     CompileCache cache(arguments.render.cache, "");
-    GLINT_TRY(const auto bed, measure::BenchBed::create(console, arguments.render, scene, reader,
-                                                        cache.modules(), cache.store()));
+    GLINT_TRY(const auto bed,
+              measure::BenchBed::create(console, arguments.render, scene, cache.modules(), cache.store()));
     console.report(idleSettings(bed->build()));
     if (console.refused()) {
         return okStatus();
@@ -132,17 +132,11 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
     GLINT_TRY_DO(measure::checkBenchFolder(arguments.output));
     console.progress("reading " + arguments.render.scene);
     CompileCache known(arguments.render.cache, "");
-    GLINT_TRY(const auto import, importOptions(arguments.render, ImageReading::Files, known.store()));
-    GLINT_TRY(const auto scene, importScene(arguments.render.scene, import));
-    console.report(scene.warnings);
+    GLINT_TRY(const auto opened, scene_view::open(arguments.render.scene, arguments.render, known.store()));
+    console.report(opened.scene.warnings);
     if (console.refused()) {
         return kExitFailed;
     }
-    const measure::SceneReader reader = [&](bool trustsTextures) {
-        gltf::ImportOptions other = import;
-        other.trustTextures = trustsTextures;
-        return importScene(arguments.render.scene, other);
-    };
     measure::BenchReport report;
     report.command = arguments.command;
     report.date = measure::utcNow();
@@ -153,7 +147,7 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
     report.metric = measure::metricNamed(arguments.metric);
-    GLINT_TRY_DO(bench(console, arguments, scene, reader, report));
+    GLINT_TRY_DO(bench(console, arguments, opened.scene, report));
     if (console.refused()) {
         return kExitFailed;
     }
@@ -180,9 +174,9 @@ Result<int> reportDevice(const Console& console, const BenchArguments& arguments
     CompileCache cache(arguments.render.cache, "");
     std::optional<gltf::Scene> scene;
     if (!arguments.render.scene.empty()) {
-        GLINT_TRY(const auto import, importOptions(arguments.render, ImageReading::Files, cache.store()));
-        GLINT_TRY(scene, importScene(arguments.render.scene, import));
-        console.report(scene->warnings);
+        GLINT_TRY(auto opened, scene_view::open(arguments.render.scene, arguments.render, cache.store()));
+        console.report(opened.scene.warnings);
+        scene = std::move(opened.scene);
     }
     const measure::DeviceReportSettings settings{arguments.render,
                                                  static_cast<std::uint32_t>(arguments.rounds),

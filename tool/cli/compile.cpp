@@ -20,6 +20,7 @@
 
 #include <glint/measure/target.h>
 #include <glint/result.h>
+#include <glint/scene_view/session.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -357,7 +358,8 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
                                 const std::function<void(const std::vector<Diagnostic>&)>& report) {
     GLINT_TRY_DO(checkOutputs(arguments));
     console.progress("reading " + base::join(arguments.scenes));
-    GLINT_TRY(const auto import, importOptions(arguments.settings, ImageReading::None, cache.store()));
+    GLINT_TRY(const auto import,
+              scene_view::importOptions(arguments.settings, scene_view::ImageReading::None, cache.store()));
     Resolved resolved;
     GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
     report(warningsOf(resolved.scenes));

@@ -9,7 +9,6 @@
 #include "cli/render/open_image_denoise.h"
 #include "cli/render/pipeline_cache.h"
 #include "cli/render/report.h"
-#include "gltf/import.h"
 #include "image/image_file.h"
 #include "inspect/pipelines.h"
 #include "resolve/light.h"
@@ -18,16 +17,12 @@
 
 #include <glint/context.h>
 #include <glint/measure/observer.h>
-#include <glint/measure/render_settings.h>
 #include <glint/measure/target.h>
 #include <glint/measure/views.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/environment.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/pose.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 #include <glint/scene_view/textures.h>
 
 #include <fmt/format.h>
@@ -63,36 +58,36 @@ compiler::Settings settingsOf(const RenderArguments& arguments) {
 
 // Returns the package `given` by --package, after checking it, or compiles one now. Fills in the report's
 // members about it.
-Result<Package> obtainPackage(const Console& console, const compiler::Build& build,
-                              std::optional<Package> given, compiler::ModuleCache* cache,
-                              RenderReport& report) {
+Result<std::shared_ptr<const Package>> obtainPackage(const Console& console, const compiler::Build& build,
+                                                     const std::shared_ptr<const Package>& given,
+                                                     compiler::ModuleCache* cache, RenderReport& report) {
     const compiler::Settings& settings = build.settings;
-    if (given) {
-        const gltf::Scene& scene = build.scenes->scenes().front();
-        GLINT_TRY_DO(scene_view::checkPackage(*given, build));
-        const bool isLit = settings.sun == compiler::Sun::On ||
-                           std::ranges::any_of(scene.lights, [](const gltf::Light& light) {
-                               return light.shines() || light.canShine;
-                           });
-        if (isLit && given->shape().effects.lights == 0) {
-            console.report(Diagnostic{Severity::Note, "effect-absent", settings.package,
-                                      "has no effect shadow, so the lights of the picture cast no shadows",
-                                      "compile it with --effects auto,shadow, or render with --no-sun"});
-        }
-        return std::move(*given);
-    }
     const base::Clock::time_point start = base::Clock::now();
-    Result<Package> package = scene_view::compileAndLoad(build, cache);
-    report.compileMs = base::millisecondsSince(start) + build.milliseconds;
-    report.merge = nameOf(settings.compile.plan.merge);
+    GLINT_TRY(auto package, scene_view::packageFor(build, given, cache));
+    if (given == nullptr) {
+        report.compileMs = base::millisecondsSince(start) + build.milliseconds;
+        report.merge = nameOf(settings.compile.plan.merge);
+    } else if (package->shape().effects.lights == 0 &&
+               (settings.sun == compiler::Sun::On ||
+                std::ranges::any_of(build.scenes->scenes().front().lights, [](const gltf::Light& light) {
+                    return light.shines() || light.canShine;
+                }))) {
+        console.report(Diagnostic{Severity::Note, "effect-absent", settings.package,
+                                  "has no effect shadow, so the lights of the picture cast no shadows",
+                                  "compile it with --effects auto,shadow, or render with --no-sun"});
+    }
+    report.alpha = nameOf(package->alpha());
+    report.cases = package->caseCount();
+    for (const package::CaseEntry& entry : package->cases()) {
+        report.caseNames.emplace_back(package->string(entry.name));
+    }
     return package;
 }
 
-Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments,
-                                             const std::optional<Package>& given) {
-    HeadlessOptions options = measure::deviceOptions(settingsOf(arguments));
+Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments, const Package* given) {
+    HeadlessOptions options = scene_view::deviceOptions(settingsOf(arguments));
     options.pipelineStatistics = options.pipelineStatistics || arguments.pipelineStatistics;
-    if (given) {
+    if (given != nullptr) {
         inspect::requirePackage(*given, options);
     }
     return Context::createHeadless(options);
@@ -197,19 +192,16 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
 
 // Reads the scene's images in the formats of the device. Those that are compressed for it stay in the cache
 // of compiled modules.
-Status readTextures(const Console& console, const RenderArguments& arguments, const Context& context,
-                    const Package& package, const gltf::Scene& scene, CompileCache& cache,
-                    scene_view::SceneViewData& data, RenderReport& report) {
+Result<std::shared_ptr<const scene_view::TextureSet>> readTextures(
+    const Console& console, const RenderArguments& arguments, const Context& context, const Package& package,
+    const gltf::Scene& scene, CompileCache& cache, RenderReport& report) {
     console.progress("reading textures of " + arguments.scene);
-    GLINT_TRY(auto textures, scene_view::loadTextures(
-                                 scene, measure::textureOptions(arguments, context, package, cache.store())));
+    GLINT_TRY(auto textures,
+              scene_view::loadTextures(
+                  scene, scene_view::textureOptions(arguments, context, package, cache.store())));
     console.report(textures->notes);
     report.start.texturesMs = textures->milliseconds;
-    const std::uint32_t found = textures->found;
-    scene_view::useTextures(std::move(textures), data);
-    report.textures = textureReport(data.images);
-    report.textures.found = found;
-    return okStatus();
+    return textures;
 }
 
 // Chooses the camera for an animated scene. A camera that frames everything frames all that is visible at any
@@ -224,20 +216,18 @@ Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movem
     if (scene_view::framesEverything(scene, arguments.camera)) {
         // This many moments show well enough how far the scene moves.
         constexpr std::size_t kMostMoments = 64;
-        const std::size_t step = (movement->moments.size() + kMostMoments - 1) / kMostMoments;
-        for (std::size_t i = 0; i < movement->moments.size(); i += step) {
-            scene_view::applyPose(
-                scene_view::poseAt(scene, movement->animations, movement->moments[i].seconds), scene);
+        const std::size_t step = (movement->seconds.size() + kMostMoments - 1) / kMostMoments;
+        for (std::size_t i = 0; i < movement->seconds.size(); i += step) {
+            scene_view::moveTo(movement->moment(i), scene);
             scene_view::poseSceneView(scene, data);
             bounds = scene_view::united(bounds, scene_view::posedBounds(scene, data));
         }
     }
-    scene_view::applyPose(scene_view::poseAt(scene, movement->animations, movement->moments.front().seconds),
-                          scene);
+    scene_view::moveTo(movement->moment(0), scene);
     Result<scene_view::CameraChoice> camera =
         scene_view::chooseCameraAround(scene, bounds, arguments.camera, aspect);
     // The package must not depend on which frames are rendered.
-    scene_view::applyPose(scene_view::restPose(scene), scene);
+    scene_view::moveTo(std::nullopt, scene);
     return camera;
 }
 
@@ -257,11 +247,12 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
 }
 
 // Does all the work between reading the scene and writing the files.
-Status render(const Console& console, const RenderArguments& arguments, gltf::Scene& scene,
-              std::optional<Package> given, CompileCache& cache, RenderReport& report) {
+Status render(const Console& console, const RenderArguments& arguments, scene_view::Opened opened,
+              CompileCache& cache, RenderReport& report) {
+    gltf::Scene& scene = opened.scene;
     GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
     GLINT_TRY(const auto compared, readReference(arguments));
-    scene_view::SceneViewData data = measure::sceneView(arguments, scene);
+    scene_view::SceneViewData data = scene_view::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
     GLINT_TRY(const auto camera, chooseView(movement, arguments, scene, data, aspect));
     report.camera = camera.name;
@@ -272,34 +263,29 @@ Status render(const Console& console, const RenderArguments& arguments, gltf::Sc
     report.sceneInFile = gltf::sceneInFile(scene);
     // This comes before the compilation, which takes longer than finding out that there is no device.
     const base::Clock::time_point begin = base::Clock::now();
-    GLINT_TRY(const auto context, makeContext(arguments, given));
+    GLINT_TRY(const auto context, makeContext(arguments, opened.package.get()));
     PipelineCacheFile pipelineCache(console, *context,
                                     pipelineCacheFolder(arguments.pipelines, arguments.cache));
     report.start.deviceMs = base::millisecondsSince(begin);
     report.device = context->deviceName();
     report.driver = context->driverName();
-    GLINT_TRY(const auto build,
-              resolve(console, arguments, *context, scene, given ? &*given : nullptr, report));
+    GLINT_TRY(const auto build, resolve(console, arguments, *context, scene, opened.package.get(), report));
     if (console.refused()) {
         return okStatus();
     }
     console.progress("compiling " + arguments.scene);
-    GLINT_TRY(const auto package, obtainPackage(console, build, std::move(given), cache.modules(), report));
-    GLINT_TRY(const auto environment, obtainEnvironment(console, arguments, *context, package, report));
-    data.packageScene = scene_view::sceneIn(package, scene).value_or(0);
-    scene_view::useLayoutOf(package, scene, data);
-    GLINT_TRY_DO(readTextures(console, arguments, *context, package, scene, cache, data, report));
+    GLINT_TRY(auto package, obtainPackage(console, build, opened.package, cache.modules(), report));
+    GLINT_TRY(const auto environment, obtainEnvironment(console, arguments, *context, *package, report));
+    GLINT_TRY(const auto textures,
+              readTextures(console, arguments, *context, *package, scene, cache, report));
+    scene_view::usePackage(*package, scene, textures, data);
+    report.textures = textureReport(data.images);
+    report.textures.found = textures->found;
     cache.close(console);
-    report.alpha = nameOf(package.alpha());
-    report.cases = package.caseCount();
-    for (const package::CaseEntry& entry : package.cases()) {
-        report.caseNames.emplace_back(package.string(entry.name));
-    }
     console.progress("rendering " + arguments.scene);
     const FrameSetup setup{console,
                            arguments,
                            build.settings,
-                           measure::rendererOptions(build.settings),
                            environment.get(),
                            movement,
                            camera,
@@ -315,10 +301,10 @@ Status render(const Console& console, const RenderArguments& arguments, gltf::Sc
         if (console.refused()) {
             return false;
         }
-        const Status ordered = checkOrder(report);
-        return ordered ? Result<bool>(true) : Result<bool>(ordered.error());
+        GLINT_TRY_DO(checkOrder(report));
+        return true;
     };
-    GLINT_TRY_DO(renderFrames(*context, package, setup, scene, data, accept, report));
+    GLINT_TRY_DO(renderFrames(*context, std::move(package), setup, scene, std::move(data), accept, report));
     pipelineCache.save();
     if (!pipelineCache.path().empty()) {
         report.pipelines.cache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
@@ -327,12 +313,11 @@ Status render(const Console& console, const RenderArguments& arguments, gltf::Sc
     if (console.refused()) {
         return okStatus();
     }
-    Status done = writeResults(arguments, report);
-    if (!done || arguments.profileOutput.empty()) {
-        return done;
-    }
+    GLINT_TRY_DO(writeResults(arguments, report));
     std::vector<Diagnostic> warnings;
-    done = writeProfile(arguments.profileOutput, build, report.hits, warnings);
+    Status done = arguments.profileOutput.empty()
+                      ? okStatus()
+                      : writeProfile(arguments.profileOutput, build, report.hits, warnings);
     console.report(warnings);
     return done;
 }
@@ -340,16 +325,9 @@ Status render(const Console& console, const RenderArguments& arguments, gltf::Sc
 Status readAndRender(const Console& console, const RenderArguments& arguments, RenderReport& report) {
     console.progress("reading " + arguments.scene);
     CompileCache cache(arguments.cache, "");
-    std::optional<Package> given;
-    if (!arguments.package.empty()) {
-        GLINT_TRY(given, Package::load(arguments.package));
-    }
-    GLINT_TRY(const auto import,
-              importOptions(arguments, ImageReading::Files, cache.store(), given ? &*given : nullptr));
-    GLINT_TRY(auto scene, importScene(arguments.scene, import));
-    console.report(scene.warnings);
-    return console.refused() ? okStatus()
-                             : render(console, arguments, scene, std::move(given), cache, report);
+    GLINT_TRY(auto opened, scene_view::open(arguments.scene, arguments, cache.store()));
+    console.report(opened.scene.warnings);
+    return console.refused() ? okStatus() : render(console, arguments, std::move(opened), cache, report);
 }
 
 int run(const Console& console, const RenderArguments& arguments) {

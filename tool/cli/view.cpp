@@ -43,9 +43,6 @@ view::Request requestOf(const Console& console, const ViewArguments& arguments, 
     request.observer = &console;
     request.modules = cache.modules();
     request.store = cache.store();
-    request.importOptions = [&cache](const compiler::Settings& settings, const Package* package) {
-        return importOptions(settings, ImageReading::Files, cache.store(), package);
-    };
     request.explain = [](const compiler::Build& build, int material) {
         std::vector<view::Field> fields;
         for (const std::vector<std::string>& row : materialRows(build, material, Detail::Whole)) {

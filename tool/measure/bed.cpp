@@ -1,3 +1,5 @@
+#include "cache/store.h"
+#include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "settings/descriptor.h"
 #include "spirv/compiler.h"
@@ -5,11 +7,8 @@
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
 #include <glint/measure/point.h>
-#include <glint/measure/render_settings.h>
 #include <glint/measure/target.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/environment.h>
-#include <glint/scene_view/package.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,7 +21,7 @@ namespace {
 
 // Opens the device with as many of its optional features as possible, for the default and the sweep.
 Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, DeviceOptions& features) {
-    const HeadlessOptions wanted = deviceOptions(render);
+    const HeadlessOptions wanted = scene_view::deviceOptions(render);
     HeadlessOptions options = wanted;
     Result<std::unique_ptr<Context>> context = Diagnostic{};
     for (const DeviceOptions tried :
@@ -134,11 +133,10 @@ Result<LinearImage> Mount::exposeSamples(std::uint32_t seed, std::uint32_t sampl
 }
 
 Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, const compiler::Settings& base,
-                                                   const gltf::Scene& scene, const SceneReader& reader,
-                                                   compiler::ModuleCache* cache,
+                                                   const gltf::Scene& scene, compiler::ModuleCache* cache,
                                                    compiler::CacheStore* store) {
-    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, reader, cache, store));
-    const scene_view::SceneViewData data = sceneView(base, scene);
+    std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache, store));
+    const scene_view::SceneViewData data = scene_view::sceneView(base, scene);
     GLINT_TRY(const auto camera,
               scene_view::chooseCamera(scene, data, base.camera,
                                        static_cast<double>(base.renderer.width) / base.renderer.height));
@@ -147,7 +145,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     }
     bed->camera_ = camera.view;
     bed->cameraName_ = camera.name;
-    bed->sky_ = chooseSky(base, scene, data);
+    bed->sky_ = scene_view::chooseSky(base, scene, data);
     bed->size_ = sizeOf(data);
     bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
     GLINT_TRY(bed->context_, openDevice(base, bed->features_));
@@ -183,11 +181,13 @@ Status BenchBed::resolveBase() {
 
 // A package that does not rely on what textures hold needs a scene that was read accordingly.
 Result<std::shared_ptr<const gltf::SceneList>> BenchBed::scenesFor(const Package* package) {
-    if (package == nullptr || package->trustTextures() == scene_.trustsTextures || !reader_) {
+    if (package == nullptr || package->trustTextures() == scene_.trustsTextures) {
         return list_;
     }
     if (!otherScene_) {
-        GLINT_TRY(auto read, reader_(package->trustTextures()));
+        GLINT_TRY(const auto import,
+                  scene_view::importOptions(base_, scene_view::ImageReading::Files, store_, package));
+        GLINT_TRY(auto read, importScene(scene_.path, import));
         otherScene_ = std::make_unique<const gltf::Scene>(std::move(read));
         otherList_ = std::make_shared<const gltf::SceneList>(std::span(otherScene_.get(), 1));
     }
@@ -197,41 +197,25 @@ Result<std::shared_ptr<const gltf::SceneList>> BenchBed::scenesFor(const Package
 Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const compiler::Build& build,
                                                                          const Package& package) {
     const gltf::Scene& scene = build.scenes->scenes().front();
-    const scene_view::TextureOptions options = textureOptions(build.settings, *context_, package, store_);
+    const scene_view::TextureOptions options =
+        scene_view::textureOptions(build.settings, *context_, package, store_);
     std::shared_ptr<const scene_view::TextureSet>& known =
         textures_[{&scene, options.fit.compress, options.fit.decodeEmission}];
     if (!known) {
-        Result<std::shared_ptr<const scene_view::TextureSet>> loaded =
-            scene_view::loadTextures(scene, options);
-        if (!loaded) {
-            return loaded;
-        }
-        observer_.report((*loaded)->notes);
-        known = std::move(*loaded);
+        GLINT_TRY(known, scene_view::loadTextures(scene, options));
+        observer_.report(known->notes);
     }
     return known;
 }
 
-Result<std::shared_ptr<MountedPackage>> BenchBed::mountPackage(const compiler::Build& build,
-                                                               std::optional<Package> given) {
-    const compiler::Settings& settings = build.settings;
+Result<scene_view::DeviceScene> BenchBed::mountScene(const compiler::Build& build,
+                                                     std::shared_ptr<const Package> given) {
     const gltf::Scene& scene = build.scenes->scenes().front();
-    auto mounted = std::make_shared<MountedPackage>();
-    mounted->settings = settings;
-    if (given) {
-        GLINT_TRY_DO(scene_view::checkPackage(*given, build));
-        mounted->package = std::make_unique<Package>(std::move(*given));
-    } else {
-        GLINT_TRY(auto compiled, scene_view::compileAndLoad(build, cache_));
-        mounted->package = std::make_unique<Package>(std::move(compiled));
-    }
-    scene_view::SceneViewData data = sceneView(settings, scene);
-    data.packageScene = scene_view::sceneIn(*mounted->package, scene).value_or(0);
-    scene_view::useLayoutOf(*mounted->package, scene, data);
-    GLINT_TRY(auto images, textures(build, *mounted->package));
-    useTextures(std::move(images), data);
-    GLINT_TRY(mounted->scene, GpuScene::upload(*context_, *mounted->package, data.view()));
-    return mounted;
+    GLINT_TRY(auto package, scene_view::packageFor(build, std::move(given), cache_));
+    GLINT_TRY(auto images, textures(build, *package));
+    scene_view::SceneViewData data = scene_view::sceneView(build.settings, scene);
+    scene_view::usePackage(*package, scene, std::move(images), data);
+    return scene_view::DeviceScene::upload(*context_, std::move(package), std::move(data));
 }
 
 Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, const std::string& package) {
@@ -260,38 +244,34 @@ Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t f
 }
 
 Result<Mount> BenchBed::mount(const compiler::Settings& asked) {
-    std::optional<Package> given;
-    if (!asked.package.empty()) {
-        GLINT_TRY(given, Package::load(asked.package));
-    }
-    GLINT_TRY(auto scenes, scenesFor(given ? &*given : nullptr));
-    GLINT_TRY(const auto target,
-              targetOf(asked, *context_, given ? &*given : nullptr, scenes->scenes().front()));
+    GLINT_TRY(auto given, scene_view::givenPackage(asked));
+    GLINT_TRY(auto scenes, scenesFor(given.get()));
+    GLINT_TRY(const auto target, targetOf(asked, *context_, given.get(), scenes->scenes().front()));
     GLINT_TRY(const auto build, resolve(std::move(scenes), asked, target));
     const compiler::Settings& settings = build.settings;
     Mount mount;
-    for (const std::weak_ptr<MountedPackage>& known : packages_) {
-        const std::shared_ptr<MountedPackage> package = known.lock();
-        if (package && changeBetween(package->settings, settings) < compiler::Change::Build) {
-            mount.package_ = package;
+    for (const Known& known : known_) {
+        const std::shared_ptr<const scene_view::DeviceScene> scene = known.scene.lock();
+        if (scene && changeBetween(known.settings, settings) < compiler::kChangesUpload) {
+            mount.scene_ = scene;
         }
     }
-    if (!mount.package_) {
-        GLINT_TRY(mount.package_, mountPackage(build, std::move(given)));
-        packages_.push_back(mount.package_);
+    if (!mount.scene_) {
+        GLINT_TRY(auto scene, mountScene(build, std::move(given)));
+        mount.scene_ = std::make_shared<const scene_view::DeviceScene>(std::move(scene));
     }
-    for (const KnownRenderer& known : renderers_) {
-        if (known.package.lock() == mount.package_ &&
-            changeBetween(known.settings, settings) < compiler::Change::Renderer) {
+    for (const Known& known : known_) {
+        if (known.scene.lock() == mount.scene_ &&
+            changeBetween(known.settings, settings) < compiler::kChangesRenderer) {
             mount.renderer_ = known.renderer.lock();
         }
     }
     if (!mount.renderer_) {
-        GLINT_TRY(mount.renderer_, Renderer::create(*context_, *mount.package_->package,
-                                                    *mount.package_->scene, rendererOptions(settings)));
-        renderers_.push_back({mount.package_, mount.renderer_, settings});
+        GLINT_TRY(mount.renderer_,
+                  mount.scene_->makeRenderer(*context_, scene_view::rendererOptions(settings)));
+        known_.push_back({settings, mount.scene_, mount.renderer_});
     }
-    mount.frame_ = frameOptions(settings, camera_, sky_, environment_.get());
+    mount.frame_ = scene_view::frameOptions(settings, camera_, sky_, environment_.get());
     mount.samples_ = settings.samples;
     mount.ordersHits_ = (*settings.strategy & package::orderedStrategies()) != 0;
     return mount;

@@ -1,7 +1,6 @@
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/json.h"
-#include "measure/calibration_group.h"
 #include "measure/calibration_measure.h"
 #include "measure/report_json.h"
 
@@ -211,7 +210,7 @@ private:
 }  // namespace
 
 Result<std::unique_ptr<Context>> openCalibrationDevice(const compiler::Settings& render) {
-    return Context::createHeadless(deviceOptions(render));
+    return Context::createHeadless(scene_view::deviceOptions(render));
 }
 
 Status runCalibration(const Observer& observer, const CalibrationSettings& settings, Context& context,

@@ -4,10 +4,12 @@
 #include "image/image_file.h"
 #include "image/tone.h"
 #include "measure/rounds.h"
+#include "resolve/resolve.h"
 #include "synthetic/coherence.h"
 
 #include <glint/measure/bed.h>
-#include <glint/measure/render_settings.h>
+#include <glint/measure/machine.h>
+#include <glint/scene_view/camera.h>
 
 #include <fmt/format.h>
 
@@ -18,6 +20,90 @@
 #include <utility>
 
 namespace glint::measure {
+
+namespace {
+
+package::Effect effectOf(synthetic::Coherence coherence) {
+    return compiler::builtinEffects(
+        {coherence == synthetic::Coherence::Coherent ? "reflection" : "indirect-diffuse"});
+}
+
+compiler::Settings settingsOf(const CalibrationSettings& settings, std::uint32_t tracers) {
+    compiler::Settings asked = settings.render;
+    asked.profile.clear();
+    asked.packLobes.clear();
+    asked.compile.plan = {};
+    asked.compile.plan.merge = compiler::MergePolicy::None;
+    asked.alpha = package::AlphaPolicy::Opaque;
+    asked.sun = compiler::Sun::Off;
+    asked.strategy = package::strategyTable().front().strategy;
+    for (const std::string& strategy : strategiesFor(tracers)) {
+        asked.furtherStrategies |= *valueNamed<package::Strategy>(strategy);
+    }
+    // The settings cover scenes with both kinds of rays, so that they can share a package.
+    asked.compile.effects = {false, compiler::builtinEffects({"reflection", "indirect-diffuse"})};
+    if (settings.shadows) {
+        asked.compile.effects.named |= compiler::builtinEffects({"shadow"});
+    }
+    return asked;
+}
+
+// Returns the size of the code of each case's own shader.
+std::vector<CaseWork> workOf(const compiler::CompiledPackage& compiled) {
+    std::vector<CaseWork> work(compiled.plan.cases.size());
+    for (const compiler::CompiledModule& module : compiled.modules) {
+        if (package::findRole(module.key.role)->over == package::Over::Buckets) {
+            CaseWork& one = work[module.key.index];
+            one.instructions = module.statistics.instructions;
+            one.fetches = module.statistics.textureFetches;
+        }
+    }
+    return work;
+}
+
+}  // namespace
+
+std::vector<std::string> strategiesFor(std::uint32_t tracers) {
+    std::vector<std::string> names;
+    for (const package::Strategy strategy : package::strategies()) {
+        const bool pipelineOnly = (strategy & package::pipelineStrategies()) != 0;
+        if (!pipelineOnly || (tracers & package::kTracerRayPipeline) != 0) {
+            names.emplace_back(package::nameOf(strategy));
+        }
+    }
+    return names;
+}
+
+Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uint32_t tracers,
+                                   std::vector<synthetic::CasesOptions> options,
+                                   compiler::ModuleCache* cache) {
+    CompiledGroup group;
+    for (const synthetic::CasesOptions& one : options) {
+        group.scenes.push_back(synthetic::makeCasesScene(one));
+    }
+    group.options = std::move(options);
+    GLINT_TRY(const auto build,
+              compiler::resolve(group.scenes, settingsOf(settings, tracers), {.tracers = tracers}));
+    group.settings = build.settings;
+    GLINT_TRY(group.package, compilePackage(build, cache));
+    return group;
+}
+
+Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled) {
+    CalibrationGroup group;
+    group.work = workOf(compiled.package);
+    GLINT_TRY(group.package, scene_view::loadPackage(compiled.package));
+    for (std::size_t i = 0; i < compiled.scenes.size(); ++i) {
+        const gltf::Scene& scene = compiled.scenes[i];
+        const synthetic::CasesOptions& options = compiled.options[i];
+        GLINT_TRY(const auto camera, scene_view::sceneCamera(scene, 0, options.aspect));
+        scene_view::SceneViewData data = scene_view::sceneView(compiled.settings, scene);
+        data.packageScene = static_cast<std::uint32_t>(i);
+        GLINT_TRY(auto uploaded, scene_view::DeviceScene::upload(context, group.package, std::move(data)));
+        group.scenes.push_back({options, std::move(uploaded), camera, effectOf(options.coherence)});
+    }
+    return group;
+}
 
 namespace {
 
@@ -65,14 +151,14 @@ public:
                   const CalibrationSettings& settings, const PointOptions& options)
         : context_(context), group_(group), scene_(scene), settings_(settings), options_(options) {
         sizeFor(options.rays, entry_.width, entry_.height);
-        frame_ = frameOptions(settings.render, scene.camera, scene_view::SkyChoice{}, nullptr);
+        frame_ = scene_view::frameOptions(settings.render, scene.camera, scene_view::SkyChoice{}, nullptr);
         frame_.effects = scene.effect;
     }
 
     Result<CalibrationEntry> run() {
         describe();
         GLINT_TRY_DO(makeRunners());
-        const bool onCpu = context_.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
+        const bool onCpu = isOnCpu(context_);
         entry_.samples = onCpu ? 1 : samplesFor(uberMs_);
         std::mt19937_64 random(options_.seed);
         for (std::uint32_t round = 0; !runners_.empty() && round < options_.rounds; ++round) {
@@ -135,7 +221,7 @@ private:
         asked.renderer.height = entry_.height;
         asked.renderer.bands = 1;  // the model is that of one list
         Result<std::unique_ptr<Renderer>> renderer =
-            Renderer::create(context_, *group_.package, *scene_.scene, rendererOptions(asked));
+            scene_.scene.makeRenderer(context_, scene_view::rendererOptions(asked));
         if (!renderer) {
             measure.skipped = renderer.error().message;
             return okStatus();
@@ -152,28 +238,24 @@ private:
 
     Status renderFirst(Renderer& renderer, StrategyMeasure& measure) {
         const base::Clock::time_point start = base::Clock::now();
-        Result<LinearImage> image = renderer.render(frame_, 1);
-        if (!image) {
-            return image.error();
-        }
+        GLINT_TRY(auto image, renderer.render(frame_, 1));
         measure.firstMs = base::millisecondsSince(start);
         GLINT_TRY(const auto counters, renderer.counters());
         countHits(counters);
         if (runners_.size() > 1) {
-            measure.difference = differenceOf(*image, reference_);
+            measure.difference = differenceOf(image, reference_);
             return okStatus();
         }
-        measure.difference.pixels = image->pixels.size();
-        reference_ = std::move(*image);
+        measure.difference.pixels = image.pixels.size();
+        reference_ = std::move(image);
         if (!options_.picture.empty()) {
             GLINT_TRY_DO(
                 image::writeImage(options_.picture, reference_, image::automaticExposure(reference_)));
         }
         // It renders again, because the first sample may have included compilation.
         GLINT_TRY_DO(renderer.renderSamples(frame_, 1));
-        const Result<double> milliseconds = hitMs(renderer);
-        uberMs_ = milliseconds ? *milliseconds : 0.0;
-        return milliseconds ? okStatus() : Status(milliseconds.error());
+        GLINT_TRY(uberMs_, hitMs(renderer));
+        return okStatus();
     }
 
     // Any strategy gives the number of hits; a strategy that counts hits by case also gives the shares.
@@ -207,11 +289,8 @@ private:
         FrameOptions frame = frame_;
         frame.seed = options_.seed + round;
         for (const std::size_t i : shuffled(runners_.size(), random)) {
-            Status measured = warms ? warmUp(runners_[i], kWarmUp) : okStatus();
-            measured = measured ? measureOnce(runners_[i], frame) : measured;
-            if (!measured) {
-                return measured;
-            }
+            GLINT_TRY_DO(warms ? warmUp(runners_[i], kWarmUp) : okStatus());
+            GLINT_TRY_DO(measureOnce(runners_[i], frame));
         }
         const double uberMs = std::max(runners_.front().roundMs, 1e-9);
         for (const Runner& runner : runners_) {
@@ -222,19 +301,16 @@ private:
         return okStatus();
     }
 
-    Status measureOnce(Runner& runner, const FrameOptions& frame) {
+    Status measureOnce(Runner& runner, FrameOptions frame) {
         double sum = 0.0;
-        Status rendered = runner.renderer->renderSamples(frame, entry_.samples, [&]() -> Status {
-            const Result<double> milliseconds = hitMs(*runner.renderer);
-            sum += milliseconds ? *milliseconds : 0.0;
-            return milliseconds ? okStatus() : Status(milliseconds.error());
-        });
+        const auto addHits = [&]() -> Status {
+            GLINT_TRY(const auto milliseconds, hitMs(*runner.renderer));
+            sum += milliseconds;
+            return okStatus();
+        };
+        GLINT_TRY_DO(runner.renderer->renderSamples(frame, entry_.samples, addHits));
         runner.roundMs = sum / entry_.samples;
-        return rendered ? measureSplit(runner, frame) : rendered;
-    }
-
-    // Measures the passes one by one on one more sample. Measuring each pass keeps passes from overlapping.
-    Status measureSplit(Runner& runner, FrameOptions frame) {
+        // Measures the passes one by one on one more sample, which keeps them from overlapping.
         frame.timing = Timing::Passes;
         GLINT_TRY_DO(runner.renderer->renderSamples(frame, 1));
         GLINT_TRY(const auto passes, runner.renderer->timings());

@@ -1,14 +1,54 @@
-// Measures the strategies at one point: one scene, and one number of rays.
+// Measures the strategies on generated scenes of one number of cases and one cost, which share a package.
 #pragma once
 
-#include "measure/calibration_group.h"
+#include "emit/compile.h"
+#include "synthetic/cases_scene.h"
 
 #include <glint/measure/calibration_report.h>
+#include <glint/measure/strategy_fit.h>
+#include <glint/scene_view/session.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace glint::measure {
+
+// A scene on the device whose rays belong to one effect.
+struct CalibrationScene {
+    synthetic::CasesOptions options;
+    scene_view::DeviceScene scene;
+    CameraView camera;
+    package::Effect effect{};
+};
+
+// The scenes and their package on the host, before the upload.
+struct CompiledGroup {
+    std::vector<synthetic::CasesOptions> options;  // of each scene
+    std::vector<gltf::Scene> scenes;
+    compiler::Settings settings;
+    compiler::CompiledPackage package;  // of every strategy, with a case a key
+};
+
+// The same on the device.
+struct CalibrationGroup {
+    std::shared_ptr<const Package> package;
+    std::vector<CalibrationScene> scenes;
+    std::vector<CaseWork> work;  // by shader ID; no shares
+};
+
+// Returns the strategies that a device with these Tracer bits can run, uber first.
+std::vector<std::string> strategiesFor(std::uint32_t tracers);
+
+// Makes a scene for each of `options`, which differ in coherence alone, and compiles their package with the
+// strategies of strategiesFor(). Has the errors of compilePackage().
+Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uint32_t tracers,
+                                   std::vector<synthetic::CasesOptions> options,
+                                   compiler::ModuleCache* cache);
+
+// Has the errors of each step.
+Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled);
 
 // Chooses a picture of 2 : 1 in whole tiles of the passes, in which each pixel sends a ray.
 void sizeFor(std::uint64_t rays, std::uint32_t& width, std::uint32_t& height);

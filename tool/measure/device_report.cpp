@@ -1,14 +1,13 @@
 #include "measure/device_report.h"
 
 #include "inspect/pipelines.h"
-#include "measure/calibration_group.h"
 #include "measure/calibration_measure.h"
 #include "measure/commit.h"
 #include "measure/report_json.h"
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
-#include <glint/measure/render_settings.h>
+#include <glint/scene_view/session.h>
 
 #include <fmt/format.h>
 
@@ -44,7 +43,7 @@ std::uint64_t raysOf(bool quick, bool onCpu) {
 }
 
 Result<std::unique_ptr<Context>> open(const compiler::Settings& render, bool positionFetch, bool float16) {
-    HeadlessOptions options = deviceOptions(render);
+    HeadlessOptions options = scene_view::deviceOptions(render);
     options.pipelineStatistics = true;
     options.positionFetch = positionFetch;
     options.shaderFloat16 = float16;
@@ -134,7 +133,7 @@ private:
     // out with its reason.
     Result<base::Json> measureScene(const gltf::Scene& scene) {
         observer_.progress("timing the scene");
-        GLINT_TRY(const auto bed, BenchBed::create(observer_, settings_.render, scene, {}, cache_, store_));
+        GLINT_TRY(const auto bed, BenchBed::create(observer_, settings_.render, scene, cache_, store_));
         base::Json strategies = base::Json::array();
         for (const package::StrategyInfo& info : package::strategyTable()) {
             GLINT_TRY(auto measured, measureStrategy(*bed, std::string(info.name)));

@@ -1,7 +1,6 @@
 #include "base/text.h"
 #include "settings/descriptor.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/report.h>
 
 #include <fmt/format.h>

@@ -5,8 +5,6 @@
 #include "measure/commit.h"
 #include "settings/descriptor.h"
 
-#include <glint/measure/render_settings.h>
-
 #include <fmt/format.h>
 
 #include <cmath>

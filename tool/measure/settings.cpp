@@ -1,16 +1,75 @@
+#include "resolve/light.h"
 #include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
+#include <glint/scene_view/session.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace glint::measure {
 
 namespace {
+
+// Returns `--effects` for everything that rays find: the effects that the scene calls for, those that refine
+// the light of the sky by rays, and those of packs that the user names. Effects that approximate the light of
+// rays are left out.
+std::string rayEffects(const compiler::EffectRequest& request) {
+    std::string words = "auto";
+    for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
+        if (effect.kind == package::EffectKind::Rays && !effect.refines.empty()) {
+            words += "," + effect.name;
+        }
+    }
+    for (const std::string& name : request.ofPacks) {
+        words += "," + name;
+    }
+    return words;
+}
+
+std::set<std::string, std::less<>> namesOfChosen(const compiler::EffectPlan& plan) {
+    std::set<std::string, std::less<>> names;
+    for (const compiler::EffectDecision& decision : plan.decisions) {
+        if (decision.chosen) {
+            names.insert(decision.name);
+        }
+    }
+    return names;
+}
+
+// Adds what packages of the same scenes would have with other settings.
+void addAlternatives(const compiler::Build& build, compiler::BenchFacts& facts) {
+    compiler::CompileSettings asked = build.settings.compile;
+    asked.emissiveLights = build.asked.compile.emissiveLights;
+    asked.skyLight = build.asked.compile.skyLight;
+    asked.sizedLights = build.asked.compile.sizedLights;
+    asked.lightSamples.reset();
+    const auto planWith = [&](const auto& change) {
+        compiler::CompileSettings settings = asked;
+        change(settings);
+        return planLight(*build.scenes, settings);
+    };
+    facts.lightsMayEmit =
+        planWith([](auto& settings) { settings.emissiveLights = compiler::EmissiveLights::On; }).ok();
+    facts.skyMayLight = planWith([](auto& settings) { settings.skyLight = compiler::SkyLight::On; }).ok();
+    facts.sizedMayShow =
+        planWith([](auto& settings) { settings.sizedLights = compiler::SizedLights::On; }).ok();
+    if (const auto plan = planWith([](auto& settings) { settings.effects.maxReflectionRoughness = 1.0F; })) {
+        facts.effectsOfAnyRoughness = namesOfChosen(plan->effects);
+        facts.manyLights = plan->samples > 0;
+    }
+    const auto one = planWith([](auto& settings) { settings.maxBounces = 1; });
+    const auto several = planWith([](auto& settings) { settings.maxBounces = 2; });
+    facts.bouncesLight =
+        one && several &&
+        (one->emissive != several->emissive || one->sky != several->sky || one->sized != several->sized);
+}
 
 constexpr std::string_view kMaxRoughness = "max-roughness";
 
@@ -68,6 +127,42 @@ bool ordersHits(std::string_view strategy) {
 }
 
 }  // namespace
+
+compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
+    const gltf::Scene& scene = build.scenes->scenes()[index];
+    const gltf::SceneList::Range range = build.scenes->primitivesOf(index);
+    const compiler::Settings& settings = build.settings;
+    compiler::BenchFacts facts;
+    facts.masks = std::ranges::any_of(scene.materials, [](const materials::Material& material) {
+        return material.alphaMode != materials::AlphaMode::Opaque;
+    });
+    for (std::size_t i = range.first; i < range.first + range.count; ++i) {
+        const materials::PrimitiveInputs& primitive = build.scenes->primitives()[i];
+        const materials::Material& material =
+            build.scenes->materials()[static_cast<std::size_t>(primitive.material)];
+        facts.passesLight = facts.passesLight || material.alphaMode == materials::AlphaMode::Blend ||
+                            compiler::passesLight(material, primitive);
+        // Hits that keep only the lobes of the base lose a lobe.
+        facts.furtherLobes = facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] &
+                                                    materials::kLobeMask & ~compiler::baseLobes()) != 0;
+    }
+    facts.textures = !scene.textures.empty();
+    facts.effects = namesOfChosen(build.plan.effects);
+    facts.sendsRays = build.plan.effects.effects.rays != 0;
+    facts.rayEffects = rayEffects(settings.compile.effects);
+    facts.emits = compiler::countEmitters(*build.scenes, index) > 0;
+    addAlternatives(build, facts);
+    const scene_view::SceneViewData data = scene_view::sceneView(settings, scene);
+    facts.punctualLights = !data.lights.empty();
+    const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
+    facts.directionalLights = directional > 0;
+    facts.placedLights = static_cast<std::size_t>(directional) < data.lights.size();
+    const compiler::LightCounts counts = countLights(*build.scenes, index, settings.compile.emissiveLights);
+    facts.lights = counts.positions + counts.emitters;
+    facts.sizedLights =
+        std::ranges::any_of(data.lights, [](const LightView& light) { return light.size > 0.0F; });
+    return facts;
+}
 
 std::vector<Setting> settingsFor(const compiler::BenchFacts& facts, const compiler::Configuration& base,
                                  bool quick) {

@@ -2,8 +2,9 @@
 #include "inspect/pipelines.h"
 
 #include <glint/measure/device_file.h>
+#include <glint/measure/machine.h>
 #include <glint/measure/target.h>
-#include <glint/scene_view/package.h>
+#include <glint/scene_view/session.h>
 
 #include <fmt/format.h>
 
@@ -87,8 +88,7 @@ Result<compiler::Target> targetOf(const compiler::Settings& settings, Context& c
     compiler::Target target;
     target.tracers = context.handles().tracers;
     const bool isAuto = !settings.strategy;
-    const bool onCpu = context.deviceType() == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    GLINT_TRY(target.costs, knownCosts(settings, onCpu, isAuto));
+    GLINT_TRY(target.costs, knownCosts(settings, isOnCpu(context), isAuto));
     compiler::KnownCosts& costs = target.costs;
     if (costs.builtIn && !costs.gpu && context.subgroupSize() > 0) {
         costs.device.subgroupSize = context.subgroupSize();

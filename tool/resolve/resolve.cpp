@@ -476,9 +476,12 @@ namespace {
 
 Change changeOf(const Descriptor& row) {
     // Settings that `glint compile` also takes change the package.
-    const bool isBuilt =
-        isCompiled(row) || (row.commands & kOfCompile) != 0 || row.stage == SettingStage::Scene;
-    return isBuilt ? Change::Build : row.stage == SettingStage::Renderer ? Change::Renderer : Change::Frame;
+    if (isCompiled(row) || (row.commands & kOfCompile) != 0) {
+        return kChangesPackage;
+    }
+    return row.stage == SettingStage::Scene      ? kChangesUpload
+           : row.stage == SettingStage::Renderer ? kChangesRenderer
+                                                 : kChangesFrame;
 }
 
 bool isOfPictures(const Descriptor& row) {
@@ -487,21 +490,20 @@ bool isOfPictures(const Descriptor& row) {
 
 }  // namespace
 
-Change changeBetween(const Settings& before, const Settings& after) {
-    Change change = before.environment == after.environment && before.package == after.package
-                        ? Change::None
-                        : Change::Build;
+std::uint32_t changeBetween(const Settings& before, const Settings& after) {
+    const bool isSame = before.environment == after.environment && before.package == after.package;
+    std::uint32_t changes = isSame ? 0U : std::uint32_t{kChangesPackage};
     for (const Descriptor& row : settingsTable()) {
         if (isOfPictures(row) && row.values.text(before) != row.values.text(after)) {
-            change = std::max(change, changeOf(row));
+            changes |= changeOf(row);
         }
     }
-    return change;
+    return changes;
 }
 
 Settings withoutRebuilding(Settings built, const Settings& wanted) {
     for (const Descriptor& row : settingsTable()) {
-        if (isOfPictures(row) && changeOf(row) != Change::Build) {
+        if (isOfPictures(row) && changeOf(row) < kChangesUpload) {
             row.values.set(built, row.values.text(wanted));
         }
     }

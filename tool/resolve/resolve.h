@@ -8,6 +8,7 @@
 
 #include <glint/result.h>
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -34,16 +35,17 @@ bool trustsTextures(const Settings& settings, const DecidedPackage* package = nu
 std::vector<std::string> strategyNames(std::uint32_t strategies);
 std::vector<std::string> tracerNames(std::uint32_t tracers);
 
-// The kind of rebuild that a change of settings needs. A later one includes those before it.
-enum class Change : std::uint8_t {
-    None,
-    Frame,     // the picture starts anew
-    Renderer,  // another renderer
-    Build,     // another package, or another upload of the scene
+// What a change of settings makes anew, as bits of a set. A set that is less than kChangesUpload needs
+// neither another upload nor another package.
+enum Change : std::uint32_t {
+    kChangesFrame = 1,     // the picture starts anew
+    kChangesRenderer = 2,  // another renderer
+    kChangesUpload = 4,    // another upload of the scene
+    kChangesPackage = 8,   // another package
 };
-// Returns the kind of rebuild. It follows from the table of settings.
-Change changeBetween(const Settings& before, const Settings& after);
-// Returns the settings of a build with those of `wanted` that need no other build.
+// Returns the set. It follows from the table of settings.
+std::uint32_t changeBetween(const Settings& before, const Settings& after);
+// Returns the settings of a build with those of `wanted` that need no other upload or package.
 Settings withoutRebuilding(Settings built, const Settings& wanted);
 
 }  // namespace glint::compiler

@@ -3,7 +3,7 @@
 #include "gltf/motion/transform.h"
 #include "scene_view/interpolate.h"
 
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <algorithm>
 
@@ -157,6 +157,10 @@ void applyPose(const Pose& pose, gltf::Scene& scene) {
             light.shown = node.shown;
         }
     }
+}
+
+void moveTo(const std::optional<Moment>& moment, gltf::Scene& scene) {
+    applyPose(moment ? poseAt(scene, moment->animations, moment->seconds) : restPose(scene), scene);
 }
 
 std::vector<gltf::Matrix4> jointMatrices(const gltf::Scene& scene, const gltf::Skin& skin) {

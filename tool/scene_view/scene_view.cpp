@@ -1,7 +1,6 @@
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
 
-#include <glint/scene_view/pose.h>
 #include <glint/scene_view/scene_view.h>
 
 #include <algorithm>
@@ -14,8 +13,9 @@ namespace {
 
 using Place = std::array<double, 3>;
 
-LightView toView(const gltf::Light& light, const Place& origin) {
+LightView toView(const gltf::Light& light, const SceneViewData& data) {
     LightView view;
+    view.size = light.type == gltf::LightType::Directional ? data.directionalSize : data.placedSize;
     switch (light.type) {
         case gltf::LightType::Directional:
             view.type = LightView::Type::Directional;
@@ -30,7 +30,7 @@ LightView toView(const gltf::Light& light, const Place& origin) {
     for (std::size_t i = 0; i < 3; ++i) {
         view.intensity[i] = light.shown ? light.color[i] * light.intensity : 0.0F;
     }
-    view.position = base::toFloat3(base::toVector(light.position) - base::toVector(origin));
+    view.position = base::toFloat3(base::toVector(light.position) - base::toVector(data.origin));
     view.direction = light.direction;
     view.range = light.range;
     view.innerConeAngle = light.innerConeAngle;
@@ -402,7 +402,7 @@ void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
     }
     poseMaterials(scene, data);
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        data.lights[i] = toView(scene.lights[i], data.origin);
+        data.lights[i] = toView(scene.lights[i], data);
     }
 }
 

@@ -2,15 +2,16 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "cache/store.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "materials/declarations.h"
 #include "resolve/host.h"
 #include "resolve/layers.h"
 
-#include <glint/measure/render_settings.h>
+#include <glint/measure/settings.h>
 #include <glint/measure/target.h>
-#include <glint/scene_view/package.h>
+#include <glint/scene_view/session.h>
 #include <glint/strategies.h>
 
 #include <fmt/format.h>
@@ -146,11 +147,8 @@ Result<Build> Builder::build(const BuildOrder& order) {
     Build build;
     changed_[order.picture].insert(order.changed.begin(), order.changed.end());
     made_.reset();
-    std::optional<Package> given;
-    if (!order.settings.package.empty()) {
-        GLINT_TRY(given, Package::load(order.settings.package));
-    }
-    GLINT_TRY_DO(readScene(order, given ? &*given : nullptr, build));
+    GLINT_TRY(auto given, scene_view::givenPackage(order.settings));
+    GLINT_TRY_DO(readScene(order, given.get(), build));
     GLINT_TRY_DO(makePackage(order, std::move(given), build));
     GLINT_TRY_DO(readTextures(build));
     wholes_[order.picture].reset();
@@ -165,7 +163,8 @@ Result<Build> Builder::build(const BuildOrder& order) {
 Status Builder::readScene(const BuildOrder& order, const Package* package, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
     const compiler::Settings& settings = order.settings;
-    GLINT_TRY(const auto import, request_.importOptions(settings, package));
+    GLINT_TRY(const auto import,
+              scene_view::importOptions(settings, scene_view::ImageReading::Files, request_.store, package));
     const std::string key =
         fmt::format("{}|{}|{}|{}|{}|{}", order.scene, settings.sceneInFile, settings.variant,
                     settings.strictPaths, import.trustTextures, fmt::join(settings.materials, "|"));
@@ -207,7 +206,7 @@ std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture,
     };
     if (!whole || changed.empty() || !std::ranges::all_of(changed, isGlsl) ||
         whole->strategies != strategies_ || !haveSameFiles(*whole->build.scene, *build.scene) ||
-        changeBetween(whole->build.settings(), build.settings()) == compiler::Change::Build) {
+        changeBetween(whole->build.settings(), build.settings()) >= compiler::kChangesUpload) {
         return std::nullopt;
     }
     return compiler::EarlyShowing{
@@ -220,12 +219,12 @@ std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture,
 }
 
 bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage& early) {
-    Result<Package> loaded = scene_view::loadPackage(early);
+    const Result<std::shared_ptr<const Package>> loaded = scene_view::loadPackage(early);
     if (!loaded) {
         return false;
     }
     Build shown = wholes_[picture]->build;
-    shown.package = std::make_shared<const Package>(std::move(*loaded));
+    shown.package = *loaded;
     const std::lock_guard lock(mutex_);
     Slot& slot = slots_[picture];
     if (ends_ || slot.order || slot.canceled) {
@@ -235,7 +234,7 @@ bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage&
     return true;
 }
 
-Status Builder::makePackage(const BuildOrder& order, std::optional<Package> given, Build& build) {
+Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Package> given, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
     compiler::Settings asked = order.settings;
     // The package also has the strategies that were asked for before, so that a renderer of one of them can
@@ -245,12 +244,13 @@ Status Builder::makePackage(const BuildOrder& order, std::optional<Package> give
     asked.compile.progress = [this](std::size_t done, std::size_t all) {
         say(fmt::format("compiling {} of {}", done, all));
     };
-    GLINT_TRY(const auto target, measure::targetOf(asked, context_, given ? &*given : nullptr, *build.scene));
-    GLINT_TRY(build.resolved, compiler::resolve(list_, asked, target));
-    const compiler::Build& resolved = build.resolved;
+    GLINT_TRY(const auto target, measure::targetOf(asked, context_, given.get(), *build.scene));
+    GLINT_TRY(auto decided, compiler::resolve(list_, asked, target));
+    build.resolved = std::make_shared<const compiler::Build>(std::move(decided));
+    const compiler::Build& resolved = *build.resolved;
     if (given) {
         GLINT_TRY_DO(scene_view::checkPackage(*given, resolved));
-        build.package = std::make_shared<const Package>(std::move(*given));
+        build.package = std::move(given);
         for (const package::PackageLayer& layer : build.package->layers()) {
             build.layers.push_back(layer.name);
         }
@@ -265,8 +265,7 @@ Status Builder::makePackage(const BuildOrder& order, std::optional<Package> give
         if (!compiled) {
             return compiled.error();
         }
-        GLINT_TRY(auto loaded, scene_view::loadPackage(*compiled));
-        build.package = std::make_shared<const Package>(std::move(loaded));
+        GLINT_TRY(build.package, scene_view::loadPackage(*compiled));
         build.instructions.resize(compiled->plan.cases.size());
         for (const compiler::CompiledModule& module : compiled->modules) {
             (module.compiled ? build.modulesCompiled : build.modulesKept) += 1;
@@ -287,7 +286,7 @@ Status Builder::makePackage(const BuildOrder& order, std::optional<Package> give
 
 Status Builder::readTextures(Build& build) {
     scene_view::TextureOptions options =
-        measure::textureOptions(build.settings(), context_, *build.package, request_.store);
+        scene_view::textureOptions(build.settings(), context_, *build.package, request_.store);
     options.fit.allLevels = true;  // so that the coarse ones can be there first
     const std::string key = fmt::format("{} {}", options.fit.compress, options.fit.decodeEmission);
     if (!textures_ || key != texturesKey_) {

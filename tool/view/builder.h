@@ -27,7 +27,7 @@ namespace glint::view {
 
 // The inputs of a picture, apart from the device's copy.
 struct Build {
-    compiler::Build resolved;  // of `scene`
+    std::shared_ptr<const compiler::Build> resolved;  // of `scene`
     std::shared_ptr<const gltf::Scene> scene;
     std::shared_ptr<const Package> package;
     std::shared_ptr<const scene_view::TextureSet> textures;
@@ -40,7 +40,7 @@ struct Build {
 
     // Without `auto`.
     const compiler::Settings& settings() const {
-        return resolved.settings;
+        return resolved->settings;
     }
     // Wall clock.
     double readMs = 0.0;
@@ -93,7 +93,7 @@ private:
     void work();
     Result<Build> build(const BuildOrder& order);
     Status readScene(const BuildOrder& order, const Package* package, Build& build);
-    Status makePackage(const BuildOrder& order, std::optional<Package> given, Build& build);
+    Status makePackage(const BuildOrder& order, std::shared_ptr<const Package> given, Build& build);
     Status readTextures(Build& build);
     std::optional<compiler::EarlyShowing> earlyShowing(std::size_t picture, const Build& build);
     bool publishEarly(std::size_t picture, const compiler::CompiledPackage& early);

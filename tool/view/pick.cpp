@@ -43,7 +43,7 @@ void addRays(Picture& picture, std::size_t pixel, std::vector<Field>& fields) {
 
 // Adds the case's cost by the model, and the length of its code.
 void addCost(const Picture& picture, std::uint32_t shaderId, std::vector<Field>& fields) {
-    const compiler::Build& build = picture.build().resolved;
+    const compiler::Build& build = *picture.build().resolved;
     const compiler::PlanCost cost = costPlan(build.plan, build.settings.compile.plan);
     const auto found =
         std::ranges::find(cost.cases, static_cast<int>(shaderId), &compiler::CaseCost::shaderId);
@@ -91,7 +91,7 @@ Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x
         }
     }
     if (pick.material >= 0) {
-        const compiler::Build& build = picture.build().resolved;
+        const compiler::Build& build = *picture.build().resolved;
         pick.fields.push_back(
             {"material", fmt::format("{}: {}", pick.material, build.scenes->materialName(pick.material))});
         const std::vector<Field> why = request.explain(build, pick.material);

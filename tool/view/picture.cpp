@@ -1,13 +1,9 @@
 #include "view/picture.h"
 
 #include "base/clock.h"
+#include "resolve/resolve.h"
 #include "settings/descriptor.h"
 
-#include <glint/measure/render_settings.h>
-#include <glint/scene_view/environment.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/pose.h>
-#include <glint/scene_view/textures.h>
 #include <glint/texture_stream.h>
 
 #include <fmt/format.h>
@@ -20,18 +16,11 @@ namespace glint::view {
 
 namespace {
 
-// Returns whether both are uploaded in the same way.
-bool uploadsAlike(const compiler::Settings& a, const compiler::Settings& b) {
-    return std::ranges::all_of(compiler::settingsTable(), [&](const compiler::Descriptor& row) {
-        return row.stage != compiler::SettingStage::Scene || row.values.text(a) == row.values.text(b);
-    });
-}
-
 // The picture has the size of its part of the window.
 RendererOptions optionsOf(compiler::Settings settings, std::uint32_t width, std::uint32_t height) {
     settings.renderer.width = width;
     settings.renderer.height = height;
-    return measure::rendererOptions(settings);
+    return scene_view::rendererOptions(settings);
 }
 
 }  // namespace
@@ -53,8 +42,22 @@ Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& not
     return okStatus();
 }
 
-SceneSource Picture::sourceOf(const Build& build) {
-    return {build.settings(), build.scene, build.package, build.textures};
+// Records the upload of a build's scene on any thread. `posed` is null, or the scene in its present pose if
+// it moves.
+Result<Picture::Device> Picture::recordUpload(Context& context, const Build& build,
+                                              const gltf::Scene* posed) {
+    const base::Clock::time_point start = base::Clock::now();
+    const gltf::Scene& scene = posed != nullptr ? *posed : *build.scene;
+    scene_view::SceneViewData data = scene_view::sceneView(build.settings(), scene);
+    data.moves = posed != nullptr;
+    scene_view::usePackage(*build.package, scene, build.textures, data);
+    Device made;
+    made.read = build.scene;
+    GLINT_TRY(made.commands, OneTimeCommands::create(context));
+    GLINT_TRY(made.scene, scene_view::DeviceScene::record(context, build.package, std::move(data),
+                                                          made.commands.handle()));
+    made.recordMs = base::millisecondsSince(start);
+    return made;
 }
 
 // Returns whether the scene on the device can go on with the build's package.
@@ -62,7 +65,8 @@ bool Picture::isSameScene(const Build& build) const {
     // A scene that moves has its materials from the scene with which it was read.
     return isReady() &&
            (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
-           build.textures == build_.textures && uploadsAlike(build.settings(), build_.settings());
+           build.textures == build_.textures &&
+           (changeBetween(build.settings(), build_.settings()) & compiler::kChangesUpload) == 0;
 }
 
 bool Picture::load(const Build& build) {
@@ -70,9 +74,8 @@ bool Picture::load(const Build& build) {
     if (moves || isSameScene(build)) {
         return false;
     }
-    loading_ = std::async(std::launch::async, [&context = context_, source = sourceOf(build)]() mutable {
-        return loadScene(context, std::move(source), nullptr);
-    });
+    loading_ = std::async(std::launch::async,
+                          [&context = context_, build] { return recordUpload(context, build, nullptr); });
     return true;
 }
 
@@ -81,12 +84,9 @@ bool Picture::isLoading() const {
 }
 
 // Makes a renderer for the scene, and submits its upload. Frames in flight go on with the scene before.
-Status Picture::adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame) {
-    Device made;
-    made.loaded = std::move(loaded);
-    GLINT_TRY(made.renderer,
-              Renderer::create(context_, *made.loaded.source.package, *made.loaded.scene, options));
-    GLINT_TRY_DO(made.loaded.commands.submit(context_));
+Status Picture::adopt(Device made, const RendererOptions& options, std::uint64_t frame) {
+    GLINT_TRY(made.renderer, made.scene.makeRenderer(context_, options));
+    GLINT_TRY_DO(made.commands.submit(context_));
     made.uploadedIn = frame;
     if (isReady()) {
         // The frame that follows its upload may not exist yet.
@@ -109,6 +109,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     if (!replaced) {
         return false;  // the scene is uploaded anew; if that fails, too, its error says why
     }
+    device_.scene.package = build.package;
     lastChange_ = fmt::format("package replaced: {} pipelines made, {} kept", replaced->pipelinesMade,
                               replaced->pipelinesKept);
     if (options == options_) {
@@ -120,7 +121,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     if (recordedIn_ == 0 || !device_.renderer->renderSamples(lastFrame_, 1)) {
         return false;
     }
-    GLINT_TRY(device_.renderer, Renderer::create(context_, *build.package, gpuScene(), options));
+    GLINT_TRY(device_.renderer, device_.scene.makeRenderer(context_, options));
     inFlight_.clear();
     lastChange_ = fmt::format("{} pipelines made", device_.renderer->footprint().pipelines);
     return true;
@@ -128,7 +129,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
 
 Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
                         std::vector<Diagnostic>& notes) {
-    std::optional<Result<LoadedScene>> loaded;
+    std::optional<Result<Device>> loaded;
     if (loading_.valid()) {
         loaded = loading_.get();
     }
@@ -139,7 +140,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     if (!replaced) {
         const bool keepsPose = posed_ && build.scene == build_.scene;
         if (!loaded) {
-            loaded = loadScene(context_, sourceOf(build), keepsPose ? posed_.get() : nullptr);
+            loaded = recordUpload(context_, build, keepsPose ? posed_.get() : nullptr);
         }
         if (!*loaded) {
             return loaded->error();
@@ -154,13 +155,13 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
         }
         poseIsNew_ = false;
         lastChange_ = fmt::format("upload recorded in {:.0f} ms, renderer made in {:.0f} ms",
-                                  device_.loaded.milliseconds, base::millisecondsSince(start));
+                                  device_.recordMs, base::millisecondsSince(start));
     }
     build_ = std::move(build);
     beforeEarly_.reset();
     settings_ = build_.settings();
     options_ = options;
-    sky_ = measure::chooseSky(settings_, scene(), data());
+    sky_ = scene_view::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
 }
@@ -170,7 +171,7 @@ bool Picture::showEarly(const Build& early) {
         return false;
     }
     beforeEarly_ = beforeEarly_ ? beforeEarly_ : build_.package;
-    build_.package = early.package;
+    device_.scene.package = build_.package = early.package;
     restart();
     return true;
 }
@@ -180,7 +181,7 @@ Status Picture::takeBackEarly() {
         return okStatus();
     }
     GLINT_TRY([[maybe_unused]] const auto replaced, device_.renderer->replacePackage(beforeEarly_));
-    build_.package = std::exchange(beforeEarly_, nullptr);
+    device_.scene.package = build_.package = std::exchange(beforeEarly_, nullptr);
     restart();
     return okStatus();
 }
@@ -188,24 +189,24 @@ Status Picture::takeBackEarly() {
 Status Picture::change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height) {
     const RendererOptions options = optionsOf(settings, width, height);
     if (options != options_) {
-        GLINT_TRY(device_.renderer, Renderer::create(context_, *build_.package, gpuScene(), options));
+        GLINT_TRY(device_.renderer, device_.scene.makeRenderer(context_, options));
         options_ = options;
         inFlight_.clear();
     }
     settings_ = settings;
-    sky_ = measure::chooseSky(settings_, scene(), data());
+    sky_ = scene_view::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
 }
 
-Status Picture::pose(const std::optional<Moment>& moment, std::uint64_t frame) {
+Status Picture::pose(const std::optional<scene_view::Moment>& moment, std::uint64_t frame) {
     if (moment == moment_) {
         return okStatus();
     }
     if (!posed_) {
         auto copy = std::make_unique<gltf::Scene>(*build_.scene);
         std::swap(posed_, copy);
-        Result<LoadedScene> loaded = loadScene(context_, sourceOf(build_), posed_.get());
+        Result<Device> loaded = recordUpload(context_, build_, posed_.get());
         Status adopted = loaded ? adopt(std::move(*loaded), options_, frame) : Status(loaded.error());
         if (!adopted) {
             posed_.reset();
@@ -213,11 +214,8 @@ Status Picture::pose(const std::optional<Moment>& moment, std::uint64_t frame) {
         }
     }
     moment_ = moment;
-    scene_view::applyPose(moment ? scene_view::poseAt(*posed_, moment->animations, moment->seconds)
-                                 : scene_view::restPose(*posed_),
-                          *posed_);
-    scene_view::poseSceneView(*posed_, *device_.loaded.data);
-    measure::sizeLights(settings_, *device_.loaded.data);
+    scene_view::moveTo(moment, *posed_);
+    scene_view::poseSceneView(*posed_, device_.scene.data);
     poseIsNew_ = true;
     restart();
     return okStatus();
@@ -242,7 +240,7 @@ Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timin
     if (device_.renderer->replacementProgress().ready) {
         restart();
     }
-    FrameOptions frame = measure::frameOptions(settings_, camera, sky_, environment_.get());
+    FrameOptions frame = scene_view::frameOptions(settings_, camera, sky_, environment_.get());
     frame.timing = timing;
     frame.sampleIndex = samples_;
     frame.time = moment_ ? static_cast<float>(moment_->seconds) : 0.0F;
@@ -268,13 +266,13 @@ void Picture::completed(std::uint64_t number) {
     }
     if (isReady() && device_.uploadedIn <= number) {
         gpuScene().complete(number);
-        device_.loaded.commands = OneTimeCommands();
+        device_.commands = OneTimeCommands();
     }
     std::erase_if(retired_, [&](const RetiredDevice& one) { return one.frame <= number; });
 }
 
 std::uint32_t Picture::missingLevels() const {
-    return isReady() ? device_.loaded.scene->textureStream()->progress().textures : 0;
+    return isReady() ? device_.scene.gpu->textureStream()->progress().textures : 0;
 }
 
 bool Picture::takeAllLevels(std::uint64_t completed) {

@@ -2,12 +2,9 @@
 #pragma once
 
 #include "view/builder.h"
-#include "view/scene_load.h"
+#include "view/vulkan.h"
 
-#include <glint/environment.h>
-#include <glint/renderer.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/sky.h>
+#include <glint/scene_view/session.h>
 
 #include <cstdint>
 #include <future>
@@ -17,14 +14,6 @@
 #include <vector>
 
 namespace glint::view {
-
-// The moment of an animation that a picture shows.
-struct Moment {
-    std::vector<std::size_t> animations;  // indices into Scene::animations
-    double seconds = 0.0;
-
-    friend bool operator==(const Moment&, const Moment&) = default;
-};
 
 class Picture {
 public:
@@ -59,7 +48,7 @@ public:
 
     // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move,
     // before the frame `frame`. The device must be idle.
-    Status pose(const std::optional<Moment>& moment, std::uint64_t frame);
+    Status pose(const std::optional<scene_view::Moment>& moment, std::uint64_t frame);
 
     bool isReady() const {
         return device_.renderer != nullptr;
@@ -101,15 +90,15 @@ public:
         return posed_ ? *posed_ : *build_.scene;
     }
     const scene_view::SceneViewData& data() const {
-        return *device_.loaded.data;
+        return device_.scene.data;
     }
     Renderer& renderer() {
         return *device_.renderer;
     }
     GpuScene& gpuScene() {
-        return *device_.loaded.scene;
+        return *device_.scene.gpu;
     }
-    const std::optional<Moment>& moment() const {
+    const std::optional<scene_view::Moment>& moment() const {
         return moment_;
     }
     // Frame number of the last sample.
@@ -122,15 +111,18 @@ public:
     }
 
 private:
-    // A scene on the device. Members are destroyed in reverse order.
+    // A scene on the device, with the commands of its upload. Members are destroyed in reverse order.
     struct Device {
-        LoadedScene loaded;
+        std::shared_ptr<const gltf::Scene> read;  // to which the scene's data point
+        scene_view::DeviceScene scene;
+        OneTimeCommands commands;
         std::unique_ptr<Renderer> renderer;
         std::uint64_t uploadedIn = 0;  // frame that is done after the upload
+        double recordMs = 0.0;         // of wall clock, until the upload was recorded
     };
-    static SceneSource sourceOf(const Build& build);
+    static Result<Device> recordUpload(Context& context, const Build& build, const gltf::Scene* posed);
     bool isSameScene(const Build& build) const;
-    Status adopt(LoadedScene loaded, const RendererOptions& options, std::uint64_t frame);
+    Status adopt(Device made, const RendererOptions& options, std::uint64_t frame);
     Status readEnvironment(const Build& build, std::vector<Diagnostic>& notes);
     Result<bool> replace(Build& build, const RendererOptions& options);
 
@@ -139,7 +131,7 @@ private:
     Build build_;
     std::shared_ptr<const Package> beforeEarly_;  // null: no early package is shown
     std::unique_ptr<gltf::Scene> posed_;          // null until the scene moves
-    std::optional<Moment> moment_;
+    std::optional<scene_view::Moment> moment_;
     bool poseIsNew_ = false;  // the device has another pose
     std::shared_ptr<Environment> environment_;
     std::string environmentKey_;
@@ -154,7 +146,7 @@ private:
     };
     std::vector<RetiredDevice> retired_;
     // The result of load(). Its destructor waits for the thread.
-    std::future<Result<LoadedScene>> loading_;
+    std::future<Result<Device>> loading_;
     RendererOptions options_;
     FrameOptions lastFrame_;  // as recorded last
     std::uint32_t samples_ = 0;

@@ -2,13 +2,11 @@
 #pragma once
 
 #include "cache/module_cache.h"
-#include "gltf/import.h"
 #include "resolve/build.h"
 #include "settings/settings.h"
 
 #include <glint/context.h>
 #include <glint/measure/observer.h>
-#include <glint/package.h>
 #include <glint/result.h>
 
 #include <functional>
@@ -39,8 +37,6 @@ struct Request {
     // The cache of compiled modules; both may be null.
     compiler::ModuleCache* modules = nullptr;
     compiler::CacheStore* store = nullptr;
-    // Says how the scene is read, for a package that is there already if it is not null.
-    std::function<Result<gltf::ImportOptions>(const compiler::Settings&, const Package*)> importOptions;
     // Returns what `glint explain` says of a material, an index into Scene::materials.
     std::function<std::vector<Field>(const compiler::Build&, int)> explain;
     // Called with the device when it is there, and before it goes: the driver's pipelines are kept in a file.

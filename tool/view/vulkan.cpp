@@ -153,6 +153,46 @@ Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuff
     return result == VK_SUCCESS ? okStatus() : Status(callError("vkAllocateCommandBuffers", result));
 }
 
+Result<OneTimeCommands> OneTimeCommands::create(const Context& context) {
+    OneTimeCommands made;
+    made.device_ = context.handles().device;
+    GLINT_TRY_DO(createCommands(context, made.pool_, made.commands_));
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    const VkResult result = vkBeginCommandBuffer(made.commands_, &begin);
+    if (result != VK_SUCCESS) {
+        return callError("vkBeginCommandBuffer", result);
+    }
+    return made;
+}
+
+OneTimeCommands& OneTimeCommands::operator=(OneTimeCommands&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(pool_, other.pool_);
+    std::swap(commands_, other.commands_);
+    return *this;
+}
+
+OneTimeCommands::~OneTimeCommands() {
+    if (pool_ != VK_NULL_HANDLE) {
+        vkDestroyCommandPool(device_, pool_, nullptr);
+    }
+}
+
+Status OneTimeCommands::submit(const Context& context) {
+    VkResult result = vkEndCommandBuffer(commands_);
+    if (result != VK_SUCCESS) {
+        return callError("vkEndCommandBuffer", result);
+    }
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands_;
+    result = vkQueueSubmit(context.handles().queue, 1, &submit, VK_NULL_HANDLE);
+    return result == VK_SUCCESS ? okStatus() : Status(callError("vkQueueSubmit", result));
+}
+
 void recordBarrier(VkCommandBuffer commands) {
     VkMemoryBarrier2 barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;

@@ -76,6 +76,33 @@ private:
 // after an error.
 Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuffer& commands);
 
+// A command buffer that is recorded and submitted once.
+class OneTimeCommands {
+public:
+    // Begins to record.
+    static Result<OneTimeCommands> create(const Context& context);
+    OneTimeCommands() = default;
+    OneTimeCommands(const OneTimeCommands&) = delete;
+    OneTimeCommands& operator=(const OneTimeCommands&) = delete;
+    OneTimeCommands(OneTimeCommands&& other) noexcept {
+        *this = std::move(other);
+    }
+    OneTimeCommands& operator=(OneTimeCommands&& other) noexcept;
+    // The device must be done with the commands.
+    ~OneTimeCommands();
+
+    VkCommandBuffer handle() const {
+        return commands_;
+    }
+    // Submits them to the context's queue, before all that is submitted later.
+    Status submit(const Context& context);
+
+private:
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
 // Records that all commands so far are done, and visible, before all later ones.
 void recordBarrier(VkCommandBuffer commands);
 

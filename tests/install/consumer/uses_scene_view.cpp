@@ -3,8 +3,8 @@
 #include "gltf/import.h"
 
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <cstddef>
 #include <iostream>

@@ -40,24 +40,18 @@ Result<OracleInput> readOracleInput(const SceneChoice& choice, std::uint32_t wid
     gltf::ImportOptions options;
     options.decodeImages = true;
     options.variant = choice.variant;
-    Result<gltf::Scene> scene = gltf::importScene(choice.path, options);
-    if (!scene) {
-        return scene.error();
-    }
-    if (moves(*scene)) {
+    GLINT_TRY(auto scene, gltf::importScene(choice.path, options));
+    if (moves(scene)) {
         return makeError("oracle-moves", choice.path.string(), "has skins or morph targets",
                          "the oracle renders rigid meshes only: use another scene");
     }
-    const scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
-    const Result<scene_view::CameraChoice> camera =
-        scene_view::chooseCamera(*scene, data, choice.camera, static_cast<double>(width) / height);
-    if (!camera) {
-        return camera.error();
+    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    GLINT_TRY(const auto camera,
+              scene_view::chooseCamera(scene, data, choice.camera, static_cast<double>(width) / height));
+    if (scene.lights.empty()) {
+        scene.lights.push_back(sun());
     }
-    if (scene->lights.empty()) {
-        scene->lights.push_back(sun());
-    }
-    return OracleInput{std::move(*scene), camera->view, viewOf(camera->view, width, height)};
+    return OracleInput{std::move(scene), camera.view, viewOf(camera.view, width, height)};
 }
 
 GradientSky defaultSky() {

@@ -86,19 +86,12 @@ Result<Difference> compare(const Settings& settings, const OracleInput& input, c
     }
     std::optional<SceneRenderer> decoding;
     if (!settings.texels.empty()) {
-        const Result<SrgbTable> table = readTexels(settings.texels);
-        if (!table) {
-            return table.error();
-        }
-        decoding.emplace(input.scene, RendererSettings{defaultSky(), settings.mirrorRoughness, *table});
+        GLINT_TRY(const auto table, readTexels(settings.texels));
+        decoding.emplace(input.scene, RendererSettings{defaultSky(), settings.mirrorRoughness, table});
     }
     LinearImage filtered;
     if (!settings.filtered.empty()) {
-        Result<LinearImage> picture = readPicture(settings.filtered, truth);
-        if (!picture) {
-            return picture.error();
-        }
-        filtered = std::move(*picture);
+        GLINT_TRY(filtered, readPicture(settings.filtered, truth));
     }
     return centreDifference(device, truth, renderer, input.view,
                             {decoding ? &*decoding : nullptr, filtered.pixels.empty() ? nullptr : &filtered});
@@ -121,16 +114,13 @@ Result<PathSky> skyOf(const std::string& environment, bool none) {
     if (environment.empty()) {
         return PathSky(none ? GradientSky{} : defaultSky());
     }
-    Result<LinearImage> map = image::readImage(environment);
-    if (!map) {
-        return map.error();
-    }
-    for (auto& pixel : map->pixels) {
+    GLINT_TRY(auto map, image::readImage(environment));
+    for (auto& pixel : map.pixels) {
         for (float& channel : pixel) {
             channel = std::max(channel, 0.0F);
         }
     }
-    return PathSky(std::move(*map));
+    return PathSky(std::move(map));
 }
 
 // Returns the standard errors as an image.
@@ -144,56 +134,40 @@ LinearImage errorsOf(const Picture& picture) {
 
 // Renders all of light transport.
 Status runPaths(const Settings& settings, const OracleInput& input) {
-    const Result<std::uint32_t> bounces = bouncesOf(settings.bounces);
-    if (!bounces) {
-        return bounces.error();
-    }
-    Result<PathSky> sky = skyOf(settings.environment, settings.noSky);
-    if (!sky) {
-        return sky.error();
-    }
+    GLINT_TRY(const auto bounces, bouncesOf(settings.bounces));
+    GLINT_TRY(auto sky, skyOf(settings.environment, settings.noSky));
     PathSettings paths;
-    paths.bounces = *bounces;
+    paths.bounces = bounces;
     paths.shadowThrough = settings.shadowThrough == "opaque"  ? ShadowThrough::Opaque
                           : settings.shadowThrough == "glass" ? ShadowThrough::Glass
                                                               : ShadowThrough::Alpha;
     paths.rouletteFrom = settings.noRoulette ? kUnlimited : settings.rouletteFrom;
     paths.sizes = settings.sizes;
     if (settings.deviceTexels) {
-        const Result<SrgbTable> table = readTexels(settings.texels);
-        if (!table) {
-            return table.error();
-        }
-        paths.srgb = *table;
+        GLINT_TRY(const auto table, readTexels(settings.texels));
+        paths.srgb = table;
     }
-    Result<PathSky> secondSky = *sky;
-    const PathTracer tracer(input.scene, std::move(*sky), paths);
+    Result<PathSky> secondSky = sky;
+    const PathTracer tracer(input.scene, std::move(sky), paths);
     PathSampling sampling = settings.sampling;
     sampling.samples = settings.samples;
     const PathPicture truth = pathPicture(tracer, input.view, sampling);
     if (!settings.picture.empty()) {
-        if (Status status = image::writeImage(settings.picture, toImage(truth.picture), 0.0); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(image::writeImage(settings.picture, toImage(truth.picture), 0.0));
     }
     if (!settings.errors.empty()) {
-        if (Status status = image::writeImage(settings.errors, errorsOf(truth.picture), 0.0); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(image::writeImage(settings.errors, errorsOf(truth.picture), 0.0));
     }
     std::optional<PathDifference> difference;
     if (!settings.against.empty()) {
-        const Result<LinearImage> device = readPicture(settings.against, truth.picture);
-        if (!device) {
-            return device.error();
-        }
+        GLINT_TRY(const auto device, readPicture(settings.against, truth.picture));
         paths.reflectsBelow = true;
         const PathTracer reflectingTracer(input.scene, std::move(*secondSky), paths);
         const PathPicture reflecting = pathPicture(reflectingTracer, input.view, sampling);
-        difference = pathDifference(*device, truth, &reflecting, input.scene, settings.deviceSamples);
+        difference = pathDifference(device, truth, &reflecting, input.scene, settings.deviceSamples);
         if (!settings.difference.empty()) {
             if (Status status = image::writeImage(settings.difference,
-                                                  image::differenceMap(*device, toImage(truth.picture)));
+                                                  image::differenceMap(device, toImage(truth.picture)));
                 !status) {
                 return status;
             }
@@ -210,57 +184,40 @@ Status run(const Settings& settings) {
     if (!settings.writeTexels.empty()) {
         return writeTexelScene(settings.writeTexels);
     }
-    const Result<ImageSize> size = parseSize(settings.size);
-    if (!size) {
-        return size.error();
-    }
-    Result<OracleInput> input = readOracleInput(settings.choice, size->width, size->height);
-    if (!input) {
-        return input.error();
-    }
+    GLINT_TRY(const auto size, parseSize(settings.size));
+    GLINT_TRY(const auto input, readOracleInput(settings.choice, size.width, size.height));
     if (!settings.bounces.empty()) {
-        return runPaths(settings, *input);
+        return runPaths(settings, input);
     }
     RendererSettings look{.sky = defaultSky(), .mirrorRoughness = settings.mirrorRoughness};
     if (settings.deviceTexels) {
-        const Result<SrgbTable> table = readTexels(settings.texels);
-        if (!table) {
-            return table.error();
-        }
-        look.srgb = *table;
+        GLINT_TRY(const auto table, readTexels(settings.texels));
+        look.srgb = table;
     }
-    const SceneRenderer renderer(input->scene, look);
-    const Picture truth = settings.devicePoints ? samplePicture(renderer, input->view, settings.samples)
+    const SceneRenderer renderer(input.scene, look);
+    const Picture truth = settings.devicePoints ? samplePicture(renderer, input.view, settings.samples)
                           : settings.samples == 1
-                              ? centrePicture(renderer, input->view)
-                              : meanPicture(renderer, input->view, strataOf(settings.samples));
+                              ? centrePicture(renderer, input.view)
+                              : meanPicture(renderer, input.view, strataOf(settings.samples));
     if (!settings.picture.empty()) {
-        if (Status status = image::writeImage(settings.picture, toImage(truth), 0.0); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(image::writeImage(settings.picture, toImage(truth), 0.0));
     }
     if (settings.against.empty()) {
         return okStatus();
     }
-    const Result<LinearImage> device = readPicture(settings.against, truth);
-    if (!device) {
-        return device.error();
-    }
-    const Result<Difference> difference = compare(settings, *input, renderer, truth, *device);
-    if (!difference) {
-        return difference.error();
-    }
+    GLINT_TRY(const auto device, readPicture(settings.against, truth));
+    GLINT_TRY(const auto difference, compare(settings, input, renderer, truth, device));
     if (!settings.difference.empty()) {
         if (Status status =
-                image::writeImage(settings.difference, image::differenceMap(*device, toImage(truth)));
+                image::writeImage(settings.difference, image::differenceMap(device, toImage(truth)));
             !status) {
             return status;
         }
     }
-    std::fputs(toText(*difference, settings.list).c_str(), stdout);
-    return settings.json.empty() ? okStatus()
-                                 : base::writeFile(settings.json, toJson(*difference, settings.samples,
-                                                                         settings.deviceSamples));
+    std::fputs(toText(difference, settings.list).c_str(), stdout);
+    return settings.json.empty()
+               ? okStatus()
+               : base::writeFile(settings.json, toJson(difference, settings.samples, settings.deviceSamples));
 }
 
 int parseAndRun(int argc, char** argv) {

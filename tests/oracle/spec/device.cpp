@@ -192,13 +192,7 @@ Device::Device(const Rows& rows, const DeviceOptions& options)
     RendererOptions wanted;
     wanted.strategy = package::kStrategyUber;
     wanted.width = wanted.height = options.size;
-    Result<std::unique_ptr<Renderer>> renderer =
-        Renderer::create(testing::sharedContext(), loaded_->package(), loaded_->gpuScene(), wanted);
-    if (!renderer) {
-        ADD_FAILURE() << toString(renderer.error());
-        return;
-    }
-    renderer_ = std::move(*renderer);
+    renderer_ = loaded_->makeRenderer(wanted);
 }
 
 Device::~Device() {

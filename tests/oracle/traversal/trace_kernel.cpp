@@ -46,15 +46,9 @@ struct Pushed {
 Result<std::unique_ptr<TraceKernel>> TraceKernel::create(Context& context, VkDescriptorSetLayout layout,
                                                          std::size_t rays) {
     Context::State& state = context.state();
-    Result<CommandRunner> runner = CommandRunner::create(state);
-    if (!runner) {
-        return runner.error();
-    }
-    Result<Timer> timer = Timer::create(state, 1);
-    if (!timer) {
-        return timer.error();
-    }
-    std::unique_ptr<TraceKernel> kernel(new TraceKernel(state, std::move(*runner), std::move(*timer)));
+    GLINT_TRY(auto runner, CommandRunner::create(state));
+    GLINT_TRY(auto timer, Timer::create(state, 1));
+    std::unique_ptr<TraceKernel> kernel(new TraceKernel(state, std::move(runner), std::move(timer)));
     constexpr VkBufferUsageFlags kUsage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     Result<Buffer> input = createBuffer(state, kernel->pool_, rays * sizeof(Ray), kUsage, MemoryUse::Upload);
     Result<Buffer> output =
@@ -64,9 +58,7 @@ Result<std::unique_ptr<TraceKernel>> TraceKernel::create(Context& context, VkDes
     }
     kernel->rays_ = std::move(*input);
     kernel->distances_ = std::move(*output);
-    if (Status status = kernel->createPipeline(layout); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(kernel->createPipeline(layout));
     return kernel;
 }
 
@@ -85,48 +77,33 @@ Status TraceKernel::createPipeline(VkDescriptorSetLayout layout) {
         return vulkanError("vkCreatePipelineLayout", result);
     }
     layout_ = UniquePipelineLayout(context_, handle);
-    const Result<std::vector<std::uint32_t>> words =
-        compiler::compileShader({"trace", compiler::ShaderStage::Compute, kShader}, {});
-    if (!words) {
-        return words.error();
-    }
-    Result<UniquePipeline> pipeline = createComputePipeline(context_, *words, layout_.get());
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    pipeline_ = std::move(*pipeline);
+    GLINT_TRY(const auto words,
+              compiler::compileShader({"trace", compiler::ShaderStage::Compute, kShader}, {}));
+    GLINT_TRY(pipeline_, createComputePipeline(context_, words, layout_.get()));
     return okStatus();
 }
 
 Result<double> TraceKernel::trace(GpuScene& scene, std::span<const Ray> rays) {
     count_ = rays.size();
     std::memcpy(rays_.mapped, rays.data(), rays.size_bytes());
-    const Result<VkCommandBuffer> commands = runner_.begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(const auto commands, runner_.begin());
     const auto count = static_cast<std::uint32_t>(rays.size());
     const Pushed pushed{rays_.address, distances_.address, count};
     const DeviceTable& vk = context_.vk;
-    timer_.recordReset(*commands);
-    vk.CmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
-    vk.CmdBindDescriptorSets(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1,
+    timer_.recordReset(commands);
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_.get());
+    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout_.get(), 0, 1,
                              &scene.state().set, 0, nullptr);
-    vk.CmdPushConstants(*commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed), &pushed);
-    timer_.recordBegin(*commands, 0);
-    vk.CmdDispatch(*commands, (count + 63) / 64, 1, 1);
-    timer_.recordEnd(*commands, 0);
-    recordDependency(context_, *commands,
+    vk.CmdPushConstants(commands, layout_.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(pushed), &pushed);
+    timer_.recordBegin(commands, 0);
+    vk.CmdDispatch(commands, (count + 63) / 64, 1, 1);
+    timer_.recordEnd(commands, 0);
+    recordDependency(context_, commands,
                      {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-    if (Status status = runner_.submitAndWait(); !status) {
-        return status.error();
-    }
-    const Result<std::vector<double>> milliseconds = timer_.read(1);
-    if (!milliseconds) {
-        return milliseconds.error();
-    }
-    return milliseconds->front();
+    GLINT_TRY_DO(runner_.submitAndWait());
+    GLINT_TRY(const auto milliseconds, timer_.read(1));
+    return milliseconds.front();
 }
 
 std::span<const float> TraceKernel::distances() const {

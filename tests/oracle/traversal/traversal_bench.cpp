@@ -13,8 +13,8 @@
 #include "support/quantile.h"
 
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -172,7 +172,7 @@ double costOf(const scene_view::SceneViewData& data, const Variant& variant) {
 }
 
 // Compiles as little as possible, because the scene is only uploaded.
-Result<Package> packageOf(const gltf::Scene& scene) {
+Result<std::shared_ptr<const Package>> packageOf(const gltf::Scene& scene) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
@@ -188,11 +188,8 @@ public:
     Result<std::optional<Measured>> run(const std::filesystem::path& file) {
         gltf::ImportOptions import;
         import.decodeImages = true;
-        const Result<gltf::Scene> scene = gltf::importScene(file, import);
-        if (!scene) {
-            return scene.error();
-        }
-        scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
+        GLINT_TRY(const auto scene, gltf::importScene(file, import));
+        scene_view::SceneViewData data = scene_view::makeSceneView(scene);
         for (InstanceView& instance : data.instances) {
             instance.joints = {};
             instance.morphWeights = {};
@@ -202,12 +199,8 @@ public:
             return std::optional<Measured>();
         }
         const EmbreeScene embree(triangles);
-        const Result<scene_view::CameraChoice> camera =
-            scene_view::chooseCamera(*scene, data, "auto", 16.0 / 9.0);
-        if (!camera) {
-            return camera.error();
-        }
-        rays_[0] = cameraRays(camera->view, 640, 360);
+        GLINT_TRY(const auto camera, scene_view::chooseCamera(scene, data, "auto", 16.0 / 9.0));
+        rays_[0] = cameraRays(camera.view, 640, 360);
         rays_[1] = embree.bounces(rays_[0]);
         if (rays_[1].size() < kTile) {
             return std::optional<Measured>();
@@ -216,22 +209,15 @@ public:
         measured.name = file.parent_path().filename().string();
         measured.triangles = triangles.size();
         measured.instances = data.instances.size();
-        if (Status done = upload(*scene, data, measured); !done) {
-            return done.error();
-        }
-        if (Status done = measure(embree, measured); !done) {
-            return done.error();
-        }
+        GLINT_TRY_DO(upload(scene, data, measured));
+        GLINT_TRY_DO(measure(embree, measured));
         scenes_.clear();
         return std::optional<Measured>(std::move(measured));
     }
 
 private:
     Status upload(const gltf::Scene& scene, scene_view::SceneViewData& data, Measured& measured) {
-        const Result<Package> package = packageOf(scene);
-        if (!package) {
-            return package.error();
-        }
+        GLINT_TRY(const auto package, packageOf(scene));
         scenes_.clear();
         std::optional<Shuffled> shuffled;
         for (const Variant& variant : kVariants) {
@@ -247,20 +233,13 @@ private:
                 view.primitives = ordered->primitives;
                 view.instances = ordered->instances;
             }
-            Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context_, *package, view);
-            if (!uploaded) {
-                return uploaded.error();
-            }
+            GLINT_TRY(auto uploaded, GpuScene::upload(context_, *package, view));
             measured.costs[variant.name] = costOf(data, variant);
-            measured.orderMs[variant.name] = (*uploaded)->statistics().orderMs;
-            scenes_.push_back(std::move(*uploaded));
+            measured.orderMs[variant.name] = uploaded->statistics().orderMs;
+            scenes_.push_back(std::move(uploaded));
         }
-        Result<std::unique_ptr<TraceKernel>> kernel = TraceKernel::create(
-            context_, scenes_.front()->state().setLayout.get(), std::max(rays_[0].size(), rays_[1].size()));
-        if (!kernel) {
-            return kernel.error();
-        }
-        kernel_ = std::move(*kernel);
+        GLINT_TRY(kernel_, TraceKernel::create(context_, scenes_.front()->state().setLayout.get(),
+                                               std::max(rays_[0].size(), rays_[1].size())));
         return okStatus();
     }
 
@@ -283,33 +262,23 @@ private:
                     // otherwise.
                     runs.rays = std::min<std::size_t>(rays_[kind].size(), 16 * kTile);
                     for (int i = 0; i < 3; ++i) {
-                        const Result<double> ms = trace(embree, scene, kind, runs.rays);
-                        if (!ms) {
-                            return ms.error();
-                        }
-                        const double wanted = static_cast<double>(runs.rays) * arguments_.runMs / *ms;
+                        GLINT_TRY(const auto ms, trace(embree, scene, kind, runs.rays));
+                        const double wanted = static_cast<double>(runs.rays) * arguments_.runMs / ms;
                         runs.rays = std::clamp<std::size_t>(static_cast<std::size_t>(wanted), 4 * kTile,
                                                             rays_[kind].size());
                     }
                     continue;
                 }
-                const Result<double> ms = trace(embree, scene, kind, runs.rays);
-                if (!ms) {
-                    return ms.error();
-                }
-                runs.rates.push_back(1e3 * static_cast<double>(runs.rays) / *ms);
+                GLINT_TRY(const auto ms, trace(embree, scene, kind, runs.rays));
+                runs.rates.push_back(1e3 * static_cast<double>(runs.rays) / ms);
             }
             return okStatus();
         };
         for (std::int64_t round = -1; round < arguments_.rounds; ++round) {
             for (std::size_t i = 0; i < scenes_.size(); ++i) {
-                if (Status done = run(kVariants[i].name, scenes_[i].get(), round < 0); !done) {
-                    return done;
-                }
+                GLINT_TRY_DO(run(kVariants[i].name, scenes_[i].get(), round < 0));
             }
-            if (Status done = run(kEmbree, nullptr, round < 0); !done) {
-                return done;
-            }
+            GLINT_TRY_DO(run(kEmbree, nullptr, round < 0));
         }
         return compare(embree, measured);
     }
@@ -441,16 +410,13 @@ Json toJson(const Measured& measured) {
 }
 
 Status benchAll(const Arguments& arguments) {
-    const Result<std::unique_ptr<Context>> context = Context::createHeadless();
-    if (!context) {
-        return context.error();
-    }
-    SceneBench bench(**context, arguments);
+    GLINT_TRY(const auto context, Context::createHeadless());
+    SceneBench bench(*context, arguments);
     std::vector<Measured> all;
-    std::string markdown = head(**context, arguments);
+    std::string markdown = head(*context, arguments);
     fmt::print("{}", markdown);
-    Json report{{"device", (*context)->deviceName()},
-                {"driver", (*context)->driverName()},
+    Json report{{"device", context->deviceName()},
+                {"driver", context->driverName()},
                 {"threads", std::thread::hardware_concurrency()},
                 {"rounds", arguments.rounds},
                 {"unit", "rays a second"},

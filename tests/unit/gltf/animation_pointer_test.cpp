@@ -6,7 +6,7 @@
 #include "support/features.h"
 #include "unit/gltf/gltf_builder.h"
 
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include "unit/gltf/gltf_builder.h"
 #include "unit/gltf/packed_scenes.h"
 
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,6 @@
 #include "render/scene_builder.h"
 #include "resolve/resolve.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/settings.h>
 
 #include <gtest/gtest.h>

@@ -4,7 +4,7 @@
 #include "render/scene_builder.h"
 #include "settings/descriptor.h"
 
-#include <glint/measure/render_settings.h>
+#include <glint/measure/settings.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -152,7 +152,7 @@ TEST(Resolve, LeavesNothingToBeDecided) {
     EXPECT_NE(build.settings.sun, Sun::Auto);
     // The decided settings decide the same once more.
     const Build again = resolved(scene, build.settings, drawing());
-    EXPECT_EQ(changeBetween(build.settings, again.settings), Change::None);
+    EXPECT_EQ(changeBetween(build.settings, again.settings), 0U);
 }
 
 TEST(Resolve, APackageHasDecided) {
@@ -201,13 +201,13 @@ TEST(Resolve, KeepsWhatNeedsAnotherBuild) {
     wanted.renderer.picture = PictureFormat::Half;
     wanted.compile.plan.merge = MergePolicy::None;
     wanted.package = "package";
-    EXPECT_EQ(changeBetween(build.settings, wanted), Change::Build);
+    EXPECT_NE(changeBetween(build.settings, wanted) & kChangesPackage, 0U);
     const Settings shown = withoutRebuilding(build.settings, wanted);
     EXPECT_EQ(shown.samples, 7U);
     EXPECT_EQ(shown.renderer.picture, PictureFormat::Half);
     EXPECT_EQ(shown.compile.plan.merge, build.settings.compile.plan.merge);
     EXPECT_EQ(shown.package, "");
-    EXPECT_EQ(changeBetween(build.settings, shown), Change::Renderer);
+    EXPECT_EQ(changeBetween(build.settings, shown), kChangesFrame | kChangesRenderer);
 }
 
 // Returns the parts of a build that `explain` prints.

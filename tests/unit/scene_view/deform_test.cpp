@@ -1,6 +1,6 @@
 #include "scene/deformed.h"
 
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <gtest/gtest.h>
 

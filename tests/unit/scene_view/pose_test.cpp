@@ -1,4 +1,4 @@
-#include <glint/scene_view/pose.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <gtest/gtest.h>
 

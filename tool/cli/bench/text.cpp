@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "cli/table.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/report.h>
 
 #include <fmt/format.h>

@@ -131,13 +131,14 @@ Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments,
     movement.animations = std::move(animations);
     if (const std::optional<FrameRange> range = parseFrames(arguments.frames)) {
         movement.isSequence = true;
+        movement.firstFrame = range->first;
         for (std::int64_t frame = range->first; frame <= range->last; ++frame) {
-            movement.moments.push_back({frame, static_cast<double>(frame) / arguments.fps});
+            movement.seconds.push_back(static_cast<double>(frame) / arguments.fps);
         }
     } else {
         double seconds = 0.0;
         compiler::parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
-        movement.moments.push_back({0, seconds});
+        movement.seconds.push_back(seconds);
     }
     movement.builds = arguments.builds;
     return std::optional(std::move(movement));

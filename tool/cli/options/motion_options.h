@@ -6,6 +6,7 @@
 
 #include <glint/result.h>
 #include <glint/scene_view.h>
+#include <glint/scene_view/scene_view.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -37,18 +38,17 @@ struct FrameRange {
 // million frames.
 std::optional<FrameRange> parseFrames(const std::string& text);
 
-// A moment to render.
-struct Moment {
-    std::int64_t frame = 0;
-    double seconds = 0.0;
-};
-
 // The animations that play, and the moments to render.
 struct Movement {
-    std::vector<std::size_t> animations;  // into Scene::animations
-    std::vector<Moment> moments;          // at least one
-    bool isSequence = false;              // files are numbered
+    std::vector<std::size_t> animations{};  // into Scene::animations
+    std::vector<double> seconds{};          // of each frame, at least one
+    std::int64_t firstFrame = 0;            // its number
+    bool isSequence = false;                // files are numbered
     MotionView::Builds builds = MotionView::Builds::ByRule;
+
+    scene_view::Moment moment(std::size_t frame) const {
+        return {animations, seconds[frame]};
+    }
 };
 
 // Returns nothing if the scene is rendered at rest. With `followsTime` its materials may move, so that a

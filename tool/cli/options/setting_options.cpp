@@ -1,13 +1,11 @@
 #include "cli/options/setting_options.h"
 
 #include "base/text.h"
-#include "cache/action.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
-#include "materials/declarations.h"
 #include "settings/descriptor.h"
 
-#include <glint/measure/render_settings.h>
+#include <glint/measure/settings.h>
 #include <glint/measure/settings_file.h>
 
 #include <fmt/format.h>
@@ -315,34 +313,6 @@ std::vector<Diagnostic> idleSettings(const compiler::Build& build) {
         }
     }
     return warnings;
-}
-
-Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
-                                          base::Memo* texels, const Package* package) {
-    GLINT_TRY(const auto model, materials::loadMaterialModel(settings.materials));
-    for (const std::string& name : settings.compile.effects.ofPacks) {
-        if (findEffect(model->effects, name) == 0) {
-            std::vector<std::string> names;
-            for (const materials::EffectDeclaration& effect : model->effects) {
-                names.push_back(effect.name);
-            }
-            return makeError("effect-unknown", "",
-                             fmt::format("neither Glint nor a pack has an effect \"{}\"{}", name,
-                                         base::suggestion(name, names)),
-                             "correct --effects, or add the pack by --materials");
-        }
-    }
-    gltf::ImportOptions options;
-    options.keepImageFiles = images == ImageReading::Files;
-    options.trustTextures = package != nullptr ? package->trustTextures() : trustsTextures(settings);
-    options.memo = texels;
-    options.memoScope = texels != nullptr ? compiler::programIdentity() : "";
-    options.scene = settings.sceneInFile;
-    options.variant = settings.variant;
-    options.strictPaths = settings.strictPaths;
-    options.jobs = settings.compile.jobs;
-    options.materialModel = model;
-    return options;
 }
 
 namespace {

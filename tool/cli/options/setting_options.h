@@ -1,12 +1,9 @@
 // Options that the table of settings declares (settings/descriptor.h), and options that belong to them.
 #pragma once
 
-#include "base/memo.h"
-#include "gltf/import.h"
 #include "resolve/resolve.h"
 #include "settings/descriptor.h"
 
-#include <glint/package.h>
 #include <glint/result.h>
 
 #include <CLI/CLI.hpp>
@@ -42,18 +39,8 @@ Diagnostic idleWarning(const std::string& where, const std::string& words, const
 // Returns a warning for each setting that was given and changes nothing in a build's pictures or package.
 std::vector<Diagnostic> idleSettings(const compiler::Build& build);
 
-// The parts of images that a command needs.
-enum class ImageReading : std::uint8_t {
-    None,
-    Files,  // for scene_view::loadTextures()
-};
-
 // For commands that compile shaders.
 void addHostOption(CLI::App& command, compiler::Settings& settings);
-// Returns how a scene is read, for a package that is there already if `package` is not null. `texels` keeps
-// what was found in images; null: nothing is kept. Has the errors of loadMaterialModel().
-Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
-                                          base::Memo* texels, const Package* package = nullptr);
 
 // --- The option --settings: a file of settings, as glint bench writes it, completes a command line ---
 

@@ -5,10 +5,7 @@
 #include "image/image_file.h"
 #include "image/tone.h"
 
-#include <glint/measure/render_settings.h>
 #include <glint/measure/views.h>
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/pose.h>
 
 #include <algorithm>
 #include <chrono>
@@ -23,63 +20,44 @@ namespace {
 // Renders picture after picture with one scene on the device and one renderer.
 class FrameLoop {
 public:
-    FrameLoop(const FrameSetup& setup, gltf::Scene& scene, scene_view::SceneViewData& data,
-              RenderReport& report)
-        : setup_(setup), scene_(scene), data_(data), report_(report), camera_(setup.camera) {}
+    FrameLoop(const FrameSetup& setup, gltf::Scene& scene, RenderReport& report)
+        : setup_(setup),
+          options_(scene_view::rendererOptions(setup.settings)),
+          scene_(scene),
+          report_(report),
+          camera_(setup.camera) {}
 
     // The scene is uploaded in the pose of the first moment.
-    Status start(Context& context, const Package& package) {
+    Status start(Context& context, std::shared_ptr<const Package> package, scene_view::SceneViewData data) {
         if (setup_.movement) {
-            GLINT_TRY_DO(pose(setup_.movement->moments.front()));
-            data_.moves = setup_.movement->moments.size() > 1;
+            GLINT_TRY_DO(pose(0, data));
+            data.moves = setup_.movement->seconds.size() > 1;
         }
         // Once for all pictures: a sequence would flicker otherwise.
-        sky_ = measure::chooseSky(setup_.settings, scene_, data_);
+        sky_ = scene_view::chooseSky(setup_.settings, scene_, data);
         if (setup_.environment == nullptr) {
             report_.sky = sky_;
         }
         const base::Clock::time_point begin = base::Clock::now();
-        GLINT_TRY(auto uploaded, GpuScene::upload(context, package, data_.view()));
+        GLINT_TRY(device_, scene_view::DeviceScene::upload(context, std::move(package), std::move(data)));
         const base::Clock::time_point onDevice = base::Clock::now();
         report_.start.uploadMs = base::millisecondsBetween(begin, onDevice);
-        gpuScene_ = std::move(uploaded);
-        report_.sceneStatistics = gpuScene_->statistics();
-        GLINT_TRY(auto renderer, Renderer::create(context, package, *gpuScene_, setup_.renderer));
+        GLINT_TRY(renderer_, device_.makeRenderer(context, options_));
         report_.start.rendererMs = base::millisecondsSince(onDevice);
-        renderer_ = std::move(renderer);
-        // The effect whose rays may end on the screen; there is one of Glint's own.
-        const std::uint32_t onScreen = package.shape().effects.screenStarts;
-        onScreen_ = onScreen & (0U - onScreen);
-        report_.tracer = std::string(package::nameOf(renderer_->tracer()));
-        if ((setup_.renderer.strategy & package::orderedStrategies()) != 0) {
-            report_.ordering = std::string(package::nameOf(renderer_->ordering()));
-        }
-        report_.pipelines.making = renderer_->pipelineMaking();
-        report_.footprint = renderer_->footprint();
-        report_.pipelines.count = report_.footprint.pipelines;
-        if (setup_.renderer.pipelineStatistics) {
-            GLINT_TRY(report_.pipelines.statistics, renderer_->pipelineStatistics());
-        }
-        report_.memory = {renderer_->memory(), gpuScene_->memory(), report_.footprint.allocatedBytes,
-                          gpuScene_->allocatedBytes()};
-        report_.hasDetails = !setup_.arguments.stats.empty();
-        report_.countsLight = setup_.renderer.countsLight;
-        report_.traffic.shape = trafficShape(package, setup_.renderer);
-        report_.traffic.shape.binsRays = setup_.settings.frame.binning != Binning::None;
-        return okStatus();
+        return describe();
     }
 
     // Moves the uploaded scene to a later moment.
-    Status advance(const Moment& moment, FrameReport& frame) {
+    Status advance(std::size_t moment, FrameReport& frame) {
         const base::Clock::time_point begin = base::Clock::now();
-        GLINT_TRY_DO(pose(moment));
+        GLINT_TRY_DO(pose(moment, device_.data));
         frame.poseMs = base::millisecondsSince(begin);
-        MotionView motion = data_.motion();
+        MotionView motion = device_.data.motion();
         motion.builds = setup_.movement->builds;
         const base::Clock::time_point updated = base::Clock::now();
-        GLINT_TRY_DO(gpuScene_->updateAndWait(motion));
+        GLINT_TRY_DO(device_.gpu->updateAndWait(motion));
         frame.updateMs = base::millisecondsSince(updated);
-        GLINT_TRY(frame.motion, gpuScene_->motion());
+        GLINT_TRY(frame.motion, device_.gpu->motion());
         return okStatus();
     }
 
@@ -87,9 +65,10 @@ public:
     Result<LinearImage> render(FrameReport& frame) {
         // Reasons that are certain before the picture is made save the time that it takes.
         if (!warned_) {
-            warn(scene_view::nothingSeen(scene_, data_, camera_));
+            warn(scene_view::nothingSeen(scene_, device_.data, camera_));
         }
-        FrameOptions options = measure::frameOptions(setup_.settings, camera_.view, sky_, setup_.environment);
+        FrameOptions options =
+            scene_view::frameOptions(setup_.settings, camera_.view, sky_, setup_.environment);
         options.timing = Timing::Passes;
         options.time = static_cast<float>(frame.seconds);
         options.seed = report_.seed;
@@ -99,7 +78,7 @@ public:
             if (!std::exchange(begun_, true)) {
                 report_.start.firstSampleMs = base::millisecondsSince(begin);
             }
-            const std::size_t pictures = setup_.movement ? setup_.movement->moments.size() : 1;
+            const std::size_t pictures = setup_.movement ? setup_.movement->seconds.size() : 1;
             if (setup_.progress) {
                 setup_.progress(++samplesDone_, pictures * report_.samples);
             }
@@ -115,7 +94,7 @@ public:
         if (!warned_) {
             GLINT_TRY(const auto surfaces, renderer_->readSurfaces());
             if (std::ranges::all_of(surfaces, [](std::uint8_t isSurface) { return isSurface == 0; })) {
-                warn(scene_view::nothingSeen(scene_, data_, camera_, true));
+                warn(scene_view::nothingSeen(scene_, device_.data, camera_, true));
             }
         }
         return setup_.arguments.denoise ? denoised(*image, *renderer_) : std::move(image);
@@ -137,12 +116,12 @@ public:
     }
 
     // Draws the view of the last picture.
-    Result<measure::View> drawView(const Package& package, const LinearImage& picture) {
+    Result<measure::View> drawView(const LinearImage& picture) {
         measure::ViewInput input;
         input.samples = report_.samples;
-        input.dispatchesCases = package::infoOf(setup_.renderer.strategy).dispatchesCases;
-        input.package = &package;
-        input.scene = data_.packageScene;
+        input.dispatchesCases = package::infoOf(options_.strategy).dispatchesCases;
+        input.package = device_.package.get();
+        input.scene = device_.data.packageScene;
         for (const materials::Material& material : scene_.materials) {
             input.materialNames.push_back(material.name);
             input.model = &material.model();
@@ -154,16 +133,41 @@ public:
 
     // Returns the exposure for the surfaces of the last picture.
     Result<double> exposureOf(const LinearImage& image) {
-        const Result<std::vector<std::uint8_t>> surfaces = renderer_->readSurfaces();
-        return surfaces ? Result<double>(image::automaticExposure(image, *surfaces)) : surfaces.error();
+        GLINT_TRY(const auto surfaces, renderer_->readSurfaces());
+        return image::automaticExposure(image, surfaces);
     }
 
 private:
-    Status pose(const Moment& moment) {
-        scene_view::applyPose(scene_view::poseAt(scene_, setup_.movement->animations, moment.seconds),
-                              scene_);
-        scene_view::poseSceneView(scene_, data_);
-        measure::sizeLights(setup_.settings, data_);
+    // Reports what is on the device.
+    Status describe() {
+        const Package& package = *device_.package;
+        report_.sceneStatistics = device_.gpu->statistics();
+        // The effect whose rays may end on the screen; there is one of Glint's own.
+        const std::uint32_t onScreen = package.shape().effects.screenStarts;
+        onScreen_ = onScreen & (0U - onScreen);
+        report_.tracer = std::string(package::nameOf(renderer_->tracer()));
+        if ((options_.strategy & package::orderedStrategies()) != 0) {
+            report_.ordering = std::string(package::nameOf(renderer_->ordering()));
+        }
+        report_.pipelines.making = renderer_->pipelineMaking();
+        report_.footprint = renderer_->footprint();
+        report_.pipelines.count = report_.footprint.pipelines;
+        if (options_.pipelineStatistics) {
+            GLINT_TRY(report_.pipelines.statistics, renderer_->pipelineStatistics());
+        }
+        report_.memory = {renderer_->memory(), device_.gpu->memory(), report_.footprint.allocatedBytes,
+                          device_.gpu->allocatedBytes()};
+        report_.hasDetails = !setup_.arguments.stats.empty();
+        report_.countsLight = options_.countsLight;
+        report_.traffic.shape = trafficShape(package, options_);
+        report_.traffic.shape.binsRays = setup_.settings.frame.binning != Binning::None;
+        return okStatus();
+    }
+
+    // Takes a moment of the movement.
+    Status pose(std::size_t moment, scene_view::SceneViewData& data) {
+        scene_view::moveTo(setup_.movement->moment(moment), scene_);
+        scene_view::poseSceneView(scene_, data);
         if (scene_view::framesEverything(scene_, setup_.arguments.camera)) {
             return okStatus();  // that one stands still
         }
@@ -209,53 +213,52 @@ private:
     }
 
     const FrameSetup& setup_;
+    RendererOptions options_;
     gltf::Scene& scene_;
-    scene_view::SceneViewData& data_;
     RenderReport& report_;
     scene_view::CameraChoice camera_;
     std::size_t samplesDone_ = 0;  // of all pictures
     scene_view::SkyChoice sky_;
     package::Effect onScreen_ = 0;  // for --coverage
-    std::unique_ptr<GpuScene> gpuScene_;
+    scene_view::DeviceScene device_;
     std::unique_ptr<Renderer> renderer_;
     bool begun_ = false;   // a sample is complete
     bool warned_ = false;  // a picture shows nothing
 };
 
 // Writes the picture of a frame, or its view.
-Status write(FrameLoop& loop, const Package& package, const FrameSetup& setup, const FrameReport& frame,
-             const LinearImage& picture, RenderReport& report) {
+Status write(FrameLoop& loop, const FrameSetup& setup, const FrameReport& frame, const LinearImage& picture,
+             RenderReport& report) {
     if (!setup.arguments.view.empty()) {
-        GLINT_TRY(report.view, loop.drawView(package, picture));
+        GLINT_TRY(report.view, loop.drawView(picture));
         return image::writeImage(frame.image, measure::withLegend(*report.view));
     }
-    const Result<std::vector<image::ExrLayer>> layers = loop.layersFor(frame.image);
-    return layers ? image::writeImage(frame.image, picture, report.exposure, *layers)
-                  : Status(layers.error());
+    GLINT_TRY(const auto layers, loop.layersFor(frame.image));
+    return image::writeImage(frame.image, picture, report.exposure, layers);
 }
 
 }  // namespace
 
-Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, gltf::Scene& scene,
-                    scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
-                    RenderReport& report) {
-    FrameLoop loop(setup, scene, data, report);
-    GLINT_TRY_DO(loop.start(context, package));
-    const bool isSequence = setup.movement && setup.movement->isSequence;
-    const std::vector<Moment> moments = setup.movement ? setup.movement->moments : std::vector<Moment>(1);
-    for (std::size_t i = 0; i < moments.size(); ++i) {
+Status renderFrames(Context& context, std::shared_ptr<const Package> package, const FrameSetup& setup,
+                    gltf::Scene& scene, scene_view::SceneViewData data,
+                    const std::function<Result<bool>()>& accept, RenderReport& report) {
+    FrameLoop loop(setup, scene, report);
+    GLINT_TRY_DO(loop.start(context, std::move(package), std::move(data)));
+    const Movement still{.seconds = {0.0}};
+    const Movement& movement = setup.movement ? *setup.movement : still;
+    for (std::size_t i = 0; i < movement.seconds.size(); ++i) {
         FrameReport frame;
-        frame.frame = moments[i].frame;
-        frame.seconds = moments[i].seconds;
+        frame.frame = movement.firstFrame + static_cast<std::int64_t>(i);
+        frame.seconds = movement.seconds[i];
         const std::string& output = setup.arguments.output;
-        frame.image = isSequence ? numberedFile(output, frame.frame).string() : output;
+        frame.image = movement.isSequence ? numberedFile(output, frame.frame).string() : output;
         if (i > 0) {
-            GLINT_TRY_DO(loop.advance(moments[i], frame));
+            GLINT_TRY_DO(loop.advance(i, frame));
         }
         GLINT_TRY(const auto image, loop.render(frame));
-        const Result<bool> accepted = accept();
-        if (!accepted || !*accepted) {
-            return accepted ? okStatus() : Status(accepted.error());
+        GLINT_TRY(const auto accepted, accept());
+        if (!accepted) {
+            return okStatus();
         }
         // A sequence keeps the exposure of its first picture, because it would flicker otherwise.
         if (i == 0) {
@@ -265,8 +268,8 @@ Status renderFrames(Context& context, const Package& package, const FrameSetup& 
                 compiler::parseReal(setup.arguments.exposure, -kMaxExposure, kMaxExposure, report.exposure);
             }
         }
-        GLINT_TRY_DO(write(loop, package, setup, frame, image, report));
-        if (isSequence) {
+        GLINT_TRY_DO(write(loop, setup, frame, image, report));
+        if (movement.isSequence) {
             report.frames.push_back(std::move(frame));
         }
     }

@@ -7,13 +7,11 @@
 #include "cli/render/report.h"
 #include "gltf/scene.h"
 
-#include <glint/context.h>
-#include <glint/package.h>
-#include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <functional>
+#include <memory>
 #include <optional>
 
 namespace glint::cli {
@@ -21,8 +19,7 @@ namespace glint::cli {
 struct FrameSetup {
     const Console& console;
     const RenderArguments& arguments;
-    const compiler::Settings& settings;  // that were decided
-    RendererOptions renderer;
+    const compiler::Settings& settings;        // that were decided
     const Environment* environment = nullptr;  // null: none
     const std::optional<Movement>& movement;   // nothing: the rest pose
     scene_view::CameraChoice camera;           // of the first picture
@@ -32,11 +29,11 @@ struct FrameSetup {
     std::function<void(std::size_t done, std::size_t all)> progress{};
 };
 
-// Renders and writes every picture, and fills in the measurements. `scene` and `data`, which was made from
-// it, are left in the last pose. `accept` is called before each picture is written. Its error ends the work;
-// if it returns false, the work ends without an error.
-Status renderFrames(Context& context, const Package& package, const FrameSetup& setup, gltf::Scene& scene,
-                    scene_view::SceneViewData& data, const std::function<Result<bool>()>& accept,
-                    RenderReport& report);
+// Renders and writes every picture, and fills in the measurements. `scene`, from which `data` was made, is
+// left in the last pose. `accept` is called before each picture is written. Its error ends the work; if it
+// returns false, the work ends without an error.
+Status renderFrames(Context& context, std::shared_ptr<const Package> package, const FrameSetup& setup,
+                    gltf::Scene& scene, scene_view::SceneViewData data,
+                    const std::function<Result<bool>()>& accept, RenderReport& report);
 
 }  // namespace glint::cli

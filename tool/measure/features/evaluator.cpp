@@ -4,8 +4,6 @@
 #include "emit/feature_kernel.h"
 #include "resolve/resolve.h"
 
-#include <glint/scene_view/package.h>
-
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -46,17 +44,16 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
         settings.tracers = package::kTracerRayPipeline;
     }
     GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
-    GLINT_TRY(const auto compiled, compilePackage(build));
+    GLINT_TRY(auto package, scene_view::compileAndLoad(build));
     GLINT_TRY(auto kernel, compileFeatureKernel(build));
     evaluator->layers_ = std::move(kernel.layers);
-    GLINT_TRY(auto package, scene_view::loadPackage(compiled));
-    evaluator->package_ = std::make_unique<Package>(std::move(package));
 
     observer.progress("making the pipeline");
     scene_view::SceneViewData data = scene_view::makeSceneView(scene);
     data.vertices = VertexForm::Full;  // frames of surfaces are compared exactly
-    GLINT_TRY(evaluator->scene_, GpuScene::upload(*evaluator->context_, *evaluator->package_, data.view()));
-    GLINT_TRY(evaluator->kernel_, SceneKernel::create(*evaluator->scene_, kernel.spirv));
+    GLINT_TRY(evaluator->scene_,
+              scene_view::DeviceScene::upload(*evaluator->context_, std::move(package), std::move(data)));
+    GLINT_TRY(evaluator->kernel_, SceneKernel::create(*evaluator->scene_.gpu, kernel.spirv));
     return evaluator;
 }
 

@@ -5,10 +5,8 @@
 
 #include <glint/context.h>
 #include <glint/measure/check_materials.h>
-#include <glint/package.h>
-#include <glint/renderer.h>
 #include <glint/scene_kernel.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/scene_view/session.h>
 
 #include <cstdint>
 #include <memory>
@@ -40,8 +38,7 @@ private:
     FeatureEvaluator() = default;
 
     std::unique_ptr<Context> context_;
-    std::unique_ptr<Package> package_;
-    std::unique_ptr<GpuScene> scene_;
+    scene_view::DeviceScene scene_;
     std::unique_ptr<SceneKernel> kernel_;
     std::vector<std::string> layers_;
 };

@@ -149,21 +149,21 @@ Status Window::followSettings(std::size_t index) {
         return okStatus();
     }
     // Until the other build is there, the picture keeps what only that build has.
-    if (changeBetween(one.ordered, one.wanted) == compiler::Change::Build) {
+    if (changeBetween(one.ordered, one.wanted) >= compiler::kChangesUpload) {
         order(index);
     }
     compiler::Settings next = withoutRebuilding(one.picture.build().settings(), one.wanted);
     const auto [width, height] = pictureExtent();
     next.renderer.width = width;
     next.renderer.height = height;
-    const compiler::Change change = changeBetween(one.picture.settings(), next);
-    if (change == compiler::Change::None) {
+    const std::uint32_t changes = changeBetween(one.picture.settings(), next);
+    if (changes == 0) {
         return okStatus();
     }
     if (!builder_->isBusy(index) && !one.buildFailed) {
         error_.reset();
     }
-    if (change != compiler::Change::Frame) {
+    if (changes != compiler::kChangesFrame) {
         GLINT_TRY_DO(presenter_->waitForFrames());
         finishSamples();
         one.history.clear();

@@ -95,7 +95,7 @@ Status Window::applyPose() {
     } else {
         animations_.push_back(static_cast<std::size_t>(animationChoice_));
     }
-    const std::optional<Moment> moment = poses_ ? std::optional(Moment{animations_, time_}) : std::nullopt;
+    const auto moment = poses_ ? std::optional(scene_view::Moment{animations_, time_}) : std::nullopt;
     for (std::unique_ptr<Side>& one : sides_) {
         if (!one || !one->picture.isReady() || one->picture.moment() == moment) {
             continue;

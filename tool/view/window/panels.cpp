@@ -386,7 +386,7 @@ void Window::drawScene() {
         drawField("camera", camera_.name().empty() ? "first of the scene" : camera_.name());
         drawField("materials", std::to_string(build.scene->materials.size()));
         drawField("keys, cases",
-                  fmt::format("{}, {}", build.resolved.plan.keys.size(), caseCount(build.resolved.plan)));
+                  fmt::format("{}, {}", build.resolved->plan.keys.size(), caseCount(build.resolved->plan)));
         std::string effects;
         for (const package::EffectInfo& effect : build.package->effects()) {
             effects += (effects.empty() ? "" : ", ") + std::string(effect.name);

@@ -88,7 +88,7 @@ void Window::saveScreenshot() {
                                       ? std::string("all")
                                       : std::to_string(animationChoice_);
     // The settings that were asked for say the same as the decided ones, in fewer words.
-    compiler::Settings settings = withoutRebuilding(picture.build().resolved.asked, picture.settings());
+    compiler::Settings settings = withoutRebuilding(picture.build().resolved->asked, picture.settings());
     settings.strategy = picture.settings().strategy;
     // A camera that frames everything was placed for another moment.
     const bool isPlaced = poses_ && scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera);

@@ -4,21 +4,14 @@
 #include "gltf/scene.h"
 #include "resolve/resolve.h"
 
-#include <glint/context.h>
-#include <glint/environment.h>
 #include <glint/measure/hit_times.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/picture_filter.h>
-#include <glint/measure/render_settings.h>
 #include <glint/measure/settings.h>
-#include <glint/package.h>
-#include <glint/renderer.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/sky.h>
+#include <glint/scene_view/session.h>
 #include <glint/scene_view/textures.h>
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -27,11 +20,6 @@
 #include <string_view>
 #include <tuple>
 #include <vector>
-
-namespace glint::compiler {
-class CacheStore;
-class ModuleCache;
-}  // namespace glint::compiler
 
 namespace glint::measure {
 
@@ -49,13 +37,6 @@ struct Exposure {
 
 // Milliseconds of the stretches of one sample (Timing::Frame) that are of this kind.
 double stretchMs(std::span<const PassTiming> stretches, Pass pass);
-
-// A package, and the scene on the device in the form that the package needs.
-struct MountedPackage {
-    compiler::Settings settings;  // of the build
-    std::unique_ptr<Package> package;
-    std::unique_ptr<GpuScene> scene;
-};
 
 // A configuration that is ready to render.
 class Mount {
@@ -77,10 +58,10 @@ public:
         return ordersHits_;
     }
     const Package& package() const {
-        return *package_->package;
+        return *scene_->package;
     }
     std::uint32_t cases() const {
-        return package_->package->caseCount();
+        return package().caseCount();
     }
 
 private:
@@ -88,7 +69,7 @@ private:
     Status addSplit(FrameOptions frame, Exposure& exposure) const;
     Status showFramesBefore(FrameOptions frame) const;
 
-    std::shared_ptr<MountedPackage> package_;
+    std::shared_ptr<const scene_view::DeviceScene> scene_;
     std::shared_ptr<Renderer> renderer_;
     std::shared_ptr<PictureFilter> filter_;  // null: none
     std::uint32_t frames_ = 1;               // frames that the filter sees, with the picture
@@ -108,18 +89,13 @@ struct SceneSize {
     std::uint32_t instances = 0;
 };
 
-// Reads the scene of a bed again, with other trust in textures than at first.
-using SceneReader = std::function<Result<gltf::Scene>(bool trustsTextures)>;
-
 class BenchBed {
 public:
     // Reads the environment map, and chooses the camera and the device. Messages go to `observer`.
-    // `observer`, `scene`, `cache` and `store`, which may be null, must outlive the result. `reader` may be
-    // null if no packages are given. `store` keeps compressed textures. Errors of
-    // Context::createHeadless() and of files.
+    // `observer`, `scene`, `cache` and `store`, which may be null, must outlive the result. `store` keeps
+    // compressed textures. Errors of Context::createHeadless() and of files.
     static Result<std::unique_ptr<BenchBed>> create(const Observer& observer, const compiler::Settings& base,
-                                                    const gltf::Scene& scene, const SceneReader& reader,
-                                                    compiler::ModuleCache* cache,
+                                                    const gltf::Scene& scene, compiler::ModuleCache* cache,
                                                     compiler::CacheStore* store);
 
     // Applies `configuration` to the base. `package` is a folder with a package of the scene to use; if it is
@@ -163,19 +139,18 @@ public:
     }
 
 private:
-    BenchBed(const Observer& observer, compiler::Settings base, const gltf::Scene& scene, SceneReader reader,
+    BenchBed(const Observer& observer, compiler::Settings base, const gltf::Scene& scene,
              compiler::ModuleCache* cache, compiler::CacheStore* store)
         : observer_(observer),
           base_(std::move(base)),
           scene_(scene),
           list_(std::make_shared<const gltf::SceneList>(std::span(&scene, 1))),
-          reader_(std::move(reader)),
           cache_(cache),
           store_(store) {}
     Status resolveBase();
     Result<Mount> mount(const compiler::Settings& asked);
-    Result<std::shared_ptr<MountedPackage>> mountPackage(const compiler::Build& build,
-                                                         std::optional<Package> given);
+    Result<scene_view::DeviceScene> mountScene(const compiler::Build& build,
+                                               std::shared_ptr<const Package> given);
     Result<std::shared_ptr<const gltf::SceneList>> scenesFor(const Package* package);
     Result<std::shared_ptr<const scene_view::TextureSet>> textures(const compiler::Build& build,
                                                                    const Package& package);
@@ -185,8 +160,7 @@ private:
     compiler::Build build_;
     const gltf::Scene& scene_;
     std::shared_ptr<const gltf::SceneList> list_;
-    SceneReader reader_;
-    std::unique_ptr<const gltf::Scene> otherScene_;  // read by it
+    std::unique_ptr<const gltf::Scene> otherScene_;  // the same, with other trust in textures
     std::shared_ptr<const gltf::SceneList> otherList_;
     compiler::ModuleCache* cache_;
     compiler::CacheStore* store_;
@@ -202,13 +176,13 @@ private:
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
     SceneSize size_;
-    struct KnownRenderer {
-        std::weak_ptr<MountedPackage> package;
+    // What is mounted, or was.
+    struct Known {
+        compiler::Settings settings;  // of the build
+        std::weak_ptr<const scene_view::DeviceScene> scene;
         std::weak_ptr<Renderer> renderer;
-        compiler::Settings settings;
     };
-    std::vector<std::weak_ptr<MountedPackage>> packages_;
-    std::vector<KnownRenderer> renderers_;
+    std::vector<Known> known_;
 };
 
 }  // namespace glint::measure

@@ -1,9 +1,10 @@
 // A calibration: its settings, and the times that it measured.
 #pragma once
 
+#include "settings/settings.h"
+
 #include <glint/measure/hit_times.h>
 #include <glint/measure/machine.h>
-#include <glint/measure/render_settings.h>
 #include <glint/measure/strategy_fit.h>
 
 #include <cstdint>

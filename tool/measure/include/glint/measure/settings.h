@@ -1,13 +1,19 @@
 // The values of settings that are worth trying on a scene and a device.
 #pragma once
 
+#include "resolve/build.h"
 #include "settings/descriptor.h"
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace glint::measure {
+
+// Returns the facts of one of a build's scenes on which the values worth trying depend. BenchFacts of the
+// device are left out.
+compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t scene = 0);
 
 struct SkippedValue {
     std::string value;

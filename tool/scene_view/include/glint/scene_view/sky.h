@@ -1,16 +1,21 @@
-// Chooses the brightness of the sky in a scene without an environment map: it follows the lights.
+// Skies: environment maps from files, and the brightness of the sky in a scene without one, which follows the
+// lights.
 #pragma once
 
 #include "gltf/scene.h"
 
+#include <glint/context.h>
+#include <glint/environment.h>
 #include <glint/renderer.h>
+#include <glint/result.h>
 #include <glint/scene_view.h>
 #include <glint/scene_view/scene_view.h>
 
 #include <array>
-#include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace glint::scene_view {
@@ -64,5 +69,13 @@ struct SkyChoice {
 // typicalIlluminance(). The scale is 1 if no light arrives. The radiance stays between 1e-18 and 1e18 times
 // the default.
 SkyChoice skyForLights(std::vector<LitPatch> patches);
+
+// Reads an equirectangular .hdr or .exr file (radiance, linear Rec. 709) and makes the map, which the caller
+// owns and which must not outlive `context`. Appends warnings about the file and notes about how it is used.
+// Errors: of the file
+// ("file-open", "image-format", …) and of Environment::create(), with the file as their place.
+Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
+                                                     const EnvironmentOptions& options,
+                                                     std::vector<Diagnostic>& notes);
 
 }  // namespace glint::scene_view
