@@ -148,7 +148,7 @@ TEST_F(Merge, MalformedProfilesFailWithTheirPlace) {
         {{{"op", "replace"}, {"path", "/version"}, {"value", "1"}}, "#/version: error: is no whole number"},
         {{{"op", "replace"}, {"path", "/keys"}, {"value", 1}}, "#/keys: error: is no list"},
         {{{"op", "replace"}, {"path", "/keys/1"}, {"value", 1}},
-         "#/keys/1: error: has no member \"features\""},
+         "#/keys/1: error: is no JSON object"},
         {{{"op", "replace"}, {"path", "/keys/1/hits"}, {"value", -1}}, "#/keys/1/hits: error: is no whole"},
         {{{"op", "replace"}, {"path", "/keys/1/hits"}, {"value", 1.5}}, "#/keys/1/hits: error: is no whole"},
         {{{"op", "replace"}, {"path", "/keys/1/hits"}, {"value", 1e300}},

@@ -105,7 +105,7 @@ int calibrate(const Console& console, const BenchArguments& arguments) {
         return kExitFailed;
     }
     if (console.isJson()) {
-        console.result(measure::toJson(report));
+        console.result(base::jsonOf(report));
     } else {
         console.print(toText(report));
         console.print(fmt::format("\n{} has the same numbers.\n",
@@ -182,7 +182,7 @@ int run(const Console& console, const BenchArguments& arguments) {
         return fail(written.error());
     }
     if (console.isJson()) {
-        console.result(measure::toJson(report));
+        console.result(base::jsonOf(report));
     } else {
         console.print(toText(report));
         console.print(fmt::format("\n{}: open it in a browser; {} has the same numbers.\n",

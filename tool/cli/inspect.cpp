@@ -35,7 +35,7 @@ base::Json modulesToJson(const inspect::InspectedPackage& inspected) {
     base::Json list = base::Json::array();
     for (const inspect::InspectedModule& module : inspected.modules) {
         base::Json entry = describe(inspected, module);
-        entry.update(statisticsToJson(module.statistics));
+        entry.update(base::jsonOf(module.statistics));
         list.push_back(std::move(entry));
     }
     return list;
@@ -45,7 +45,7 @@ base::Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t sh
     base::Json stages = base::Json::object();
     for (const inspect::InspectedModule* module : inspected.modulesOf(shaderId)) {
         base::Json entry{{"file", inspected.file(*module)}};
-        entry.update(statisticsToJson(module->statistics));
+        entry.update(base::jsonOf(module->statistics));
         stages[std::string(compiler::stageName(module->key()))] = std::move(entry);
     }
     return stages;

@@ -53,14 +53,6 @@ std::string droppedText(const compiler::Plan& plan) {
     return rows.empty() ? std::string() : "\ndropped\n" + formatFields(rows);
 }
 
-base::Json statisticsToJson(const compiler::SpirvStatistics& statistics) {
-    return {{"bytes", statistics.bytes},
-            {"instructions", statistics.instructions},
-            {"textureFetches", statistics.textureFetches},
-            {"rayQueries", statistics.rayQueries},
-            {"branches", statistics.branches}};
-}
-
 base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId) {
     base::Json stages = base::Json::object();
     if (package == nullptr) {
@@ -70,7 +62,7 @@ base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId) 
         const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
         if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
             base::Json entry{{"file", module.file}};
-            entry.update(statisticsToJson(module.statistics));
+            entry.update(base::jsonOf(module.statistics));
             stages[std::string(compiler::stageName(module.key))] = std::move(entry);
         }
     }

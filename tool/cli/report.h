@@ -1,9 +1,9 @@
 // Output that several commands share, as JSON and as text.
 #pragma once
 
-#include "base/json.h"
 #include "cli/console.h"
 #include "emit/compile.h"
+#include "emit/package/json.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
@@ -26,9 +26,6 @@ base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& pl
 std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
 std::string droppedText(const compiler::Plan& plan);
-
-// bytes, instructions, textureFetches, rayQueries, branches
-base::Json statisticsToJson(const compiler::SpirvStatistics& statistics);
 
 // Returns the case's own modules by stage, as in the manifest. Empty without a package, and for strategies
 // that have none.

@@ -1,18 +1,20 @@
-// The reports as JSON: docs/schemas/bench.json and docs/schemas/calibration.json.
+// The JSON of the bench and of calibrations (docs/schemas).
 #pragma once
 
-#include "base/json.h"
+#include "base/fields.h"
 
-#include <glint/measure/calibration_report.h>
+#include <glint/measure/calibration.h>
 #include <glint/measure/report.h>
 
 namespace glint::measure {
 
-base::Json toJson(const BenchMachine& machine);
-// Numbers that are not finite become null.
-base::Json toJson(const Interval& interval);
-base::Json toJson(const BenchReport& report);
-base::Json toJson(const CalibrationReport& report);
-base::Json toJson(const CalibrationEntry& entry);  // one of its points
+base::Fields fieldsOf(const BenchMachine*);
+base::Fields fieldsOf(const Interval*);
+base::Fields fieldsOf(const CalibrationEntry*);
+// Reads what is needed to fit costs to it. Values that follow from others, and those of the run, are not read.
+base::Fields fieldsOf(const CalibrationReport*);
+base::Fields fieldsOf(const BenchReport*);
+
+base::Fields fieldsOf(const DeviceFile*);  // in device_file.cpp
 
 }  // namespace glint::measure

@@ -54,17 +54,6 @@ base::Json cacheToJson(const PipelineReport& report) {
             {"hits", base::orNull(report.making.cacheHits)}};
 }
 
-base::Json statisticsToJson(const PipelineReport& report) {
-    if (!report.statistics) {
-        return nullptr;
-    }
-    base::Json list = base::Json::array();
-    for (const PipelineStatistics& pipeline : *report.statistics) {
-        list.push_back(inspect::toJson(pipeline));
-    }
-    return list;
-}
-
 std::string toText(const PipelineReport& report) {
     const Renderer::PipelineMaking& making = report.making;
     std::string text =

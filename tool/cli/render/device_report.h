@@ -45,7 +45,6 @@ struct PipelineReport {
 
 // Returns null if there is none.
 base::Json cacheToJson(const PipelineReport& report);
-base::Json statisticsToJson(const PipelineReport& report);
 // Returns "8 in 12.3 ms by 4 threads; cache of 1.2 MiB, 8 found in it".
 std::string toText(const PipelineReport& report);
 

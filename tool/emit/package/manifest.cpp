@@ -182,7 +182,7 @@ ManifestJson shaders(const gltf::SceneList& scenes, const CompiledPackage& packa
                         {"always", package.plan.model->names(shaderCase.always)},
                         {"sometimes", package.plan.model->names(shaderCase.sometimes)},
                         {"keys", shaderCase.keys.size()},
-                        {"share", shareToJson(shaderCase.share)},
+                        {"share", roundedShare(shaderCase.share)},
                         {"reason", toString(shaderCase.reason)},
                         {"materials", materialsToJson(scenes, shaderCase.materials)},
                         {"stages", stages(package, shaderCase.shaderId)}});
@@ -209,7 +209,7 @@ ManifestJson keys(const gltf::SceneList& scenes, const CompiledPackage& package)
                         {"mask", fmt::format("{:#018x}", key.mask)},
                         {"primitives", key.primitives.size()},
                         {"materials", materialPlaces(scenes, key.materials)},
-                        {"share", shareToJson(key.share)},
+                        {"share", roundedShare(key.share)},
                         {"shaderId", key.shaderId}});
     }
     return list;
@@ -226,11 +226,13 @@ ManifestJson dropped(const gltf::SceneList& scenes, const CompiledPackage& packa
 }
 
 ManifestJson counts(const gltf::SceneList& scenes, const CompiledPackage& package) {
-    return {
-        {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
-        {"keysPresent", package.plan.keys.size()}, {"cases", caseCount(package.plan)},
-        {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
-        {"spirvBytes", package.spirvBytes}};
+    return {{"materials", scenes.materials().size()},
+            {"keysPossible", base::jsonOf(wholeNumber(package.plan.keysPossible))},
+            {"keysPresent", package.plan.keys.size()},
+            {"cases", caseCount(package.plan)},
+            {"modules", package.modules.size()},
+            {"uniqueSpirv", package.uniqueSpirv},
+            {"spirvBytes", package.spirvBytes}};
 }
 
 ManifestJson files(const CompiledPackage& package) {
@@ -289,8 +291,7 @@ std::string makeManifest(const gltf::SceneList& scenes, const CompiledPackage& p
     manifest["toolVersion"] = toolVersion();
     manifest["scenes"] = sceneList(scenes);
     manifest["strategies"] = strategyNames(settings.strategies);
-    manifest["strategyChoice"] =
-        settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : ManifestJson(nullptr);
+    manifest["strategyChoice"] = base::jsonOf(settings.strategyChoice);
     manifest["tracers"] = tracerNames(settings.tracers);
     manifest["merge"] = nameOf(settings.plan.merge);
     manifest["maxShaders"] = maxShadersOf(settings.plan);
@@ -300,7 +301,7 @@ std::string makeManifest(const gltf::SceneList& scenes, const CompiledPackage& p
     manifest["settings"] = settingsOf(*package.plan.model, settings);
     manifest["counts"] = counts(scenes, package);
     manifest["buckets"] = 1 + package.plan.cases.size();
-    manifest["effects"] = effectsToJson(package.plan.effects);
+    manifest["effects"] = base::jsonOf(package.plan.effects.decisions);
     manifest["features"] = features(*package.plan.model);
     manifest["vertexAttributes"] = vertexAttributes(package.plan);
     manifest["shaders"] = shaders(scenes, package);
